@@ -1,0 +1,21 @@
+# Warnings that count as errors in our own code.
+add_library(rcme_warnings INTERFACE)
+target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
+
+# rcme_add_room(NAME SOURCES ... LINKS ... [PRIVATE_LINKS ...]): one library per room, headers included from the
+# repository root. Fused multiply-add is off everywhere: results must not depend on the compiler's choice.
+function(rcme_add_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
+  add_library(rcme_${name} STATIC ${ROOM_SOURCES})
+  add_library(rcme::${name} ALIAS rcme_${name})
+  set_target_properties(rcme_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(rcme_${name} PUBLIC cxx_std_20)
+  target_compile_options(rcme_${name} PUBLIC -ffp-contract=off)
+  target_include_directories(rcme_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/rcme>)
+  target_link_libraries(rcme_${name} PUBLIC ${ROOM_LINKS}
+                        PRIVATE ${ROOM_PRIVATE_LINKS} $<BUILD_INTERFACE:rcme_warnings>)
+  install(TARGETS rcme_${name} EXPORT rcmeTargets)
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rcme
+          FILES_MATCHING PATTERN "*.h")
+endfunction()

@@ -1,0 +1,33 @@
+#include "estimator/candidate_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rcme {
+
+CandidateSet::CandidateSet(const RansacOptions& options, int num_matches)
+    : lambda_(options.lambda),
+      inlier_ratio_(std::isnan(options.inlier_ratio) ? 0.0 : options.inlier_ratio),
+      is_ratio_inferred_(std::isnan(options.inlier_ratio)),
+      num_matches_(num_matches) {
+  passed_.reserve(static_cast<size_t>(std::min(options.num_iterations, 4096)));
+}
+
+void CandidateSet::Add(const Candidate& candidate) {
+  passed_.push_back(candidate);
+  if (is_ratio_inferred_) {
+    inlier_ratio_ = std::max(inlier_ratio_, static_cast<double>(candidate.score.num_inliers) / num_matches_);
+  }
+}
+
+bool CandidateSet::MeetsSizeCondition(const Candidate& candidate) const {
+  return candidate.score.num_inliers >= lambda_ * inlier_ratio_ * num_matches_;
+}
+
+int CandidateSet::CountMembers() const {
+  return static_cast<int>(std::count_if(passed_.begin(), passed_.end(), [this](const Candidate& candidate) {
+    return MeetsSizeCondition(candidate);
+  }));
+}
+
+}  // namespace rcme

@@ -1,0 +1,33 @@
+#include "estimator/estimator_registry.h"
+
+#include <fmt/format.h>
+
+#include "estimator/estimators/rcme.h"
+#include "estimator/estimators/standard.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+
+const std::vector<EstimatorEntry>& EstimatorRegistry() {
+  using SampleTest = RcmeEstimator::SampleTest;
+  static const std::vector<EstimatorEntry> registry = {
+      {"standard", "RANSAC by inlier count, then Gold Standard refinement",
+       [](const RansacOptions& o) { return std::make_unique<StandardEstimator>(o); }},
+      {"prcme", "RCME without the test of the model against its sample",
+       [](const RansacOptions& o) { return std::make_unique<RcmeEstimator>(o, SampleTest::kOff); }},
+      {"rcme", "RCME: model-sample test, inlier set quality test, selection by entropy, refinement",
+       [](const RansacOptions& o) { return std::make_unique<RcmeEstimator>(o, SampleTest::kOn); }},
+  };
+  return registry;
+}
+
+const EstimatorEntry& FindEstimator(const std::string& name) {
+  std::vector<std::string> names;
+  for (const EstimatorEntry& entry : EstimatorRegistry()) {
+    if (entry.name == name) return entry;
+    names.push_back(entry.name);
+  }
+  throw InputError(fmt::format("unknown estimator '{}'; known: {}", name, fmt::join(names, ", ")));
+}
+
+}  // namespace rcme

@@ -1,0 +1,26 @@
+#include "estimator/estimators/standard.h"
+
+#include "estimator/run_pipeline.h"
+
+namespace rcme {
+namespace {
+
+struct StandardPipeline {
+  using PointTest = KnownPoseTest;
+  static bool SampleIsConsistent(const MotionProblem&, const Hypothesis&, const PointTest&,
+                                 const Thresholds&) {
+    return true;
+  }
+  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
+  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
+    return a.num_inliers > b.num_inliers;
+  }
+};
+
+}  // namespace
+
+MotionEstimate StandardEstimator::Estimate(const MotionProblem& problem, RandomStream& rng) const {
+  return RunPipeline<StandardPipeline>(problem, options_, rng);
+}
+
+}  // namespace rcme

@@ -1,0 +1,21 @@
+#include "estimator/inlier_quality.h"
+
+#include <cmath>
+#include <limits>
+
+namespace rcme {
+
+double ZStatistic(const InlierScore& score, double mu) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (score.num_inliers == 0) return kInfinity;
+  const double n = score.num_inliers;
+  const double s = score.num_inliers > 1 ? std::sqrt(score.sum_squares / (n - 1.0)) : 0.0;
+  if (!(s > 0.0)) return score.mean_entropy <= mu ? -kInfinity : kInfinity;
+  return (score.mean_entropy - mu) / (s / std::sqrt(n));
+}
+
+bool PassesQualityTest(double z, double normal_quantile, QualityTest test) {
+  return z <= (test == QualityTest::kAsPrinted ? normal_quantile : -normal_quantile);
+}
+
+}  // namespace rcme

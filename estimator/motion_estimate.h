@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/geometry/pose.h"
+
+namespace rcme {
+
+// How a call ended. Every call ends in one of these; only kOk carries a motion.
+enum class MotionStatus {
+  kOk,                  // a motion was found and refined
+  kNoCandidate,         // the paper's "Detect-fail": the candidate set is empty
+  kTooFewMatches,       // fewer distinct matches than a minimal sample needs
+  kDegenerateMatches,   // the matches cannot determine a motion (collinear, or every sample is singular)
+  kRefinementDiverged,  // the refinement found no finite optimum
+  kInvalidInput,        // NaN or infinite coordinates, a singular camera, a noise level that is not positive
+};
+
+// The status as a word for files and programs ("ok", "no_candidate", ...), and back.
+const std::string& StatusName(MotionStatus status);
+const std::vector<MotionStatus>& AllStatuses();
+
+// What the hypothesis loop saw, for diagnosis; counts sum to num_hypotheses.
+struct LoopCounts {
+  int num_hypotheses = 0;             // drawn samples
+  int num_degenerate_samples = 0;     // no model from the sample
+  int num_inconsistent_samples = 0;   // failed the sample test (eq::sample-p-test)
+  int num_poor_inlier_sets = 0;       // failed the inlier quality test (eq::inlier-quality-test)
+  int num_too_small_inlier_sets = 0;  // failed the size condition (eq:inlier_size_cond)
+  int num_candidates = 0;             // |C| (eq::candidate-set)
+};
+
+struct MotionEstimate {
+  MotionStatus status = MotionStatus::kInvalidInput;
+  std::string message;  // one sentence for a person
+
+  RelativePose cam2_from_cam1;           // valid if status is kOk
+  Matrix5d pose_cov = Matrix5d::Zero();  // 5x5 [rotation, direction], rad^2
+  std::vector<int> inliers;              // indices of the matches consistent with the motion, ascending
+
+  // The selected hypothesis j, before refinement.
+  RelativePose initial_pose;
+  int num_support = 0;        // n_j
+  double mean_entropy = 0.0;  // psi_j
+  double z_statistic = 0.0;   // Z_j
+
+  // The paper's own failure flag (eq::metric): consistent matches before and after the refinement.
+  int num_consistent_before = 0;  // n_I
+  int num_consistent_after = 0;   // n*_I
+  bool failed_by_kappa = false;   // n*_I / n_I <= kappa
+
+  LoopCounts counts;
+};
+
+}  // namespace rcme

@@ -1,0 +1,81 @@
+#include "estimator/problem_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rcme {
+namespace {
+
+MotionEstimate Refusal(MotionStatus status, std::string message) {
+  MotionEstimate estimate;
+  estimate.status = status;
+  estimate.message = std::move(message);
+  return estimate;
+}
+
+int CountDistinct(const std::vector<Correspondence>& matches) {
+  std::vector<std::array<double, 4>> keys;
+  keys.reserve(matches.size());
+  for (const Correspondence& m : matches)
+    keys.push_back({m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()});
+  std::sort(keys.begin(), keys.end());
+  return static_cast<int>(std::unique(keys.begin(), keys.end()) - keys.begin());
+}
+
+// Root mean square distance (px) of the points of one image from their best line.
+double RmsDistanceFromLine(const std::vector<Correspondence>& matches,
+                           Eigen::Vector2d Correspondence::*point) {
+  const double n = static_cast<double>(matches.size());
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Correspondence& match : matches) mean += match.*point / n;
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Correspondence& match : matches) {
+    const Eigen::Vector2d offset = match.*point - mean;
+    scatter += offset * offset.transpose() / n;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(scatter, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(eigen.eigenvalues()(0), 0.0));
+}
+
+}  // namespace
+
+std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int min_matches) {
+  if (!problem.camera1.IsValid() || !problem.camera2.IsValid()) {
+    return Refusal(MotionStatus::kInvalidInput, "a camera has no finite, invertible K or no image size");
+  }
+  if (!(problem.sigma_px > 0.0) || !std::isfinite(problem.sigma_px)) {
+    return Refusal(MotionStatus::kInvalidInput,
+                   fmt::format("sigma_px is {}; it must be > 0", problem.sigma_px));
+  }
+  for (size_t i = 0; i < problem.matches.size(); ++i) {
+    // Beyond a million pixels nothing is an image coordinate, and products of four would overflow long after.
+    const Correspondence& match = problem.matches[i];
+    const double largest = std::max(match.x1_px.cwiseAbs().maxCoeff(), match.x2_px.cwiseAbs().maxCoeff());
+    if (!match.x1_px.allFinite() || !match.x2_px.allFinite() || largest > 1e6) {
+      return Refusal(MotionStatus::kInvalidInput,
+                     fmt::format("match {} has a coordinate that is not a finite pixel position", i));
+    }
+  }
+  const int num_distinct = CountDistinct(problem.matches);
+  if (num_distinct < min_matches) {
+    return Refusal(MotionStatus::kTooFewMatches,
+                   fmt::format("{} distinct matches of {}; at least {} are needed", num_distinct,
+                               problem.matches.size(), min_matches));
+  }
+  for (const auto& [point, image] : {std::pair{&Correspondence::x1_px, 1}, {&Correspondence::x2_px, 2}}) {
+    const double rms = RmsDistanceFromLine(problem.matches, point);
+    if (rms > 2.0 * problem.sigma_px) continue;
+    return Refusal(
+        MotionStatus::kDegenerateMatches,
+        fmt::format("all points of image {} lie on one line within the noise ({:.2g} px rms from it): they "
+                    "do not determine a motion",
+                    image, rms));
+  }
+  return std::nullopt;
+}
+
+}  // namespace rcme

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+
+#include "estimator/motion_estimate.h"
+#include "estimator/motion_problem.h"
+
+namespace rcme {
+
+// What makes a problem unsolvable before any hypothesis is drawn: bad numbers, fewer than `min_matches`
+// distinct matches, or points of one image on one line within the noise. Nothing: go ahead.
+std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int min_matches);
+
+}  // namespace rcme

@@ -1,0 +1,54 @@
+#include "estimator/ransac_options.h"
+
+#include <cmath>
+
+#include "parameters/input_error.h"
+
+namespace rcme {
+
+double RansacOptions::MuOrDefault() const {
+  if (!std::isnan(mu)) return mu;
+  return reading == Reading::kAsPrinted ? -3.53 : 3.0;
+}
+
+std::vector<Parameter> Parameters(RansacOptions& o) {
+  return {
+      Parameter::Integer("num_iterations", &o.num_iterations, {1, 1e6}, "hypotheses N of Algorithm 1"),
+      Parameter::Real("significance_level", &o.significance_level, {1e-9, 0.5}, "",
+                      "alpha of the sample, inlier and quality tests"),
+      Parameter::Choice<Reading>("reading", &o.reading,
+                                 {{"as_printed", Reading::kAsPrinted}, {"rank_aware", Reading::kRankAware}},
+                                 "how the covariance of the Sampson vector is read"),
+      Parameter::RealOrWord("mu", &o.mu, {-1000.0, 1000.0}, "auto", "nats",
+                            "entropy threshold; auto: -3.53 as printed, 3 nats of excess entropy rank-aware"),
+      Parameter::Choice<QualityTest>(
+          "quality_test", &o.quality_test,
+          {{"as_printed", QualityTest::kAsPrinted}, {"level_alpha", QualityTest::kLevelAlpha}},
+          "Z-test of the mean entropy: Z <= +1.645 (as printed) or Z <= -1.645 (level alpha)"),
+      Parameter::Real("lambda", &o.lambda, {0.0, 1.0}, "", "least inlier share as a fraction of omega_p"),
+      Parameter::RealOrWord("inlier_ratio", &o.inlier_ratio, {0.0, 1.0}, "inferred", "",
+                            "omega_p, the expected share of inliers"),
+      Parameter::Choice<Selection>("selection", &o.selection,
+                                   {{"mean_entropy", Selection::kMeanEntropy},
+                                    {"predictive_likelihood", Selection::kPredictiveLikelihood}},
+                                   "which candidate wins"),
+      Parameter::RealOrWord("early_stop_entropy", &o.early_stop_entropy, {-1000.0, 1000.0}, "off", "nats",
+                            "stop at the first candidate whose mean entropy is at most this"),
+      Parameter::Choice<Refinement>(
+          "refinement", &o.refinement,
+          {{"none", Refinement::kNone}, {"mle", Refinement::kMle}, {"robust", Refinement::kRobust}},
+          "what follows the selection: nothing, the paper's MLE, or a robust loss and then the MLE"),
+      Parameter::Real("kappa", &o.kappa, {0.0, 1.0}, "",
+                      "failure flag: consistent matches after over before the refinement <= kappa"),
+  };
+}
+
+void Validate(const RansacOptions& options) {
+  if (options.selection == Selection::kPredictiveLikelihood && options.reading == Reading::kAsPrinted) {
+    throw InputError(
+        "selection: 'predictive_likelihood' needs reading: rank_aware (as printed, the residual has no "
+        "density)");
+  }
+}
+
+}  // namespace rcme

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "parameters/parameter.h"
+
+namespace rcme {
+
+// Two readings of the paper's Sampson covariance (MATH section 4).
+enum class Reading {
+  kAsPrinted,  // full 4x4 inverse, chi2_3, entropy of a 4-dimensional Gaussian; each sample point tested on
+               // its own
+  kRankAware,  // the residual has one dimension: chi2_1, entropy of that dimension; the sample tested
+               // jointly, chi2_3
+};
+
+// When H0 "psi > mu" is rejected (eq::inlier-quality-test).
+enum class QualityTest {
+  kAsPrinted,   // Z <= +Phi^-1(1 - alpha), as the paper prints it
+  kLevelAlpha,  // Z <= -Phi^-1(1 - alpha), a test whose size is alpha if entropies were independent
+};
+
+// Which candidate wins.
+enum class Selection {
+  kMeanEntropy,           // least psi (eq::model_select_entropy)
+  kPredictiveLikelihood,  // greatest predictive likelihood of all matches; rank-aware reading only
+};
+
+enum class Refinement {
+  kNone,    // the winner's motion as it is, with its first-order covariance
+  kMle,     // the paper's: least squares of the reprojection error over the winner's inlier set
+  kRobust,  // Cauchy loss over the winner's inlier set, then least squares over the matches that agree with
+            // the result
+};
+
+// Options of the RANSAC family (standard, prcme, rcme). Defaults are the paper's where it gives a value.
+struct RansacOptions {
+  int num_iterations = 200;          // N, all of them unless early_stop_entropy says otherwise
+  double significance_level = 0.05;  // alpha of every test
+  Reading reading = Reading::kAsPrinted;
+  double mu = std::numeric_limits<double>::quiet_NaN();  // entropy threshold, nats; NaN: MuOrDefault
+  QualityTest quality_test = QualityTest::kAsPrinted;
+  double lambda = 0.5;  // least inlier share as a fraction of omega_p, 0.5 <= lambda <= 1
+  double inlier_ratio = std::numeric_limits<double>::quiet_NaN();  // omega_p; NaN: inferred during the loop
+  Selection selection = Selection::kMeanEntropy;
+  double early_stop_entropy = std::numeric_limits<double>::quiet_NaN();  // NaN: off
+  Refinement refinement = Refinement::kRobust;
+  double kappa = 0.5;  // failure flag: n*_I / n_I <= kappa (eq::metric)
+
+  // mu, or the default of the reading: -3.53 as printed (of a 4-dimensional density in px: it has units), 3
+  // nats of excess entropy in the rank-aware reading (MATH section 6).
+  double MuOrDefault() const;
+};
+
+// The fields by name, for study files and the command line. Valid as long as `options` lives.
+std::vector<Parameter> Parameters(RansacOptions& options);
+
+// Throws InputError where two options contradict each other.
+void Validate(const RansacOptions& options);
+
+}  // namespace rcme

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "estimator/geometry/essential_matrix.h"
+
+namespace rcme {
+
+// The unit null vector f of M f = 0 (M 8x9, rows kron(x2, x1) in rays) and what noise in the eight
+// constraints does to it: g_k = x2_k' F x1_k disturbed by n_k gives delta f = -G n to first order, G = A (M
+// A)^-1 (9x8), A' f = 0.
+struct LinearModel {
+  Vector9d f = Vector9d::Zero();
+  Eigen::Matrix<double, 9, 8> A = Eigen::Matrix<double, 9, 8>::Zero();
+  Eigen::Matrix<double, 9, 8> G = Eigen::Matrix<double, 9, 8>::Zero();
+};
+
+// The 8-point algorithm on calibrated rays (Longuet-Higgins 1981; Hartley & Zisserman, algorithm 11.1).
+//
+// Rays K^-1 x are the only normalisation: with exactly eight points the null vector is the same one in
+// Hartley's coordinates, and the step to rank 2 happens on E (ProjectToEssential), not here.
+class EightPoint {
+ public:
+  static constexpr int kSampleSize = 8;
+  using Rays = std::array<Eigen::Vector3d, kSampleSize>;
+
+  // Nothing if the eight points do not determine f (coplanar configuration, repeated points, pure rotation,
+  // ...): the smallest pivot is below 1e-9 of the largest.
+  static std::optional<LinearModel> Solve(const Rays& rays1, const Rays& rays2);
+};
+
+}  // namespace rcme

@@ -1,0 +1,37 @@
+// First-order covariance from the noise of the minimal sample to f and to the motion p.
+//
+// Assumes a.2: independent Gaussian noise of standard deviation sigma_px in each coordinate of each image.
+// Exact in the limit sigma -> 0; for a minimal sample at sigma = 0.5 px the covariance is already too small
+// (MATH section 3).
+#pragma once
+
+#include <span>
+
+#include "estimator/geometry/correspondence.h"
+#include "estimator/geometry/essential_matrix.h"
+#include "estimator/solvers/eight_point.h"
+
+namespace rcme {
+
+// Variances of the constraints g_k = x2' F x1 of a sample: D_kk = sigma^2 |J_k|^2, F in pixels.
+Eigen::Matrix<double, 8, 1> ConstraintVariances(const Eigen::Matrix3d& F,
+                                                std::span<const Correspondence, 8> sample, double sigma_px);
+
+// Sigma_f = G D G' (9x9, rank 8, null direction f), f the unit vector of the linear model in rays. Equals the
+// paper's overdetermined case A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' with dOmega/df the minimum-norm
+// implicit derivative.
+Matrix9d CovarianceOfF(const LinearModel& model, const Eigen::Matrix<double, 8, 1>& constraint_variances);
+
+// J_p = dp/df (5x9) of the step from the unit vector f to the nearest essential matrix and its motion: the
+// pseudo-inverse of the unit-norm tangent dE/dp / sqrt(2), which is the paper's -(dTheta/dp)^+ dTheta/df on
+// the 5-dimensional manifold. Valid for either sign of f, up to its sign.
+Eigen::Matrix<double, 5, 9> MotionJacobian(const RelativePose& pose);
+
+// Sigma_p = J_p Sigma_f J_p' (eq::cov_p), 5x5, [rotation, direction], rad^2.
+Matrix5d CovarianceOfMotion(const RelativePose& pose, const Matrix9d& f_cov);
+
+// The paper's 7x7 covariance of p = [q; t], rank 5.
+Eigen::Matrix<double, 7, 7> CovarianceOfQuaternionAndTranslation(const RelativePose& pose,
+                                                                 const Matrix5d& pose_cov);
+
+}  // namespace rcme

@@ -1,0 +1,106 @@
+#include "parameters/parameter.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+template <typename Number>
+bool ParseWhole(const std::string& text, Number* value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, *value);
+  return error == std::errc() && stop == end;
+}
+
+bool Contains(const Parameter::Range& range, double value) {
+  return value >= range.min && value <= range.max;
+}
+
+std::string RangeInWords(const std::string& kind, const Parameter::Range& range) {
+  if (std::isinf(range.min) && std::isinf(range.max)) return kind;
+  if (std::isinf(range.max)) return fmt::format("{} >= {}", kind, range.min);
+  if (std::isinf(range.min)) return fmt::format("{} <= {}", kind, range.max);
+  return fmt::format("{} in [{}, {}]", kind, range.min, range.max);
+}
+
+}  // namespace
+
+bool ParseReal(const std::string& text, double* value) {
+  double parsed = 0.0;
+  if (!ParseWhole(text, &parsed) || !std::isfinite(parsed)) return false;
+  *value = parsed;
+  return true;
+}
+
+bool ParseInteger(const std::string& text, long long* value) { return ParseWhole(text, value); }
+
+Parameter Parameter::Real(std::string name, double* target, Range range, std::string unit, std::string doc) {
+  Parameter parameter;
+  parameter.name_ = std::move(name);
+  parameter.unit_ = std::move(unit);
+  parameter.doc_ = std::move(doc);
+  parameter.allowed_ = RangeInWords("a number", range);
+  parameter.set_ = [target, range](const std::string& text) {
+    double value = 0.0;
+    if (!ParseReal(text, &value) || !Contains(range, value)) return false;
+    *target = value;
+    return true;
+  };
+  parameter.get_ = [target] { return fmt::format("{}", *target); };
+  return parameter;
+}
+
+Parameter Parameter::RealOrWord(std::string name, double* target, Range range, std::string automatic,
+                                std::string unit, std::string doc) {
+  Parameter parameter = Real(std::move(name), target, range, std::move(unit), std::move(doc));
+  parameter.allowed_ += " or " + automatic;
+  parameter.set_ = [target, automatic, set_number = parameter.set_](const std::string& text) {
+    if (text != automatic) return set_number(text);
+    *target = std::numeric_limits<double>::quiet_NaN();
+    return true;
+  };
+  parameter.get_ = [target, automatic] {
+    return std::isnan(*target) ? automatic : fmt::format("{}", *target);
+  };
+  return parameter;
+}
+
+Parameter Parameter::Integer(std::string name, int* target, Range range, std::string doc) {
+  Parameter parameter;
+  parameter.name_ = std::move(name);
+  parameter.doc_ = std::move(doc);
+  parameter.allowed_ = RangeInWords("a whole number", range);
+  parameter.set_ = [target, range](const std::string& text) {
+    long long value = 0;
+    if (!ParseInteger(text, &value) || !Contains(range, static_cast<double>(value))) return false;
+    if (value > std::numeric_limits<int>::max() || value < std::numeric_limits<int>::min()) return false;
+    *target = static_cast<int>(value);
+    return true;
+  };
+  parameter.get_ = [target] { return fmt::format("{}", *target); };
+  return parameter;
+}
+
+void Parameter::SetFromText(const std::string& text) const {
+  if (!set_(text)) throw InputError(fmt::format("{}: '{}' is not allowed; give {}", name_, text, allowed_));
+}
+
+std::string Parameter::ListWords(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+const Parameter& FindParameter(const std::vector<Parameter>& parameters, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameters) {
+    if (parameter.name() == name) return parameter;
+    names.push_back(parameter.name());
+  }
+  throw InputError(fmt::format("unknown key '{}'; known keys: {}", name, fmt::join(names, ", ")));
+}
+
+}  // namespace rcme

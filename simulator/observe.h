@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/geometry/correspondence.h"
+#include "simulator/noise_model.h"
+#include "simulator/outlier_model.h"
+#include "simulator/scene.h"
+
+namespace rcme {
+
+// What the two images give: noisy matches in random order, and which of them are true (for scoring alone).
+struct Observation {
+  std::vector<Correspondence> matches;
+  std::vector<bool> is_inlier_true;
+};
+
+// Noise and outliers each draw from a stream of their own, so that the noise of a match does not depend on
+// the outlier ratio. Noise may carry a point a little over the image border, as a detector's would not; it is
+// left there.
+Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierModel& outliers,
+                    RandomStream& noise_rng, RandomStream& outlier_rng);
+
+}  // namespace rcme

@@ -1,0 +1,19 @@
+#include "stats/distributions.h"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+
+namespace rcme {
+
+double ChiSquareQuantile(int degrees_of_freedom, double probability) {
+  return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), probability);
+}
+double ChiSquareCdf(int degrees_of_freedom, double x) {
+  return boost::math::cdf(boost::math::chi_squared(degrees_of_freedom), x);
+}
+double NormalQuantile(double probability) {
+  return boost::math::quantile(boost::math::normal(), probability);
+}
+double NormalCdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
+
+}  // namespace rcme

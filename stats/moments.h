@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace rcme {
+
+// Mean and variance of a stream of numbers in constant memory (Welford 1962).
+class Moments {
+ public:
+  void Add(double x) {
+    ++n_;
+    const double step = x - mean_;
+    mean_ += step / static_cast<double>(n_);
+    sum_squares_ += step * (x - mean_);
+  }
+
+  std::int64_t n() const { return n_; }
+  // NaN where there are not enough numbers.
+  double mean() const { return n_ > 0 ? mean_ : kNaN; }
+  double variance() const { return n_ > 1 ? sum_squares_ / static_cast<double>(n_ - 1) : kNaN; }
+  // Monte-Carlo standard error of the mean: s / sqrt(n).
+  double standard_error() const { return std::sqrt(variance() / static_cast<double>(n_)); }
+
+ private:
+  static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  std::int64_t n_ = 0;
+  double mean_ = 0.0, sum_squares_ = 0.0;
+};
+
+}  // namespace rcme

@@ -1,0 +1,62 @@
+// Counter-based random streams: Philox4x32-10 (Salmon et al. 2011, from Random123).
+//
+// A stream is named, never seeded by time, thread or order of creation. Different names give streams that
+// share no block: the name fills the 64-bit key and three of the four counter words, the fourth counts
+// blocks. A stream holds 2^32 blocks of four words. The same name gives the same numbers on every machine.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace rcme {
+
+struct StreamName {
+  std::uint64_t seed = 0;
+  std::uint32_t condition = 0;
+  std::uint32_t trial = 0;
+  std::uint32_t purpose = 0;
+};
+
+class RandomStream {
+ public:
+  explicit RandomStream(const StreamName& name);
+
+  std::uint32_t Next32();
+  std::uint64_t Next64();  // two words, the first one low
+
+  // Uniform on [0, 1): a multiple of 2^-53.
+  double Uniform();
+  double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+
+  // Standard normal, Box-Muller; the second of each pair is kept for the next call.
+  double Normal();
+
+  // Uniform on {0, ..., n - 1} without bias (Lemire 2019), n >= 1.
+  std::uint32_t IntegerBelow(std::uint32_t n);
+
+  // Fisher-Yates, every order equally likely.
+  template <typename T>
+  void Shuffle(std::span<T> items) {
+    for (std::size_t i = items.size(); i > 1; --i) {
+      std::swap(items[i - 1], items[IntegerBelow(static_cast<std::uint32_t>(i))]);
+    }
+  }
+
+ private:
+  void Refill();
+
+  StreamName name_;
+  std::uint32_t next_block_ = 0;
+  std::array<std::uint32_t, 4> words_{};
+  int num_used_ = 4;
+  bool has_spare_normal_ = false;
+  double spare_normal_ = 0.0;
+};
+
+// The bare generator, for known-answer tests: four words from a 128-bit counter and a 64-bit key.
+std::array<std::uint32_t, 4> Philox4x32(const std::array<std::uint32_t, 4>& counter,
+                                        const std::array<std::uint32_t, 2>& key);
+
+}  // namespace rcme
