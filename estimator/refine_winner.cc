@@ -21,14 +21,22 @@ Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& 
   return FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
 }
 
+// Most refits after the robust fit; the agreeing set is nearly always stable after two or three.
+constexpr int kMaxRefits = 10;
+
 RefinedMotion RefineRobustly(const MotionProblem& problem, const std::vector<int>& support,
                              const RelativePose& start) {
-  const RefinedMotion robust = RefineByReprojection(problem, support, start, Loss::kCauchy);
-  if (!robust.converged) return robust;
-  const KnownPoseTest test(FundamentalOf(problem, robust.cam2_from_cam1), problem.sigma_px);
-  const std::vector<int> agreeing =
-      FindInliers(problem, test, ChiSquareQuantile(1, 1.0 - kRefitSignificance));
-  return RefineByReprojection(problem, agreeing, robust.cam2_from_cam1, Loss::kSquared);
+  RefinedMotion motion = RefineByReprojection(problem, support, start, Loss::kCauchy);
+  const double threshold = ChiSquareQuantile(1, 1.0 - kRefitSignificance);
+  std::vector<int> fitted;
+  for (int refit = 0; refit < kMaxRefits && motion.converged; ++refit) {
+    const KnownPoseTest test(FundamentalOf(problem, motion.cam2_from_cam1), problem.sigma_px);
+    std::vector<int> agreeing = FindInliers(problem, test, threshold);
+    if (agreeing == fitted) break;
+    fitted = std::move(agreeing);
+    motion = RefineByReprojection(problem, fitted, motion.cam2_from_cam1, Loss::kSquared);
+  }
+  return motion;
 }
 
 RefinedMotion Refine(const MotionProblem& problem, const RansacOptions& options, const Hypothesis& winner,

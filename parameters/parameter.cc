@@ -86,6 +86,20 @@ Parameter Parameter::Integer(std::string name, int* target, Range range, std::st
   return parameter;
 }
 
+Parameter Parameter::Text(std::string name, std::string* target, std::string allowed, std::string doc) {
+  Parameter parameter;
+  parameter.name_ = std::move(name);
+  parameter.doc_ = std::move(doc);
+  parameter.allowed_ = std::move(allowed);
+  parameter.set_ = [target](const std::string& text) {
+    if (text.empty()) return false;
+    *target = text;
+    return true;
+  };
+  parameter.get_ = [target] { return *target; };
+  return parameter;
+}
+
 void Parameter::SetFromText(const std::string& text) const {
   if (!set_(text)) throw InputError(fmt::format("{}: '{}' is not allowed; give {}", name_, text, allowed_));
 }

@@ -29,6 +29,7 @@ class Parameter {
   static Parameter RealOrWord(std::string name, double* target, Range range, std::string automatic,
                               std::string unit, std::string doc);
   static Parameter Integer(std::string name, int* target, Range range, std::string doc);
+  static Parameter Text(std::string name, std::string* target, std::string allowed, std::string doc);
 
   template <typename Enum>
   static Parameter Choice(std::string name, Enum* target, std::vector<std::pair<std::string, Enum>> choices,
@@ -42,8 +43,8 @@ class Parameter {
 
   // Writes the field; throws InputError that names key, value and what is allowed.
   void SetFromText(const std::string& text) const;
-  // The field's present value, such that SetFromText(Text()) changes nothing.
-  std::string Text() const { return get_(); }
+  // The field's present value, such that SetFromText(Value()) changes nothing.
+  std::string Value() const { return get_(); }
 
  private:
   static std::string ListWords(const std::vector<std::string>& words);

@@ -1,0 +1,16 @@
+// The commands of the program `rcme`. Each adds its subcommand to the parser; its callback does the work and throws
+// InputError for bad input.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rcme {
+
+void AddRunCommand(CLI::App& app);
+void AddSummarizeCommand(CLI::App& app);
+void AddReplayCommand(CLI::App& app);
+void AddEstimateCommand(CLI::App& app);
+void AddMatchCommand(CLI::App& app);
+void AddListCommand(CLI::App& app);
+
+}  // namespace rcme

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "estimator/estimator_registry.h"
+#include "experiments/commands/commands.h"
+#include "experiments/real_data/match_file.h"
+#include "experiments/trial.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct EstimateArguments {
+  std::string matches, estimator = "rcme";
+  double sigma_px = 0.5;
+  std::int64_t seed = 1;
+  std::vector<std::string> overrides;
+  bool as_json = false;
+};
+
+// The row-major numbers of a matrix.
+std::vector<double> RowMajor(const Eigen::MatrixXd& matrix) {
+  std::vector<double> numbers;
+  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) numbers.push_back(matrix(r, c));
+  }
+  return numbers;
+}
+
+nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord& record, const std::string& estimator) {
+  nlohmann::ordered_json json = {{"status", StatusName(estimate.status)},
+                                 {"message", estimate.message},
+                                 {"estimator", estimator},
+                                 {"R", nullptr},
+                                 {"t", nullptr},
+                                 {"pose_cov", nullptr},
+                                 {"num_matches", record.num_matches},
+                                 {"num_inliers", record.num_inliers},
+                                 {"failed_by_kappa", nullptr}};
+  if (estimate.status != MotionStatus::kOk) return json;
+  json["R"] = RowMajor(estimate.cam2_from_cam1.R);
+  json["t"] = RowMajor(estimate.cam2_from_cam1.t);
+  json["pose_cov"] = RowMajor(estimate.pose_cov);
+  json["failed_by_kappa"] = estimate.failed_by_kappa;
+  if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
+  if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
+  return json;
+}
+
+void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, const std::string& estimator) {
+  fmt::print("{}: {} - {}\n", estimator, StatusName(estimate.status), estimate.message);
+  if (estimate.status != MotionStatus::kOk) return;
+  const RelativePose& pose = estimate.cam2_from_cam1;
+  fmt::print("cam2_from_cam1 (X2 = R X1 + t, |t| = 1)\n");
+  for (int row = 0; row < 3; ++row) {
+    fmt::print("  R {:>12.8f} {:>12.8f} {:>12.8f}   t {:>12.8f}\n", pose.R(row, 0), pose.R(row, 1), pose.R(row, 2),
+               pose.t(row));
+  }
+  const Vector5d sd_deg = 180.0 / std::numbers::pi * estimate.pose_cov.diagonal().cwiseSqrt();
+  fmt::print("standard deviations (deg): rotation {:.4f} {:.4f} {:.4f}, direction {:.4f} {:.4f}\n", sd_deg(0), sd_deg(1),
+             sd_deg(2), sd_deg(3), sd_deg(4));
+  fmt::print("inliers: {} of {} matches\n", record.num_inliers, record.num_matches);
+  if (estimate.failed_by_kappa) fmt::print("the paper's failure flag is set: refinement lost half of the inliers\n");
+  if (!std::isnan(record.rotation_error_deg)) {
+    fmt::print("against the file's true motion: rotation error {:.4f} deg, direction error {:.4f} deg\n",
+               record.rotation_error_deg, record.direction_error_deg);
+  }
+}
+
+void RunEstimate(const EstimateArguments& arguments) {
+  RansacOptions options;
+  for (const std::string& text : arguments.overrides) {
+    const size_t equals = std::min(text.find('='), text.size());
+    const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
+    FindParameter(Parameters(options), text.substr(0, equals)).SetFromText(value);
+  }
+  const std::unique_ptr<MotionEstimator> estimator = FindEstimator(arguments.estimator).make(options);
+  MatchFile file = ReadMatchFile(arguments.matches);
+  TrialData data;
+  data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments.sigma_px};
+  data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
+  RandomStream rng = StreamFor({static_cast<std::uint64_t>(arguments.seed), 0, 0, 0}, StreamPurpose::kSampling);
+  const MotionEstimate estimate = estimator->Estimate(data.problem, rng);
+  const TrialRecord record = Score(estimate, data, 0.0);
+  if (arguments.as_json) {
+    fmt::print("{}\n", AsJson(estimate, record, arguments.estimator).dump(2));
+  } else {
+    PrintForPeople(estimate, record, arguments.estimator);
+  }
+  // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its answer.
+  const bool is_bad_input = estimate.status == MotionStatus::kInvalidInput ||
+                            estimate.status == MotionStatus::kTooFewMatches ||
+                            estimate.status == MotionStatus::kDegenerateMatches;
+  if (is_bad_input) throw InputError(fmt::format("{}: {}", arguments.matches, estimate.message));
+}
+
+}  // namespace
+
+void AddEstimateCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("estimate", "Estimate the motion between two images from a file of matches");
+  auto arguments = std::make_shared<EstimateArguments>();
+  command
+      ->add_option("matches", arguments->matches,
+                   "match file, plain or gzip: header '# size1: w h', '# K1_fx_fy_cx_cy: ...' (and 2), rows x1,y1,x2,y2")
+      ->required();
+  command->add_option("--estimator", arguments->estimator, "see `rcme list estimators`")->capture_default_str();
+  command->add_option("--sigma", arguments->sigma_px, "noise standard deviation per coordinate, px")
+      ->check(CLI::Range(1e-9, 1000.0))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of the random samples")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
+  command->add_option("--set", arguments->overrides, "option=value, repeatable; see `rcme list options`");
+  command->add_flag("--json", arguments->as_json, "one JSON object; R row-major (9), pose_cov row-major (25), rad^2");
+  command->callback([arguments] { RunEstimate(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "estimator/estimator_registry.h"
+#include "experiments/commands/commands.h"
+#include "experiments/study_file.h"
+#include "experiments/summary_output.h"
+#include "parameters/input_error.h"
+#include "simulator/scene_registry.h"
+
+namespace rcme {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+Rows ListEstimators() {
+  Rows rows = {{"estimator", "what it is"}};
+  for (const EstimatorEntry& entry : EstimatorRegistry()) rows.push_back({entry.name, entry.doc});
+  return rows;
+}
+
+Rows ListOptions() {
+  Rows rows = {{"option", "default", "unit", "allowed", "what it is"}};
+  RansacOptions defaults;
+  for (const Parameter& p : Parameters(defaults)) rows.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
+  return rows;
+}
+
+Rows ListScenes() {
+  Rows rows = {{"scene", "what it is"}};
+  for (const SceneEntry& entry : SceneRegistry()) rows.push_back({entry.name, entry.doc});
+  rows.push_back({kMatchFilesScene, "real pairs from a folder of match files"});
+  return rows;
+}
+
+Rows ListSettings() {
+  Rows rows = {{"scene", "data key", "default", "unit", "allowed", "what it is"}};
+  for (const auto& scene : ListScenes()) {
+    if (scene[0] == "scene") continue;  // the heading
+    for (const SettingHelp& s : DescribeSettings(scene[0])) {
+      rows.push_back({scene[0], s.name, s.value, s.unit, s.allowed, s.doc});
+    }
+  }
+  return rows;
+}
+
+Rows ListQuantities() {
+  Rows rows = {{"quantity", "kind", "what it is"}};
+  for (const QuantityHelp& q : SummaryQuantities()) rows.push_back({q.name, q.kind, q.doc});
+  return rows;
+}
+
+Rows ListStudies() {
+  const std::filesystem::path folder = "experiments/studies";
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError("list studies: no folder experiments/studies here; run it from the project's root");
+  }
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
+  }
+  std::sort(paths.begin(), paths.end());
+  Rows rows = {{"study", "what it asks"}};
+  for (const std::string& path : paths) {
+    std::string description = LoadStudy(path).description;
+    std::replace(description.begin(), description.end(), '\n', ' ');
+    rows.push_back({path, description});
+  }
+  return rows;
+}
+
+}  // namespace
+
+void AddListCommand(CLI::App& app) {
+  using Lister = std::function<Rows()>;
+  static const std::vector<std::pair<std::string, Lister>> kLists = {
+      {"estimators", ListEstimators}, {"options", ListOptions},       {"scenes", ListScenes},
+      {"settings", ListSettings},     {"quantities", ListQuantities}, {"studies", ListStudies}};
+  std::vector<std::string> names;
+  for (const auto& [name, lister] : kLists) names.push_back(name);
+  CLI::App* command = app.add_subcommand(
+      "list", "What there is: estimators and their options, scenes and their settings, quantities, studies");
+  auto what = std::make_shared<std::string>();
+  command->add_option("what", *what, "one list; default: all but studies")->check(CLI::IsMember(names));
+  command->callback([what] {
+    for (const auto& [name, lister] : kLists) {
+      if (what->empty() ? name != "studies" : name == *what) fmt::print("{}\n", FormatColumns(lister()));
+    }
+  });
+}
+
+}  // namespace rcme

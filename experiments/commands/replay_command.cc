@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "experiments/commands/commands.h"
+#include "experiments/result_store.h"
+#include "experiments/study_file.h"
+#include "experiments/trial_fields.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+std::string FieldText(const MotionStatus& status) { return StatusName(status); }
+std::string FieldText(bool flag) { return flag ? "yes" : "no"; }
+template <typename Number>
+std::string FieldText(const Number& number) {
+  return fmt::format("{}", number);
+}
+
+std::string MatrixText(const Eigen::MatrixXd& matrix) {
+  std::string text;
+  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
+    text += "    ";
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) text += fmt::format("{:>14.6g}", matrix(r, c));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string PoseText(const RelativePose& pose) {
+  return fmt::format("  R =\n{}  t =\n{}", MatrixText(pose.R), MatrixText(pose.t.transpose()));
+}
+
+void PrintData(const StudyPlan& plan, const Condition& condition, std::uint32_t trial, const TrialData& data) {
+  fmt::print("Study {}, seed {}, condition {}, trial {} ({})\n", plan.study.name, plan.study.seed, condition.index,
+             trial, data.origin);
+  for (size_t f = 0; f < plan.factor_names.size(); ++f) {
+    fmt::print("  {} = {}\n", plan.factor_names[f], condition.levels[f]);
+  }
+  fmt::print("  {} matches, sigma {} px\n", data.problem.matches.size(), data.problem.sigma_px);
+  if (data.truth.cam2_from_cam1_true) fmt::print("True motion\n{}", PoseText(*data.truth.cam2_from_cam1_true));
+}
+
+void PrintEstimate(const std::string& label, const MotionEstimate& estimate, const TrialRecord& record,
+                   const FailureBounds& bounds) {
+  const char* verdict = HasFailed(record, bounds) ? "failed" : HasSucceeded(record, bounds) ? "success" : "no motion scored";
+  fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status), verdict, estimate.message);
+  if (estimate.status == MotionStatus::kOk) {
+    fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
+               MatrixText(57.29577951308232 * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
+  }
+  VisitFields(record, [](const std::string& name, const auto& field) {
+    if (name != "condition" && name != "trial" && name != "estimator" && name != "status") {
+      fmt::print("  {:<26}{}\n", name, FieldText(field));
+    }
+  });
+}
+
+// Whether two records agree in every field but the time.
+bool AreEqual(const TrialRecord& a, const TrialRecord& b) {
+  const auto text_of = [](const TrialRecord& record) {
+    std::string text;
+    VisitFields(record, [&](const std::string& name, const auto& field) {
+      if (name != "seconds") text += FieldText(field) + " ";
+    });
+    return text;
+  };
+  return text_of(a) == text_of(b);
+}
+
+void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t trial) {
+  const ResultStore store = ResultStore::OpenForReading(run);
+  const StudyPlan plan = MakePlan(ParseStudy(store.StudyYaml(), "study in " + run));
+  if (condition_index >= plan.conditions.size()) {
+    throw InputError(fmt::format("--condition: {} is not allowed; the study has conditions 0 to {}", condition_index,
+                                 plan.conditions.size() - 1));
+  }
+  const Condition& condition = plan.conditions[condition_index];
+  const TrialResult result = RunTrial(plan, condition, trial);
+  PrintData(plan, condition, trial, result.data);
+  const std::vector<TrialRecord> stored = store.RecordsOf(condition_index, trial);
+  for (size_t e = 0; e < result.records.size(); ++e) {
+    PrintEstimate(plan.study.estimators[e].label, result.estimates[e], result.records[e], plan.study.failure);
+    const bool is_stored = e < stored.size();
+    fmt::print("  the record in the file:   {}\n", !is_stored                                ? "not run yet"
+                                                   : AreEqual(stored[e], result.records[e]) ? "the same"
+                                                                                             : "DIFFERENT");
+  }
+}
+
+}  // namespace
+
+void AddReplayCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("replay", "Run one trial of a result file again and print it in full");
+  struct Arguments {
+    std::string run;
+    std::uint32_t condition = 0, trial = 0;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("run", arguments->run, "result file of `rcme run`")->required();
+  command->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
+      ->required();
+  command->add_option("--trial", arguments->trial, "trial, from 0")->required();
+  command->callback([arguments] { Replay(arguments->run, arguments->condition, arguments->trial); });
+}
+
+}  // namespace rcme

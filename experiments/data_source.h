@@ -1,0 +1,69 @@
+// Where the matches of a trial come from, and what is known of the truth.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/geometry/pose.h"
+#include "estimator/motion_problem.h"
+#include "stats/random.h"
+
+namespace rcme {
+
+// The random streams of a trial: one purpose each, so that none shares a number with another.
+enum class StreamPurpose : std::uint32_t { kScene = 1, kNoise = 2, kOutliers = 3, kSampling = 4 };
+
+// The stream of a trial for a purpose.
+RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose);
+
+struct Truth {
+  std::optional<RelativePose> cam2_from_cam1_true;
+  bool is_direction_known = true;     // false: score the rotation alone
+  std::vector<bool> is_inlier_true;   // per match; empty: unknown
+};
+
+// A problem for the estimators and the truth for the score, kept apart from here on.
+struct TrialData {
+  MotionProblem problem;
+  Truth truth;
+  std::string origin;  // for people: the scene or the file it came from
+};
+
+// All trials of one condition. Const and shared by threads.
+class DataSource {
+ public:
+  virtual ~DataSource() = default;
+  // Trials the condition has when the study asks for `trials`.
+  virtual int NumTrials(int trials) const = 0;
+  // A pure function of the name.
+  virtual TrialData Make(const StreamName& trial_name) const = 0;
+  // What else the data depend on (file contents), as text: part of the study's identity. Empty: nothing.
+  virtual std::string Identity() const { return {}; }
+};
+
+using Settings = std::vector<std::pair<std::string, std::string>>;  // key, value as text; later ones override
+
+// One data source, or several: a folder of real pairs makes one per scene it holds, with the level that names it.
+struct DataSources {
+  std::string implied_factor;  // name of the factor that tells the sources apart; empty: there is only one
+  std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;  // level, source
+};
+
+// The sources for the settings of a condition, `scene` among them. Throws InputError that names key and value.
+DataSources MakeDataSources(const Settings& settings);
+
+// Every parameter of the scene with its value, `scene` first. Throws InputError that names key and value.
+Settings ResolveSettings(const Settings& settings);
+
+// Every key a `data:` block of this scene may hold, with its default, as `name, value, allowed, doc` rows.
+struct SettingHelp {
+  std::string name, value, unit, allowed, doc;
+};
+std::vector<SettingHelp> DescribeSettings(const std::string& scene);
+
+// The scene name that stands for a folder of match files.
+inline constexpr const char* kMatchFilesScene = "match_files";
+
+}  // namespace rcme

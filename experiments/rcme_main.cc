@@ -1,0 +1,44 @@
+// rcme: statistical validation of robust two-view motion estimators. Exit codes: 0 done, 2 usage or bad input, 1 else.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "experiments/commands/commands.h"
+#include "parameters/input_error.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Validates robust two-view camera-motion estimators (RCME and peers) by simulation, and runs them on real matches.\n"
+      "\n"
+      "A first session:\n"
+      "  rcme list studies                                            what there is to run\n"
+      "  rcme run experiments/studies/failure_vs_outliers.yaml --out run.sqlite\n"
+      "  rcme summarize run.sqlite                                    rates with exact intervals\n"
+      "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
+      "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
+      "rcme"};
+  app.set_version_flag("--version", "rcme " RCME_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  rcme::AddRunCommand(app);
+  rcme::AddSummarizeCommand(app);
+  rcme::AddReplayCommand(app);
+  rcme::AddEstimateCommand(app);
+  rcme::AddMatchCommand(app);
+  rcme::AddListCommand(app);
+  try {
+    app.parse(argc, argv);
+    if (std::fflush(stdout) != 0) throw rcme::InputError("standard output cannot be written");
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const rcme::InputError& error) {
+    fmt::print(stderr, "rcme: {}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "rcme: internal error: {}\n", error.what());
+    return 1;
+  }
+}

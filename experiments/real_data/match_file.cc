@@ -1,0 +1,188 @@
+#include "experiments/real_data/match_file.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string_view>
+
+#include "experiments/file_output.h"
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMaxBytes = size_t{1} << 30;  // of text, unpacked
+
+// The whole file as text, unpacked if it is gzip.
+std::string ReadText(const std::string& path) {
+  if (!std::filesystem::exists(path)) throw InputError(fmt::format("{}: no such file", path));
+  if (std::filesystem::is_directory(path)) throw InputError(fmt::format("{}: is a folder, not a match file", path));
+  std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose_r);
+  if (!file) throw InputError(fmt::format("{}: cannot be read", path));
+  std::string text;
+  std::array<char, 1 << 16> buffer{};
+  int num_read = 0;
+  while ((num_read = gzread(file.get(), buffer.data(), buffer.size())) > 0) {
+    text.append(buffer.data(), static_cast<size_t>(num_read));
+    if (text.size() > kMaxBytes) throw InputError(fmt::format("{}: more than {} bytes of text", path, kMaxBytes));
+  }
+  int error = Z_OK;
+  const char* reason = gzerror(file.get(), &error);
+  if (num_read < 0 || (error != Z_OK && error != Z_STREAM_END)) {
+    throw InputError(fmt::format("{}: damaged or truncated gzip file ({})", path, reason));
+  }
+  return text;
+}
+
+std::string_view Trim(std::string_view text) {
+  const size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> Split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (true) {
+    const size_t end = text.find(separator);
+    const std::string_view part = Trim(text.substr(0, end));
+    if (separator != ' ' || !part.empty()) parts.emplace_back(part);
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// Header values with the lines they stand on.
+class Header {
+ public:
+  explicit Header(std::string path) : path_(std::move(path)) {}
+
+  void AddLine(std::string_view line, int line_number) {
+    const size_t colon = line.find(':');
+    if (colon == std::string_view::npos) return;  // a comment
+    const std::string key(Trim(line.substr(1, colon - 1)));
+    if (!entries_.emplace(key, Entry{std::string(Trim(line.substr(colon + 1))), line_number}).second) {
+      throw InputError(fmt::format("{}:{}: key '{}' stands twice", path_, line_number, key));
+    }
+  }
+
+  bool Has(const std::string& key) const { return entries_.count(key) > 0; }
+  std::string Text(const std::string& key) const { return entries_.at(key).text; }
+
+  // The `count` numbers of a key that must be there.
+  std::vector<double> Numbers(const std::string& key, size_t count) const {
+    if (!Has(key)) throw InputError(fmt::format("{}: header key '# {}: ...' is missing", path_, key));
+    std::vector<double> numbers;
+    for (const std::string& word : Split(entries_.at(key).text, ' ')) {
+      double number = 0.0;
+      if (!ParseReal(word, &number)) Fail(key, fmt::format("'{}' is not a finite number", word));
+      numbers.push_back(number);
+    }
+    if (numbers.size() != count) Fail(key, fmt::format("has {} numbers; {} are needed", numbers.size(), count));
+    return numbers;
+  }
+
+  [[noreturn]] void Fail(const std::string& key, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}: {}", path_, entries_.at(key).line_number, key, what));
+  }
+
+ private:
+  struct Entry {
+    std::string text;
+    int line_number = 0;
+  };
+  std::string path_;
+  std::map<std::string, Entry> entries_;
+};
+
+Camera CameraFrom(const Header& header, const std::string& size_key, const std::string& k_key) {
+  const std::vector<double> size = header.Numbers(size_key, 2);
+  for (const double length : size) {
+    if (!(length >= 1.0 && length <= 1e6)) header.Fail(size_key, "width and height must be in [1, 1e6] px");
+  }
+  const std::vector<double> k = header.Numbers(k_key, 4);
+  const Camera camera{k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1])};
+  if (!camera.IsValid()) header.Fail(k_key, "K is singular or mirrored; fx and fy must be > 0");
+  return camera;
+}
+
+std::optional<RelativePose> TruePoseFrom(const Header& header) {
+  if (!header.Has("R_rowmajor") || !header.Has("t_unit")) return std::nullopt;
+  const std::vector<double> r = header.Numbers("R_rowmajor", 9);
+  const std::vector<double> t = header.Numbers("t_unit", 3);
+  RelativePose pose;
+  pose.R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+  pose.t << t[0], t[1], t[2];
+  const double misfit = (pose.R * pose.R.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (!(misfit < 1e-4) || pose.R.determinant() < 0.0) header.Fail("R_rowmajor", "is not a rotation matrix");
+  if (!(std::abs(pose.t.norm() - 1.0) < 1e-4)) header.Fail("t_unit", "is not of unit length");
+  pose.t.normalize();
+  return pose;
+}
+
+Correspondence MatchFrom(std::string_view line, const std::string& path, int line_number) {
+  const std::vector<std::string> fields = Split(line, ',');
+  if (fields.size() < 4) {
+    throw InputError(fmt::format("{}:{}: {} columns; x1,y1,x2,y2 are needed", path, line_number, fields.size()));
+  }
+  std::array<double, 4> x{};
+  constexpr std::array<const char*, 4> kNames = {"x1", "y1", "x2", "y2"};
+  for (size_t i = 0; i < 4; ++i) {
+    if (ParseReal(fields[i], &x[i])) continue;
+    throw InputError(
+        fmt::format("{}:{}: {}: '{}' is not a finite number", path, line_number, kNames[i], fields[i]));
+  }
+  return {{x[0], x[1]}, {x[2], x[3]}};
+}
+
+}  // namespace
+
+MatchFile ReadMatchFile(const std::string& path) {
+  const std::string text = ReadText(path);
+  MatchFile file;
+  file.path = path;
+  Header header(path);
+  std::string_view rest = text;
+  for (int line_number = 1; !rest.empty(); ++line_number) {
+    const size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = Trim(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (line.empty() || line.starts_with("x1,")) continue;
+    if (line.front() == '#') {
+      header.AddLine(line, line_number);
+    } else {
+      file.matches.push_back(MatchFrom(line, path, line_number));
+    }
+  }
+  file.camera1 = CameraFrom(header, "size1", "K1_fx_fy_cx_cy");
+  file.camera2 = CameraFrom(header, "size2", "K2_fx_fy_cx_cy");
+  file.cam2_from_cam1_true = TruePoseFrom(header);
+  if (header.Has("scene")) file.scene = header.Text("scene");
+  return file;
+}
+
+void WriteMatchFile(const MatchFile& file, const std::string& path) {
+  std::string text = fmt::format("# scene: {}\n", file.scene);
+  int index = 1;
+  for (const Camera& camera : {file.camera1, file.camera2}) {
+    text += fmt::format("# size{}: {} {}\n", index, camera.width, camera.height);
+    text += fmt::format("# K{}_fx_fy_cx_cy: {} {} {} {}\n", index++, camera.fx, camera.fy, camera.cx, camera.cy);
+  }
+  if (const std::optional<RelativePose>& pose = file.cam2_from_cam1_true) {
+    const Eigen::Matrix3d R_rows = pose->R.transpose();
+    text += fmt::format("# R_rowmajor: {}\n", fmt::join(R_rows.data(), R_rows.data() + 9, " "));
+    text += fmt::format("# t_unit: {}\n", fmt::join(pose->t.data(), pose->t.data() + 3, " "));
+  }
+  text += "x1,y1,x2,y2\n";
+  for (const Correspondence& m : file.matches) {
+    text += fmt::format("{},{},{},{}\n", m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y());
+  }
+  WriteFileWhole(path, text);
+}
+
+}  // namespace rcme

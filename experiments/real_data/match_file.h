@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "estimator/geometry/pose.h"
+#include "estimator/motion_problem.h"
+
+namespace rcme {
+
+// One pair of images as a text file, plain or gzip:
+//
+//   # size1: 1536 1024                       width height, px
+//   # size2: 1536 1024
+//   # K1_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
+//   # K2_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
+//   # R_rowmajor: ... (9)                    optional, with t_unit: the true motion X2 = R X1 + t
+//   # t_unit: ... (3)
+//   # scene: name                            optional, groups pairs in a study; any further "# key: value" is skipped
+//   x1,y1,x2,y2[,...]                        column names, optional
+//   14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre of the top-left pixel
+struct MatchFile {
+  std::string path;
+  std::string scene = "unnamed";
+  std::vector<Correspondence> matches;
+  Camera camera1, camera2;
+  std::optional<RelativePose> cam2_from_cam1_true;
+};
+
+// Throws InputError that names the file, the line and what is wrong: missing or truncated file, missing key, a K that is
+// not invertible, a rotation that is none, a number that is not finite.
+MatchFile ReadMatchFile(const std::string& path);
+
+// Writes the same format, plain. Throws InputError if the path cannot be written; never leaves half a file.
+void WriteMatchFile(const MatchFile& file, const std::string& path);
+
+}  // namespace rcme

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/real_data/match_file.h"
+
+namespace rcme {
+
+struct MatchImagesOptions {
+  std::string image1, image2;  // undistorted images (a.1)
+  std::vector<double> K1, K2;  // fx fy cx cy, px; K2 empty: as K1
+  double max_ratio = 0.8;      // Lowe's ratio test
+};
+
+// Putative SIFT matches of two images, outliers kept. Throws InputError if an image cannot be read or a K is singular.
+MatchFile MatchImages(const MatchImagesOptions& options);
+
+}  // namespace rcme

@@ -1,0 +1,321 @@
+#include "experiments/result_store.h"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <sstream>
+
+#include "experiments/trial_fields.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char* kFormat = "rcme results 1";
+constexpr std::chrono::milliseconds kCommitInterval{500};
+using Clock = std::chrono::steady_clock;
+
+// "condition, trial, ..." with `make(name, field)` for each column.
+template <typename Make>
+std::string JoinFields(Make make) {
+  TrialRecord record;
+  std::vector<std::string> parts;
+  VisitFields(record, [&](const char* name, const auto& field) { parts.push_back(make(name, field)); });
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string CreateTrialsTable() {
+  const std::string columns = JoinFields([](const char* name, const auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    const char* type = std::is_same_v<Field, double>         ? "REAL"
+                       : std::is_same_v<Field, MotionStatus> ? "TEXT NOT NULL"
+                                                             : "INTEGER NOT NULL";
+    return fmt::format("{} {}", name, type);
+  });
+  return fmt::format("CREATE TABLE trials ({}, PRIMARY KEY (condition, trial, estimator)) WITHOUT ROWID", columns);
+}
+
+std::string InsertTrial() {
+  return fmt::format("INSERT INTO trials VALUES ({})", JoinFields([](const char*, const auto&) { return "?"; }));
+}
+
+std::string SelectTrials(const std::string& where) {
+  return fmt::format("SELECT {} FROM trials {} ORDER BY condition, trial, estimator",
+                     JoinFields([](const char* name, const auto&) { return std::string(name); }), where);
+}
+
+void Bind(SQLite::Statement& statement, const TrialRecord& record) {
+  int column = 1;
+  VisitFields(record, [&](const char*, const auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, MotionStatus>) {
+      statement.bind(column, StatusName(field));
+    } else if constexpr (std::is_same_v<Field, double>) {
+      statement.bind(column, field);  // NaN becomes NULL
+    } else {
+      statement.bind(column, static_cast<std::int64_t>(field));
+    }
+    ++column;
+  });
+}
+
+MotionStatus StatusFromName(const std::string& name) {
+  for (const MotionStatus status : AllStatuses()) {
+    if (StatusName(status) == name) return status;
+  }
+  throw InputError(fmt::format("status '{}' is unknown to this version of rcme", name));
+}
+
+TrialRecord ReadRecord(SQLite::Statement& row) {
+  TrialRecord record;
+  int index = 0;
+  VisitFields(record, [&](const char*, auto& field) {
+    const SQLite::Column column = row.getColumn(index++);
+    using Field = std::decay_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, MotionStatus>) {
+      field = StatusFromName(column.getString());
+    } else if constexpr (std::is_same_v<Field, double>) {
+      field = column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
+    } else {
+      field = static_cast<Field>(column.getInt64());
+    }
+  });
+  return record;
+}
+
+// The first line in which two identities differ, as "'a' there, 'b' here".
+std::string FirstDifference(const std::string& there, const std::string& here) {
+  std::istringstream a(there), b(here);
+  std::string line_a, line_b;
+  while (true) {
+    const bool has_a = static_cast<bool>(std::getline(a, line_a));
+    const bool has_b = static_cast<bool>(std::getline(b, line_b));
+    if (!has_a) line_a = "(nothing)";
+    if (!has_b) line_b = "(nothing)";
+    if (line_a != line_b || (!has_a && !has_b)) return fmt::format("'{}' there, '{}' here", line_a, line_b);
+  }
+}
+
+}  // namespace
+
+struct ResultStore::Connection {
+  Connection(const std::string& file, int flags) : path(file), database(file, flags) {
+    database.setBusyTimeout(1000);
+  }
+
+  // Runs `action`; an error of the database names the file.
+  template <typename Action>
+  auto Guarded(Action action) const {
+    try {
+      return action();
+    } catch (const SQLite::Exception& error) {
+      throw InputError(fmt::format("{}: {}", path, Reason(error)));
+    }
+  }
+
+  static std::string Reason(const SQLite::Exception& error) {
+    switch (error.getErrorCode()) {
+      case SQLITE_NOTADB:
+      case SQLITE_CORRUPT:
+        return "is not an rcme result file, or is damaged";
+      case SQLITE_BUSY:
+      case SQLITE_LOCKED:
+        return "is in use by another run";
+      case SQLITE_FULL:
+      case SQLITE_IOERR:
+        return fmt::format("cannot be written ({}); trials committed before are safe", error.what());
+      case SQLITE_CANTOPEN:
+      case SQLITE_READONLY:
+        return fmt::format("cannot be opened for writing ({})", error.what());
+      default:
+        return error.what();
+    }
+  }
+
+  std::optional<std::string> Value(const std::string& key) {
+    if (!database.tableExists("run")) return std::nullopt;
+    SQLite::Statement query(database, "SELECT value FROM run WHERE key = ?");
+    query.bind(1, key);
+    return query.executeStep() ? std::optional<std::string>(query.getColumn(0).getString()) : std::nullopt;
+  }
+
+  void CheckFormat() {
+    if (Value("format") != kFormat) throw InputError(fmt::format("{}: is not an rcme result file ({})", path, kFormat));
+  }
+
+  void Create(const StudyPlan& plan) {
+    SQLite::Transaction creation(database);
+    database.exec("CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
+    database.exec("CREATE TABLE conditions (condition INTEGER, factor TEXT, level TEXT, PRIMARY KEY (condition, factor))");
+    database.exec("CREATE TABLE estimators (estimator INTEGER PRIMARY KEY, label TEXT NOT NULL)");
+    database.exec(CreateTrialsTable());
+    SetValue("format", kFormat);
+    SetValue("identity", plan.identity);
+    for (const Condition& condition : plan.conditions) {
+      for (size_t f = 0; f < plan.factor_names.size(); ++f) {
+        Insert("INSERT INTO conditions VALUES (?, ?, ?)", static_cast<std::int64_t>(condition.index),
+               plan.factor_names[f], condition.levels[f]);
+      }
+    }
+    for (size_t e = 0; e < plan.study.estimators.size(); ++e) {
+      Insert("INSERT INTO estimators VALUES (?, ?)", static_cast<std::int64_t>(e), plan.study.estimators[e].label);
+    }
+    creation.commit();
+  }
+
+  void SetValue(const std::string& key, const std::string& value) {
+    Insert("INSERT OR REPLACE INTO run VALUES (?, ?)", key, value);
+  }
+
+  template <typename... Values>
+  void Insert(const char* sql, const Values&... values) {
+    SQLite::Statement statement(database, sql);
+    int index = 1;
+    (statement.bind(index++, values), ...);
+    statement.exec();
+  }
+
+  void Commit() {
+    if (!transaction) return;
+    transaction->commit();
+    transaction.reset();
+  }
+
+  std::string path;
+  SQLite::Database database;
+  std::mutex mutex;
+  std::optional<SQLite::Statement> insert;
+  std::optional<SQLite::Transaction> transaction;
+  Clock::time_point transaction_start;
+};
+
+ResultStore::ResultStore(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
+ResultStore::ResultStore(ResultStore&&) noexcept = default;
+
+ResultStore::~ResultStore() {
+  if (!connection_) return;
+  try {
+    connection_->Commit();
+  } catch (const SQLite::Exception&) {
+    // The transaction is rolled back; its trials will be run again on resume.
+  }
+}
+
+ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& plan) {
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  if (std::filesystem::is_directory(path)) throw InputError(fmt::format("{}: is a folder, not a result file", path));
+  if (!parent.empty() && !std::filesystem::is_directory(parent)) {
+    throw InputError(fmt::format("{}: folder '{}' does not exist", path, parent.string()));
+  }
+  try {
+    auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    SQLite::Database& database = connection->database;
+    database.exec("PRAGMA locking_mode = EXCLUSIVE");
+    database.exec("BEGIN IMMEDIATE; COMMIT");  // take the lock now: a second run stops here
+    const bool is_new = database.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
+    if (is_new) connection->Create(plan);
+    connection->CheckFormat();
+    const std::string identity = connection->Value("identity").value_or("");
+    if (identity != plan.identity) {
+      throw InputError(fmt::format("{}: holds the results of another study; first difference: {}. Give another --out",
+                                   path, FirstDifference(identity, plan.identity)));
+    }
+    connection->SetValue("study", plan.study_yaml);
+    connection->insert.emplace(database, InsertTrial());
+    return ResultStore(std::move(connection));
+  } catch (const SQLite::Exception& error) {
+    throw InputError(fmt::format("{}: {}", path, Connection::Reason(error)));
+  }
+}
+
+ResultStore ResultStore::OpenForReading(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
+  try {
+    // Read-write where possible: a run that was killed leaves a journal, and rolling it back needs to write.
+    std::unique_ptr<Connection> connection;
+    try {
+      connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE);
+      connection->CheckFormat();
+    } catch (const SQLite::Exception&) {
+      connection = std::make_unique<Connection>(path, SQLite::OPEN_READONLY);
+      connection->CheckFormat();
+    }
+    return ResultStore(std::move(connection));
+  } catch (const SQLite::Exception& error) {
+    throw InputError(fmt::format("{}: {}", path, Connection::Reason(error)));
+  }
+}
+
+std::string ResultStore::StudyYaml() const {
+  return connection_->Guarded([&] { return connection_->Value("study").value_or(""); });
+}
+
+std::vector<std::uint32_t> ResultStore::MissingTrials(std::uint32_t condition, std::uint32_t first,
+                                                      std::uint32_t last) {
+  const std::lock_guard lock(connection_->mutex);
+  return connection_->Guarded([&] {
+    std::vector<std::uint32_t> missing;
+    SQLite::Statement query(connection_->database,
+                            "SELECT trial FROM trials WHERE condition = ? AND trial >= ? AND trial < ? AND estimator = 0");
+    query.bind(1, condition);
+    query.bind(2, first);
+    query.bind(3, last);
+    std::uint32_t next = first;
+    while (query.executeStep()) {
+      const auto done = static_cast<std::uint32_t>(query.getColumn(0).getInt64());
+      while (next < done) missing.push_back(next++);
+      next = done + 1;
+    }
+    while (next < last) missing.push_back(next++);
+    return missing;
+  });
+}
+
+void ResultStore::Add(const std::vector<TrialRecord>& records) {
+  const std::lock_guard lock(connection_->mutex);
+  connection_->Guarded([&] {
+    if (!connection_->transaction) {
+      connection_->transaction.emplace(connection_->database);
+      connection_->transaction_start = Clock::now();
+    }
+    for (const TrialRecord& record : records) {
+      Bind(*connection_->insert, record);
+      connection_->insert->exec();
+      connection_->insert->reset();
+    }
+    if (Clock::now() - connection_->transaction_start > kCommitInterval) connection_->Commit();
+  });
+}
+
+void ResultStore::Commit() {
+  const std::lock_guard lock(connection_->mutex);
+  connection_->Guarded([&] { connection_->Commit(); });
+}
+
+void ResultStore::ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const {
+  connection_->Guarded([&] {
+    SQLite::Statement query(connection_->database, SelectTrials(""));
+    while (query.executeStep()) visit(ReadRecord(query));
+  });
+}
+
+std::vector<TrialRecord> ResultStore::RecordsOf(std::uint32_t condition, std::uint32_t trial) const {
+  return connection_->Guarded([&] {
+    SQLite::Statement query(connection_->database, SelectTrials("WHERE condition = ? AND trial = ?"));
+    query.bind(1, condition);
+    query.bind(2, trial);
+    std::vector<TrialRecord> records;
+    while (query.executeStep()) records.push_back(ReadRecord(query));
+    return records;
+  });
+}
+
+}  // namespace rcme

@@ -1,0 +1,51 @@
+// The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and again.
+//
+// Tables: run (key, value: format, study, identity), conditions (condition, factor, level), estimators (estimator,
+// label), trials (one row per condition, trial and estimator, columns as in trial_fields.h). Unknown numbers are NULL.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/study_plan.h"
+#include "experiments/trial.h"
+
+namespace rcme {
+
+class ResultStore {
+ public:
+  // Opens the file of this plan's study, or makes it. Throws InputError if the path cannot be written, is no result
+  // file, is in use by another run, or holds another study (the message says what differs).
+  static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan);
+  // Opens an existing file to read. Throws InputError if it is none.
+  static ResultStore OpenForReading(const std::string& path);
+
+  ResultStore(ResultStore&&) noexcept;
+  ~ResultStore();  // commits what has been added
+
+  // The study as YAML.
+  std::string StudyYaml() const;
+
+  // Trials of a condition in [first, last) that are not in the file. Callable while another thread adds.
+  std::vector<std::uint32_t> MissingTrials(std::uint32_t condition, std::uint32_t first, std::uint32_t last);
+
+  // Adds the records of whole trials; they reach the disk within about half a second, all records of a call or none.
+  void Add(const std::vector<TrialRecord>& records);
+  // Writes what has been added.
+  void Commit();
+
+  // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
+  void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;
+  // The records of one trial, ordered by estimator.
+  std::vector<TrialRecord> RecordsOf(std::uint32_t condition, std::uint32_t trial) const;
+
+ private:
+  struct Connection;
+  explicit ResultStore(std::unique_ptr<Connection> connection);
+  std::unique_ptr<Connection> connection_;
+};
+
+}  // namespace rcme

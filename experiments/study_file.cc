@@ -1,0 +1,265 @@
+#include "experiments/study_file.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "estimator/estimator_registry.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMaxStudyBytes = size_t{1} << 20;
+constexpr int kMaxTrials = 2'000'000'000;
+
+// Where a message points to: "file:line: key".
+class Place {
+ public:
+  explicit Place(std::string path) : path_(std::move(path)) {}
+  [[noreturn]] void Fail(const YAML::Node& node, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", path_, node.Mark().line + 1, what));
+  }
+  // Runs `action`; an InputError from it gets file and line.
+  template <typename Action>
+  void At(const YAML::Node& node, Action action) const {
+    try {
+      action();
+    } catch (const InputError& error) {
+      Fail(node, error.what());
+    }
+  }
+
+ private:
+  std::string path_;
+};
+
+std::string Scalar(const Place& place, const YAML::Node& node, const std::string& key) {
+  if (!node.IsScalar()) place.Fail(node, fmt::format("{}: one value is needed, not a list or a map", key));
+  return node.Scalar();
+}
+
+// The entries of a map; unknown keys (if `known` is not empty) and repeated ones are errors.
+std::vector<std::pair<std::string, YAML::Node>> Entries(const Place& place, const YAML::Node& map,
+                                                        const std::string& name,
+                                                        const std::set<std::string>& known) {
+  if (!map.IsMap()) place.Fail(map, fmt::format("{}: a map of keys and values is needed", name));
+  std::set<std::string> seen;
+  std::vector<std::pair<std::string, YAML::Node>> entries;
+  for (const auto& entry : map) {
+    const std::string key = Scalar(place, entry.first, name);
+    if (!known.empty() && known.count(key) == 0) {
+      place.Fail(entry.first,
+                 fmt::format("{}: unknown key '{}'; known keys: {}", name, key, fmt::join(known, ", ")));
+    }
+    if (!seen.insert(key).second) place.Fail(entry.first, fmt::format("{}: key '{}' stands twice", name, key));
+    entries.emplace_back(key, entry.second);
+  }
+  return entries;
+}
+
+long long WholeNumber(const Place& place, const YAML::Node& node, const std::string& key, long long min,
+                      long long max) {
+  const std::string text = Scalar(place, node, key);
+  long long value = 0;
+  if (!ParseInteger(text, &value) || value < min || value > max) {
+    place.Fail(node, fmt::format("{}: '{}' is not allowed; give a whole number in [{}, {}]", key, text, min, max));
+  }
+  return value;
+}
+
+void ReadFactors(const Place& place, const YAML::Node& node, Study* study) {
+  for (const auto& [key, levels] : Entries(place, node, "factors", {})) {
+    Factor factor{key, {}};
+    if (!levels.IsSequence() || levels.size() == 0) {
+      place.Fail(levels, fmt::format("factors: {}: a list of at least one level is needed", key));
+    }
+    for (const YAML::Node& level : levels) {
+      const std::string text = Scalar(place, level, key);
+      if (std::count(factor.levels.begin(), factor.levels.end(), text) > 0) {
+        place.Fail(level, fmt::format("factors: {}: level '{}' stands twice", key, text));
+      }
+      factor.levels.push_back(text);
+    }
+    study->factors.push_back(std::move(factor));
+  }
+}
+
+EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
+  EstimatorSpec spec;
+  for (const auto& [key, value] : Entries(place, node, "estimators", {"name", "label", "options"})) {
+    if (key == "name") spec.name = Scalar(place, value, key);
+    if (key == "label") spec.label = Scalar(place, value, key);
+    if (key != "options") continue;
+    for (const auto& [option, text] : Entries(place, value, "options", {})) {
+      place.At(text, [&, option = option, text = text] {
+        FindParameter(Parameters(spec.options), option).SetFromText(Scalar(place, text, option));
+      });
+    }
+  }
+  if (spec.name.empty()) place.Fail(node, "estimators: key 'name' is missing");
+  if (spec.label.empty()) spec.label = spec.name;
+  place.At(node, [&] { FindEstimator(spec.name).make(spec.options); });
+  return spec;
+}
+
+void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
+  if (!node.IsSequence() || node.size() == 0) {
+    place.Fail(node, "estimators: a list of at least one estimator is needed");
+  }
+  for (const YAML::Node& entry : node) {
+    EstimatorSpec spec = ReadEstimator(place, entry);
+    for (const EstimatorSpec& other : study->estimators) {
+      if (other.label == spec.label) {
+        place.Fail(entry, fmt::format("estimators: label '{}' stands twice; give each a label of its own", spec.label));
+      }
+    }
+    study->estimators.push_back(std::move(spec));
+  }
+}
+
+// Data settings are checked by making the sources once with the fixed settings, and once with each level of each factor.
+void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
+  const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
+    const YAML::Node map = root[block];
+    return map && map.IsMap() && map[key] ? map[key] : root;
+  };
+  const auto scene = std::find_if(study.data.begin(), study.data.end(), [](const auto& s) { return s.first == "scene"; });
+  if (scene == study.data.end()) place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
+  for (const auto& setting : study.data) {
+    place.At(line_of("data", setting.first), [&] { ResolveSettings({*scene, setting}); });
+  }
+  for (const Factor& factor : study.factors) {
+    if (factor.key == "scene") {
+      place.Fail(line_of("factors", factor.key), "factors: 'scene' cannot be a factor; write one study per scene");
+    }
+    for (const std::string& level : factor.levels) {
+      place.At(line_of("factors", factor.key), [&] { ResolveSettings({*scene, {factor.key, level}}); });
+    }
+  }
+}
+
+YAML::Node ParseYaml(const std::string& yaml, const std::string& path) {
+  if (yaml.size() > kMaxStudyBytes) throw InputError(fmt::format("{}: larger than a study can be (1 MiB)", path));
+  try {
+    return YAML::Load(yaml);
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format("{}:{}: not valid YAML: {}", path, error.mark.line + 1, error.msg));
+  }
+}
+
+}  // namespace
+
+Study LoadStudy(const std::string& path) {
+  if (std::filesystem::is_directory(path)) throw InputError(fmt::format("{}: is a folder, not a study", path));
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: no such study file, or not readable", path));
+  std::ostringstream text;
+  text << file.rdbuf();
+  return ParseStudy(text.str(), path);
+}
+
+Study ParseStudy(const std::string& yaml, const std::string& path) {
+  const Place place(path);
+  const YAML::Node root = ParseYaml(yaml, path);
+  Study study;
+  study.name = std::filesystem::path(path).stem().string();
+  for (const auto& [key, node] :
+       Entries(place, root, "study",
+               {"name", "description", "seed", "trials", "data", "factors", "estimators", "failure"})) {
+    if (key == "name") study.name = Scalar(place, node, key);
+    if (key == "description") study.description = Scalar(place, node, key);
+    if (key == "seed") {
+      study.seed = static_cast<std::uint64_t>(WholeNumber(place, node, key, 0, std::numeric_limits<long long>::max()));
+    }
+    if (key == "trials") study.trials = static_cast<int>(WholeNumber(place, node, key, 1, kMaxTrials));
+    if (key == "data") {
+      for (const auto& [setting, value] : Entries(place, node, "data", {})) {
+        study.data.emplace_back(setting, Scalar(place, value, setting));
+      }
+    }
+    if (key == "factors") ReadFactors(place, node, &study);
+    if (key == "estimators") ReadEstimators(place, node, &study);
+    if (key == "failure") {
+      for (const auto& [bound, value] : Entries(place, node, "failure", {})) {
+        place.At(value, [&, bound = bound, value = value] {
+          FindParameter(Parameters(study.failure), bound).SetFromText(Scalar(place, value, bound));
+        });
+      }
+    }
+  }
+  if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
+  if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
+  CheckData(place, root, study);
+  return study;
+}
+
+void Override(Study* study, const std::string& key, const std::string& value) {
+  RansacOptions option_names;
+  FailureBounds bound_names;
+  const auto is_in = [](const std::vector<Parameter>& parameters, const std::string& name) {
+    return std::any_of(parameters.begin(), parameters.end(), [&](const Parameter& p) { return p.name() == name; });
+  };
+  const size_t dot = key.find('.');
+  const std::string option = dot == std::string::npos ? key : key.substr(dot + 1);
+  if (is_in(Parameters(option_names), option)) {
+    bool is_used = false;
+    for (EstimatorSpec& spec : study->estimators) {
+      if (dot != std::string::npos && spec.label != key.substr(0, dot)) continue;
+      FindParameter(Parameters(spec.options), option).SetFromText(value);
+      FindEstimator(spec.name).make(spec.options);
+      is_used = true;
+    }
+    if (!is_used) throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
+  } else if (is_in(Parameters(bound_names), key)) {
+    FindParameter(Parameters(study->failure), key).SetFromText(value);
+  } else {
+    const auto is_key = [&](const auto& setting) { return setting.first == key; };
+    const auto scene =
+        std::find_if(study->data.begin(), study->data.end(), [](const auto& s) { return s.first == "scene"; });
+    ResolveSettings({*scene, {key, value}});
+    std::erase_if(study->data, is_key);
+    study->data.emplace_back(key, value);
+    std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
+  }
+}
+
+std::string ToYaml(const Study& study) {
+  YAML::Emitter out;
+  out.SetSeqFormat(YAML::Flow);
+  out << YAML::BeginMap;
+  out << YAML::Key << "name" << YAML::Value << study.name;
+  out << YAML::Key << "description" << YAML::Value << study.description;
+  out << YAML::Key << "seed" << YAML::Value << study.seed;
+  out << YAML::Key << "trials" << YAML::Value << study.trials;
+  out << YAML::Key << "data" << YAML::Value << YAML::BeginMap;
+  for (const auto& [key, value] : ResolveSettings(study.data)) out << YAML::Key << key << YAML::Value << value;
+  out << YAML::EndMap;
+  if (!study.factors.empty()) {
+    out << YAML::Key << "factors" << YAML::Value << YAML::BeginMap;
+    for (const Factor& factor : study.factors) out << YAML::Key << factor.key << YAML::Value << factor.levels;
+    out << YAML::EndMap;
+  }
+  out << YAML::Key << "estimators" << YAML::Value << YAML::Block << YAML::BeginSeq;
+  for (EstimatorSpec spec : study.estimators) {
+    out << YAML::BeginMap << YAML::Key << "name" << YAML::Value << spec.name;
+    out << YAML::Key << "label" << YAML::Value << spec.label;
+    out << YAML::Key << "options" << YAML::Value << YAML::BeginMap;
+    for (const Parameter& p : Parameters(spec.options)) out << YAML::Key << p.name() << YAML::Value << p.Value();
+    out << YAML::EndMap << YAML::EndMap;
+  }
+  out << YAML::EndSeq;
+  FailureBounds bounds = study.failure;
+  out << YAML::Key << "failure" << YAML::Value << YAML::BeginMap;
+  for (const Parameter& p : Parameters(bounds)) out << YAML::Key << p.name() << YAML::Value << p.Value();
+  out << YAML::EndMap << YAML::EndMap;
+  return std::string(out.c_str()) + "\n";
+}
+
+}  // namespace rcme

@@ -1,0 +1,39 @@
+// Studies as YAML files:
+//
+//   name: failure_vs_outliers
+//   description: one sentence or more
+//   seed: 1
+//   trials: 400                       # per condition
+//   data: {scene: uniform_volume, num_matches: 500, sigma_px: 0.5}
+//   factors:
+//     outlier_ratio: [0.0, 0.2, 0.4]  # any data key; several factors: all combinations
+//   estimators:
+//     - {name: standard}
+//     - {name: rcme, label: rcme_rank_aware, options: {reading: rank_aware}}
+//   failure: {max_rotation_error_deg: 3, max_direction_error_deg: 15}
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/study.h"
+
+namespace rcme {
+
+// Reads and validates a study. Throws InputError with file, line, key and what is allowed for anything that is not:
+// unknown or repeated keys, wrong types, values out of range, empty factors, unknown scenes and estimators.
+Study LoadStudy(const std::string& path);
+
+// The same from text; `path` is what the messages call it.
+Study ParseStudy(const std::string& yaml, const std::string& path);
+
+// One `--set key=value`: a data key; an estimator option, for all estimators (`mu`) or one (`rcme.mu`); or a failure
+// bound. A factor that is set becomes that one level. Throws InputError.
+void Override(Study* study, const std::string& key, const std::string& value);
+
+// The study with every parameter written out, defaults included: ParseStudy gives the same study back. Two runs may
+// share a result file if this text, trials and description aside, is the same.
+std::string ToYaml(const Study& study);
+
+}  // namespace rcme

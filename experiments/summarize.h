@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "experiments/result_store.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+
+// One number of one estimator in one condition, never without what says how far to trust it.
+struct SummaryRow {
+  enum class Kind { kRate, kMean };
+
+  std::uint32_t condition = 0;
+  std::vector<std::string> levels;  // one per factor
+  std::string estimator;            // label
+  std::string quantity;
+  Kind kind = Kind::kRate;
+  double value = 0.0;           // NaN where n is 0
+  Interval interval;            // rates: exact 95 %
+  double standard_error = 0.0;  // means: Monte-Carlo standard error
+  std::int64_t n = 0;           // trials that the number is of
+};
+
+struct Summary {
+  std::string study;
+  std::vector<std::string> factor_names;
+  std::vector<SummaryRow> rows;
+  std::int64_t num_trials_done = 0, num_trials_planned = 0;
+};
+
+// A quantity of the summary, for `rcme list quantities`.
+struct QuantityHelp {
+  std::string name, kind, doc;
+};
+const std::vector<QuantityHelp>& SummaryQuantities();
+
+// Every quantity of every estimator in every condition, from the raw trials, in one pass and constant memory. Times (which
+// no two runs share) only if asked for.
+Summary Summarize(const ResultStore& store, bool with_times);
+
+}  // namespace rcme

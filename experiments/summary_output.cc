@@ -1,0 +1,123 @@
+#include "experiments/summary_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace rcme {
+namespace {
+
+std::string Number(double x) { return std::isnan(x) ? std::string() : fmt::format("{:.8g}", x); }
+
+std::string CsvField(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+nlohmann::ordered_json JsonNumber(double x) {
+  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
+}
+
+// "12.3 % [10.1, 14.8]" or "1.23 +- 0.04".
+std::string Cell(const SummaryRow& row) {
+  if (row.n == 0) return "-";
+  if (row.kind == SummaryRow::Kind::kRate) {
+    return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * row.value, 100.0 * row.interval.lower,
+                       100.0 * row.interval.upper);
+  }
+  return fmt::format("{:.3g} +- {:.2g}", row.value, row.standard_error);
+}
+
+}  // namespace
+
+std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<size_t> widths;
+  for (const std::vector<std::string>& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (size_t r = 0; r < rows.size(); ++r) {
+    std::string line;
+    for (size_t c = 0; c < rows[r].size(); ++c) line += fmt::format("{:<{}}  ", rows[r][c], widths[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+    if (r > 0) continue;
+    for (const size_t width : widths) text += std::string(width, '-') + "  ";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string SummaryAsTable(const Summary& summary) {
+  const std::vector<std::string> shown = {"failure",            "no_candidate",        "kappa_flag", "nees_coverage",
+                                          "rotation_error_deg", "direction_error_deg", "time_ms"};
+  std::vector<std::vector<std::string>> rows = {summary.factor_names};
+  rows[0].insert(rows[0].end(), {"estimator", "n"});
+  const auto is_present = [&](const std::string& quantity) {
+    return std::any_of(summary.rows.begin(), summary.rows.end(),
+                       [&](const SummaryRow& row) { return row.quantity == quantity; });
+  };
+  for (const std::string& quantity : shown) {
+    if (is_present(quantity)) rows[0].push_back(quantity);
+  }
+  for (const SummaryRow& row : summary.rows) {
+    if (row.quantity == "success") {  // the first quantity of each condition and estimator
+      rows.push_back(row.levels);
+      rows.back().insert(rows.back().end(), {row.estimator, fmt::format("{}", row.n)});
+    }
+    if (std::count(shown.begin(), shown.end(), row.quantity) > 0) rows.back().push_back(Cell(row));
+  }
+  std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
+                                 summary.num_trials_planned, FormatColumns(rows));
+  text +=
+      "Rates with exact 95 % (Clopper-Pearson) intervals; means of successes +- Monte-Carlo standard error.\n"
+      "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own flag.\n"
+      "nees_coverage: truth inside the reported 95 % region. All quantities: --format csv or json.\n";
+  return text;
+}
+
+std::string SummaryAsCsv(const Summary& summary) {
+  std::string text = "study,condition,";
+  for (const std::string& factor : summary.factor_names) text += CsvField(factor) + ",";
+  text += "estimator,quantity,kind,value,lower,upper,standard_error,n\n";
+  for (const SummaryRow& row : summary.rows) {
+    text += fmt::format("{},{},", CsvField(summary.study), row.condition);
+    for (const std::string& level : row.levels) text += CsvField(level) + ",";
+    const bool is_rate = row.kind == SummaryRow::Kind::kRate;
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity, is_rate ? "rate" : "mean",
+                        Number(row.value), is_rate ? Number(row.interval.lower) : "",
+                        is_rate ? Number(row.interval.upper) : "", is_rate ? "" : Number(row.standard_error), row.n);
+  }
+  return text;
+}
+
+std::string SummaryAsJson(const Summary& summary) {
+  nlohmann::ordered_json json = {{"study", summary.study},
+                                 {"trials_done", summary.num_trials_done},
+                                 {"trials_planned", summary.num_trials_planned},
+                                 {"rows", nlohmann::ordered_json::array()}};
+  for (const SummaryRow& row : summary.rows) {
+    nlohmann::ordered_json entry = {{"condition", row.condition}};
+    for (size_t f = 0; f < row.levels.size(); ++f) entry["levels"][summary.factor_names[f]] = row.levels[f];
+    entry["estimator"] = row.estimator;
+    entry["quantity"] = row.quantity;
+    entry["value"] = JsonNumber(row.value);
+    if (row.kind == SummaryRow::Kind::kRate) {
+      entry["kind"] = "rate";
+      entry["interval"] = {row.interval.lower, row.interval.upper};
+    } else {
+      entry["kind"] = "mean";
+      entry["standard_error"] = JsonNumber(row.standard_error);
+    }
+    entry["n"] = row.n;
+    json["rows"].push_back(std::move(entry));
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace rcme

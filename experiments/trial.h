@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/motion_estimate.h"
+#include "experiments/study_plan.h"
+
+namespace rcme {
+
+// What is kept of one estimator's call in one trial. Unknown numbers are NaN: no motion, or no truth to compare with.
+struct TrialRecord {
+  std::uint32_t condition = 0, trial = 0, estimator = 0;
+  MotionStatus status = MotionStatus::kInvalidInput;
+  double rotation_error_deg = 0.0;
+  double direction_error_deg = 0.0;
+  double nees = 0.0;  // of the refined motion, 5 degrees of freedom; NaN where the direction is not known
+  int num_matches = 0;
+  int num_inliers = 0;           // final inliers
+  double inlier_precision = 0.0;  // true ones among the final inliers
+  double inlier_recall = 0.0;     // final inliers among the true ones
+  int num_support = 0;            // n_j of the winner
+  double mean_entropy = 0.0;      // psi_j of the winner
+  double z_statistic = 0.0;
+  int num_consistent_before = 0, num_consistent_after = 0;  // n_I, n*_I
+  bool failed_by_kappa = false;
+  LoopCounts counts;
+  double seconds = 0.0;  // wall time of the call; the only field that is not a function of the trial's name
+};
+
+// A returned motion beyond a bound. False where no motion was returned, or no truth is known.
+bool HasFailed(const TrialRecord& record, const FailureBounds& bounds);
+// A returned motion within the bounds.
+bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds);
+
+// The only place where truth meets estimate.
+TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double seconds);
+
+struct TrialResult {
+  TrialData data;
+  std::vector<MotionEstimate> estimates;  // one per estimator of the plan
+  std::vector<TrialRecord> records;
+};
+
+// One trial, a pure function of (study, condition, trial): every estimator on the same problem, with the same stream of
+// samples.
+TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
+
+}  // namespace rcme

@@ -1,0 +1,177 @@
+"""One look for every figure of this project.
+
+    figure, axes = style.new_figure(rows=1, columns=2)
+    looks = style.looks_of(["standard", "rcme"])       # colour, marker, dashes: the same in every figure
+    axes[0, 0].plot(x, y, **looks["rcme"].line())
+    style.add_legend_and_caption(figure, handles, "study demo, n = 400 per point")
+    style.save(figure, "failure_rate")                 # failure_rate.png and failure_rate.pdf
+
+Colours are those of Okabe and Ito (readable with every common colour-vision deficiency). Colour is never the only
+carrier: each estimator also has its own marker and dash pattern, so a grey print says the same.
+"""
+
+import contextlib
+import os
+import textwrap
+from dataclasses import dataclass, replace
+
+import matplotlib
+
+matplotlib.use("Agg")
+from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402  (after the choice of backend)
+from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.path import Path  # noqa: E402
+
+BLACK, ORANGE, SKY_BLUE, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"  # Okabe-Ito's yellow is too pale for a line on white
+
+SOLID, DASHED, DOTTED, DASH_DOT, LONG_DASHED = "-", (0, (4, 1.6)), (0, (1, 1.4)), (0, (5, 1.4, 1, 1.4)), (0, (8, 2))
+
+# An arrow that hangs from its point: "at most this", for a value that has no place on a logarithmic axis.
+ARROW_DOWN = Path([(0, 0), (0, -2), (-0.4, -1.5), (0, -2), (0.4, -1.5)],
+                  [Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO])
+
+RC = {
+    "font.family": "DejaVu Sans",  # ships with matplotlib: the same glyphs on every machine
+    "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8.5,
+    "xtick.labelsize": 8, "ytick.labelsize": 8, "legend.fontsize": 8,
+    "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
+    "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7, "ytick.minor.width": 0.5,
+    "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.9", "grid.linewidth": 0.6,
+    "legend.frameon": False, "legend.handlelength": 3.2, "legend.columnspacing": 1.6, "legend.handletextpad": 0.6,
+    "text.parse_math": False,  # names come from files; a "$" in one is only a "$"
+    "pdf.fonttype": 42,  # real fonts, so that the text in the PDF can be searched and edited
+    "savefig.dpi": 200,
+}
+matplotlib.rcdefaults()  # a personal matplotlibrc must not change a figure of the paper
+matplotlib.rcParams.update(RC)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one estimator is drawn, in every figure."""
+
+    label: str
+    color: str
+    marker: str
+    dashes: object = SOLID
+    line_width: float = 1.4
+    marker_size: float = 5.0
+
+    def line(self):
+        """Keyword arguments for `Axes.plot`."""
+        return dict(label=self.label, color=self.color, marker=self.marker, linestyle=self.dashes,
+                    linewidth=self.line_width, markersize=self.marker_size,
+                    markeredgecolor="white", markeredgewidth=0.5)
+
+    def upper_limit(self):
+        """Keyword arguments of two calls of `Axes.plot`: an arrow down, and on its end the estimator's open marker."""
+        arrow = dict(linestyle="none", color=self.color, marker=ARROW_DOWN, markersize=11, markerfacecolor="none",
+                     markeredgewidth=0.8, label="_arrow")
+        marker = dict(linestyle="none", color=self.color, marker=self.marker, markersize=3.2 * size_of(self.marker),
+                      markerfacecolor="white", markeredgewidth=0.8, label="_marker")
+        return arrow, marker
+
+
+def size_of(marker):
+    """Squares and diamonds look larger than a circle of the same nominal size."""
+    return {"s": 0.86, "D": 0.8}.get(marker, 1)
+
+
+# One hue per family, and a darker or lighter neighbour with dashes for its rank-aware variant.
+KNOWN_LOOKS = {
+    "standard": Look("Standard", BLACK, "o"),
+    "prcme": Look("pRCME", ORANGE, "s"),
+    "rcme": Look("RCME", BLUE, "D"),
+    "prcme_rank_aware": Look("pRCME, rank-aware", VERMILLION, "^", DASHED),
+    "rcme_rank_aware": Look("RCME, rank-aware", SKY_BLUE, "v", DASH_DOT),
+}
+OTHER_COLORS = (GREEN, PURPLE, BLUE, VERMILLION, BLACK, SKY_BLUE, ORANGE)
+OTHER_MARKERS = ("P", "X", "h", "*", "p", "<", ">", "d")
+OTHER_DASHES = (DOTTED, LONG_DASHED, DASH_DOT, SOLID, DASHED)
+
+
+def looks_of(estimators):
+    """{name: Look}, in the given order; estimators this file does not know take the free looks in turn.
+
+    Where estimators tie (many are at exactly 0 %), their lines coincide. So the first is drawn widest and each later
+    one, on top of it, narrower: what lies below stays visible as a rim.
+    """
+    looks, others, last = {}, 0, len(estimators) - 1
+    for position, name in enumerate(estimators):
+        look = KNOWN_LOOKS.get(name)
+        if look is None:  # 7, 8 and 5 have no common divisor: 280 different looks
+            look = Look(name, OTHER_COLORS[others % 7], OTHER_MARKERS[others % 8], OTHER_DASHES[others % 5])
+            others += 1
+        rim = 0.5 + (last / 2 - position) / max(last, 4)  # from 1 to 0; two estimators differ only a little
+        looks[name] = replace(look, line_width=1.1 + 1.0 * rim,
+                              marker_size=(3.6 + 4.0 * rim) * size_of(look.marker))
+    return looks
+
+
+def split_unit(name):
+    """'sigma_px' -> ('sigma', 'px'), 'outlier_ratio' -> ('outlier ratio', '')."""
+    stem, _, last = name.rpartition("_")
+    stem, unit = (stem, last) if stem and last in ("px", "deg", "rad", "m", "ms", "s") else (name, "")
+    return stem.replace("_", " ").strip(), unit
+
+
+def in_words(name):
+    """For an axis or a title: 'outlier_ratio' -> 'Outlier ratio', 'sigma_px' -> 'Sigma (px)'."""
+    words, unit = split_unit(name)
+    return words[:1].upper() + words[1:] + (f" ({unit})" if unit else "")
+
+
+def level_in_words(name, level):
+    """One level of a factor: ('sigma_px', '1') -> 'sigma = 1 px'."""
+    words, unit = split_unit(name)
+    return f"{words} = {level} {unit}".rstrip()
+
+
+def new_figure(rows, columns):
+    """A figure of paper size (two panels: 7 x 3.2 inches) and its axes as a rows x columns array."""
+    width = {1: 4.6, 2: 7.0}.get(columns, 2.6 * columns)
+    figure = Figure(figsize=(width, 1.0 + 2.2 * rows), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey="col")
+    return figure, axes
+
+
+def add_legend_and_caption(figure, handles, caption):
+    """Legend above the panels, caption below them in small print; a long legend makes the figure taller."""
+    width, height = figure.get_size_inches()
+    caption = "\n".join(textwrap.wrap(caption, int(20 * width)))
+    below = figure.text(0.006, 0.012, caption, fontsize=6.5, color="0.3", ha="left", va="bottom", linespacing=1.3)
+    for columns in range(len(handles), 0, -1):  # as wide as fits
+        above = figure.legend(handles=handles, loc="upper center", ncols=columns, borderaxespad=0.2)
+        if columns == 1 or above.get_window_extent().width <= 0.99 * figure.bbox.width:
+            break
+        above.remove()
+    height += max(0, above.get_window_extent().height / figure.dpi - 0.3)  # more than one row
+    figure.set_size_inches(width, height)
+    top = above.get_window_extent().y0 / figure.bbox.height
+    bottom = below.get_window_extent().y1 / figure.bbox.height + 0.03 / height
+    figure.get_layout_engine().set(rect=(0, bottom, 1, top - bottom), w_pad=0.05, h_pad=0.04, wspace=0.03)
+
+
+def save(figure, path_without_suffix):
+    """Writes PATH.png and PATH.pdf and returns the two paths.
+
+    Both are written beside their place under a temporary name and then moved, so a reader never meets half a file and
+    a failure leaves what was there. No dates or versions go in: the same input gives the same bytes.
+    """
+    no_stamp = {"png": {"Software": None}, "pdf": {"Creator": None, "Producer": None, "CreationDate": None}}
+    folder, name = os.path.split(path_without_suffix)
+    temporary = {kind: os.path.join(folder, f".{name}.{os.getpid()}.{kind}.tmp") for kind in no_stamp}
+    try:
+        for kind, path in temporary.items():
+            figure.savefig(path, format=kind, metadata=no_stamp[kind])
+        written = []
+        for kind, path in temporary.items():
+            written.append(f"{path_without_suffix}.{kind}")
+            os.replace(path, written[-1])
+        return written
+    finally:
+        for path in temporary.values():
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(path)

@@ -1,0 +1,98 @@
+"""Reads the table that `rcme summarize RUN.sqlite --format csv` prints. It checks and selects; it computes nothing.
+
+One row per (condition, estimator, quantity):
+    study,condition,<one column per factor>,estimator,quantity,kind,value,lower,upper,standard_error,n
+"""
+
+import csv
+import math
+
+import pandas
+
+COLUMNS = ("study", "condition", "estimator", "quantity", "kind", "value", "lower", "upper", "standard_error", "n")
+
+
+class PlotError(Exception):
+    """Something the user can put right; its text is one sentence that names the file, the thing and what is allowed."""
+
+
+class Summary:
+    """The rows of one CSV file as text, the names of its factors, and each row's line in the file (column `line`)."""
+
+    def __init__(self, path, rows, factors):
+        self.path, self.rows, self.factors = path, rows, factors
+
+    def with_rows(self, rows):
+        return Summary(self.path, rows, self.factors)
+
+
+def read_summary(path):
+    """The Summary in the file `path`; a cut-off or foreign file is an error, never a shorter table."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            reader = csv.reader(file, strict=True)
+            header = next(reader, [])
+            lines = [(row, reader.line_num) for row in reader if row]
+    except OSError as error:
+        raise PlotError(f"{path}: cannot be read ({error.strerror}).")
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise PlotError(f"{path}: is not a CSV file ({error}).")
+    missing = [column for column in COLUMNS if column not in header]
+    if missing:
+        raise PlotError(f"{path}: has no column {', '.join(missing)}; "
+                        "expected the output of 'rcme summarize RUN.sqlite --format csv'.")
+    repeated = sorted({column for column in header if header.count(column) > 1})
+    if repeated:
+        raise PlotError(f"{path}: has more than one column {', '.join(repeated)}.")
+    for row, line in lines:
+        if len(row) != len(header):
+            raise PlotError(f"{path}: line {line} has {len(row)} fields, but the header has {len(header)} columns; "
+                            "is the file cut off?")
+    if not lines:
+        raise PlotError(f"{path}: has a header but no rows.")
+    rows = pandas.DataFrame([row for row, _ in lines], columns=header, dtype=str)
+    rows["line"] = [line for _, line in lines]
+    return Summary(path, rows, header[header.index("condition") + 1:header.index("estimator")])
+
+
+def same_level(text, wanted):
+    """Whether two spellings mean one level: equal text, or equal numbers ('0.50' and '0.5')."""
+    try:
+        return text == wanted or float(text) == float(wanted)
+    except ValueError:
+        return False
+
+
+def where(summary, conditions):
+    """The rows with key = value for each 'key=value'; a key given more than once allows any of its values."""
+    allowed_keys = ["study", "condition", *summary.factors, "estimator"]
+    wanted = {}
+    for condition in conditions:
+        key, equals, level = condition.partition("=")
+        if not equals or key not in allowed_keys:
+            raise PlotError(f"--where {condition}: expected key=value with a key among {', '.join(allowed_keys)}.")
+        levels = list(dict.fromkeys(summary.rows[key]))
+        if not any(same_level(text, level) for text in levels):
+            raise PlotError(f"--where {condition}: {summary.path} has no such {key}; it has {', '.join(levels)}.")
+        wanted.setdefault(key, []).append(level)
+    rows = summary.rows
+    for key, levels in wanted.items():
+        rows = rows[[any(same_level(text, level) for level in levels) for text in rows[key]]]
+    if rows.empty:
+        raise PlotError(f"{summary.path}: no row has {' and '.join(conditions)} together.")
+    return summary.with_rows(rows)
+
+
+def numbers(summary, column, may_be_empty=False):
+    """One column of the rows as floats; NaN where the file has nothing and may."""
+    def number(text, line):
+        if may_be_empty and text == "":
+            return math.nan
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise PlotError(f"{summary.path}: line {line}: column {column} must be a number, not '{text}'.")
+        return value
+    return [number(text, line) for text, line in zip(summary.rows[column], summary.rows["line"])]

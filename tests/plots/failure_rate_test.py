@@ -1,0 +1,228 @@
+#!/usr/bin/python3
+"""Tests of plots/failure_rate.py; run as: /usr/bin/python3 tests/plots/failure_rate_test.py"""
+
+import contextlib
+import io
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+from unittest import mock
+
+PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
+sys.path.insert(0, str(PLOTS))
+
+import failure_rate  # noqa: E402
+import style  # noqa: E402
+from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+from summary_csv import read_summary, where  # noqa: E402
+
+HEADER = "study,condition,outlier_ratio,sigma_px,estimator,quantity,kind,value,lower,upper,standard_error,n"
+# Rates and bounds with no relation to n: a script that recomputed any of them would be seen. Lines are not in order of
+# x, one estimator is a name style.py does not know, and one condition has no trials.
+TABLE = HEADER + """
+demo,"a, first",0.4,1,standard,failure,rate,0.30,0.10,0.50,,400
+demo,"a, first",0.4,1,mine,failure,rate,0.05,0.01,0.20,,400
+demo,b,0.0,1,standard,failure,rate,0,0,0.02,,390
+demo,b,0.0,1,mine,failure,rate,0,0,0.03,,390
+demo,c,0.8,1,standard,failure,rate,0.60,0.55,0.90,,400
+demo,c,0.8,1,mine,failure,rate,,,,,0
+demo,"a, first",0.4,1,standard,no_candidate,rate,0,0,0.02,,400
+demo,"a, first",0.4,1,mine,no_candidate,rate,0.10,0.05,0.15,,400
+demo,b,0.0,1,standard,no_candidate,rate,0,0,0.02,,390
+demo,b,0.0,1,mine,no_candidate,rate,0,0,0.02,,390
+demo,"a, first",0.4,1,standard,nees,mean,5.1,,,0.1,400
+"""
+TWO_SIGMAS = TABLE + TABLE.split("\n", 1)[1].replace(",1,", ",2,")
+
+
+def line_of(axes, label):
+    """The (x, y) points of one labelled line, gaps left out."""
+    line, = [line for line in axes.lines if line.get_label() == label]
+    return [(x, y) for x, y in zip(*line.get_data()) if y == y]
+
+
+def band_of(axes, position):
+    """The corners (x, y) of one interval band."""
+    bands = [band for band in axes.collections if isinstance(band, PolyCollection)]
+    return {tuple(corner) for path in bands[position].get_paths() for corner in path.vertices}
+
+
+class FailureRateTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.out = self.folder / "figure.v1"  # a dot in the name is not a suffix
+
+    def summary(self, text=TABLE):
+        path = self.folder / "summary.csv"
+        path.write_text(text)
+        return path
+
+    def draw(self, text=TABLE, quantities=("failure", "no_candidate"), conditions=(), log_y=False):
+        summary = where(read_summary(str(self.summary(text))), conditions)
+        return failure_rate.draw(summary, "outlier_ratio", list(quantities), log_y)
+
+    def run_main(self, *arguments, x="outlier_ratio", path=None, text=TABLE):
+        """(exit code, stdout, stderr) of the script with the usual arguments and these."""
+        path = path or self.summary(text)
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = failure_rate.main([str(path), "--x", x, "--out", str(self.out), *arguments])
+        return code, out.getvalue(), err.getvalue()
+
+    def assert_refused(self, result, *named):
+        code, out, err = result
+        self.assertEqual((code, out), (2, ""))
+        self.assertEqual(err.count("\n"), 1, err)
+        for name in named:
+            self.assertIn(name, err)
+        self.assertEqual([path.name for path in self.folder.iterdir() if path.name != "summary.csv"], [])
+
+
+class WrittenFiles(FailureRateTest):
+    def test_the_command_writes_both_files_and_prints_their_paths(self):
+        done = subprocess.run(["/usr/bin/python3", str(PLOTS / "failure_rate.py"), str(self.summary()), "--x",
+                               "outlier_ratio", "--out", str(self.out)], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.split(), [f"{self.out}.png", f"{self.out}.pdf"])
+        png, pdf = (pathlib.Path(path).read_bytes() for path in done.stdout.split())
+        self.assertTrue(png.startswith(b"\x89PNG") and len(png) > 20_000)
+        self.assertTrue(pdf.startswith(b"%PDF") and pdf.rstrip().endswith(b"%%EOF") and len(pdf) > 8_000)
+
+    def test_same_input_gives_same_bytes(self):
+        def run():
+            self.assertEqual(self.run_main("--log-y")[0], 0)
+            return [pathlib.Path(f"{self.out}.{kind}").read_bytes() for kind in ("png", "pdf")]
+        first = run()
+        with mock.patch("time.time", return_value=2e9):
+            self.assertEqual(run(), first)
+        self.assertNotIn(b"CreationDate", first[1])
+
+    def test_a_failed_write_leaves_the_old_files_and_nothing_half_written(self):
+        old = {f"{self.out.name}.{kind}": b"old" for kind in ("png", "pdf")}
+        for name, content in old.items():
+            (self.folder / name).write_bytes(content)
+        whole = Figure.savefig
+
+        def disk_full(figure, path, **options):
+            self.assertNotIn(os.path.basename(path), old)  # never written in place
+            if options["format"] == "png":
+                return whole(figure, path, **options)
+            pathlib.Path(path).write_bytes(b"%PDF half")
+            raise OSError(28, "No space left on device")
+
+        with mock.patch.object(Figure, "savefig", disk_full):
+            code, _, err = self.run_main()
+        self.assertEqual(code, 2)
+        self.assertIn("No space left on device", err)
+        (self.folder / "summary.csv").unlink()
+        self.assertEqual({path.name: path.read_bytes() for path in self.folder.iterdir()}, old)
+
+
+class DrawnValues(FailureRateTest):
+    def test_lines_and_bands_are_those_of_the_file_in_order_of_x(self):
+        failure, no_candidate = self.draw().axes
+        self.assertEqual(line_of(failure, "Standard"), [(0.0, 0), (0.4, 0.30), (0.8, 0.60)])
+        self.assertEqual(line_of(failure, "mine"), [(0.0, 0), (0.4, 0.05)])  # n = 0 at 0.8: a gap, not a zero
+        self.assertEqual(line_of(no_candidate, "mine"), [(0.0, 0), (0.4, 0.10)])
+        self.assertLessEqual({(0.0, 0.02), (0.4, 0.10), (0.4, 0.50), (0.8, 0.55), (0.8, 0.90)}, band_of(failure, 0))
+        self.assertLessEqual({(0.0, 0.03), (0.4, 0.01), (0.4, 0.20)}, band_of(failure, 1))
+
+    def test_axes_are_in_per_cent_from_zero_and_in_words(self):
+        failure, no_candidate = self.draw().axes
+        self.assertEqual(failure.get_ylim()[0], 0)
+        self.assertEqual(failure.yaxis.get_major_formatter()(0.07), "7")
+        self.assertEqual((failure.get_xlabel(), failure.get_ylabel()), ("Outlier ratio", "Rate (%)"))
+        self.assertEqual((failure.get_title("left"), no_candidate.get_title("left")),
+                         ("(a) Failure rate", "(b) Detect-fail rate"))
+
+    def test_the_caption_says_study_levels_n_and_interval(self):
+        caption = self.draw().texts[0].get_text().replace("\n", " ")
+        self.assertEqual(caption, "Study demo; sigma = 1 px; n = 0\u2013400 per point; "
+                                  "bands: exact 95 % (Clopper-Pearson) intervals.")
+
+    def test_on_a_logarithmic_axis_a_zero_is_an_arrow_at_its_upper_bound(self):
+        figure = self.draw(log_y=True)
+        failure = figure.axes[0]
+        self.assertEqual(line_of(failure, "Standard"), [(0.4, 0.30), (0.8, 0.60)])
+        arrows = [line.get_xydata().tolist() for line in failure.lines if line.get_label() == "_arrow"]
+        self.assertEqual(arrows, [[[0.0, 0.02]], [[0.0, 0.03]]])
+        self.assertLess(failure.get_xlim()[0], 0)
+        self.assertLess(failure.get_ylim()[0], 0.02)
+        self.assertIn("arrows: rate zero", figure.texts[0].get_text())
+
+    def test_a_point_without_neighbours_still_shows_its_interval(self):
+        failure = self.draw(log_y=True).axes[0]  # of "mine" only 0.4 is left: 0.0 is an arrow, 0.8 has no trials
+        bars = [segment.tolist() for lines in failure.collections if isinstance(lines, LineCollection)
+                for segment in lines.get_segments()]
+        self.assertEqual(bars, [[[0.4, 0.01], [0.4, 0.20]]])
+
+    def test_another_factor_gives_a_row_of_panels_per_level_unless_fixed(self):
+        titles = [axes.get_title("left") for axes in self.draw(TWO_SIGMAS).axes]
+        self.assertEqual(titles, ["(a) Failure rate, sigma = 1 px", "(b) Detect-fail rate, sigma = 1 px",
+                                  "(c) Failure rate, sigma = 2 px", "(d) Detect-fail rate, sigma = 2 px"])
+        self.assertEqual(len(self.draw(TWO_SIGMAS, conditions=["sigma_px=2.0"]).axes), 2)
+        one = self.draw(TWO_SIGMAS, ["failure"], ["sigma_px=1", "estimator=mine"]).axes
+        self.assertEqual([line.get_label() for line in one[0].lines], ["mine"])
+
+    def test_looks_differ_without_colour(self):
+        names = [*style.KNOWN_LOOKS, *(f"other {number}" for number in range(7))]
+        looks = style.looks_of(names)
+        self.assertEqual(len({look.marker for look in looks.values()}), len(names))
+        self.assertEqual(looks["rcme"].color, style.looks_of(["rcme"])["rcme"].color)
+
+
+class Refusals(FailureRateTest):
+    def test_files_that_are_not_a_summary(self):
+        self.assert_refused(self.run_main(path=self.folder / "nowhere.csv"), "nowhere.csv", "cannot be read")
+        self.assert_refused(self.run_main(text=""), "summary.csv", "has no column study")
+        self.assert_refused(self.run_main(text=HEADER), "no rows")
+        self.assert_refused(self.run_main(text=TABLE.replace("upper", "top")), "has no column upper")
+        self.assert_refused(self.run_main(text=TABLE.replace("sigma_px", "n", 1)), "more than one column n")
+        self.assert_refused(self.run_main(text=TABLE[:-12]), "line 12", "cut off")
+        self.assert_refused(self.run_main(text=TABLE + '"open'), "is not a CSV file")
+
+    def test_names_that_are_not_in_the_file(self):
+        self.assert_refused(self.run_main(x="parallax"), "--x parallax", "allowed: outlier_ratio, sigma_px")
+        self.assert_refused(self.run_main("--quantities", "fail"), "'fail'", "allowed: failure, no_candidate")
+        self.assert_refused(self.run_main("--quantities", "nees"), "no rate called 'nees'")
+        self.assert_refused(self.run_main("--quantities", ","), "--quantities")
+        self.assert_refused(self.run_main("--where", "sigma=1"), "--where sigma=1", "sigma_px")
+        self.assert_refused(self.run_main("--where", "sigma_px=3"), "--where sigma_px=3", "it has 1")
+        self.assert_refused(self.run_main("--where", "condition=c", "--where", "outlier_ratio=0"), "together")
+        self.assert_refused(self.run_main("--colour", "red"), "--colour", "--help")
+
+    def test_values_that_cannot_be_drawn(self):
+        self.assert_refused(self.run_main(text=TABLE.replace("0.8,1", "high,1")), "line 6", "outlier_ratio", "'high'")
+        self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10", "nan,0.10")), "line 2", "column value")
+        self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10,0.50", "0.30,,")), "line 2", "interval")
+        self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10,0.50", "30,10,50")), "line 2", "0..1")
+        self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10,0.50", "0.30,-0.1,0.50")), "line 2", "0..1")
+        self.assert_refused(self.run_main(text=TABLE.replace("c,0.8", "c,0.4")), "line 6", "second failure",
+                            "--where condition=NAME")
+
+    def test_more_than_one_figure_can_hold(self):
+        body = TABLE.split("\n", 1)[1]
+        many = HEADER + "\n" + "".join(body.replace(",1,", f",{level},") for level in range(1, 9))
+        self.assert_refused(self.run_main(text=many), "8 combinations of sigma_px", "--where sigma_px=1")
+        self.assert_refused(self.run_main(text=TABLE + body.replace("demo", "next")), "several studies", "study=next")
+
+    def test_places_that_cannot_be_written(self):
+        self.assert_refused(self.run_main("--out", str(self.folder / "no" / "figure")), "there is no folder")
+        self.assert_refused(self.run_main("--out", str(self.folder / "figure.png")), "without .png")
+
+    def test_help_teaches_with_an_example(self):
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as end:
+            failure_rate.main(["--help"])
+        self.assertEqual(end.exception.code, 0)
+        self.assertIn("plots/failure_rate.py summary.csv --x outlier_ratio --out failure_rate", out.getvalue())
+
+
+if __name__ == "__main__":
+    unittest.main()
