@@ -105,15 +105,21 @@ double AsPrintedTest::Entropy(const PointResidual& residual) const {
   return 0.5 * (4.0 * (kLogTwoPi + 1.0) + residual.log_det_cov);
 }
 
-double RankAwareTest::Distance(const Correspondence& match, PointResidual* residual) const {
-  const EpipolarConstraint c = EvaluateConstraint(model_.F, match);
-  double model_variance = 0.0;  // g_p Sigma_p g_p'
-  for (const Eigen::Matrix3d& dF : model_.dF_whitened) {
+MatchResidual EvaluateResidual(const UncertainFundamental& model, const Correspondence& match) {
+  const EpipolarConstraint c = EvaluateConstraint(model.F, match);
+  double variance_of_g = 0.0;  // g_p Sigma_p g_p'
+  for (const Eigen::Matrix3d& dF : model.dF_whitened) {
     const double g_p = match.x2_px.homogeneous().dot(dF * match.x1_px.homogeneous());
-    model_variance += g_p * g_p;
+    variance_of_g += g_p * g_p;
   }
-  const double s2 = sigma2_ + model_variance / c.squared_gradient();
-  residual->d2 = c.g * c.g / (c.squared_gradient() * s2);
+  const double n2 = c.squared_gradient();
+  return {c.g * c.g / n2, variance_of_g / n2};
+}
+
+double RankAwareTest::Distance(const Correspondence& match, PointResidual* residual) const {
+  const MatchResidual match_residual = EvaluateResidual(model_, match);
+  const double s2 = sigma2_ + match_residual.motion_variance;
+  residual->d2 = match_residual.squared_distance / s2;
   residual->log_det_cov = std::log(s2);
   return residual->d2;
 }

@@ -30,7 +30,15 @@ struct UncertainFundamental {
                                                   const Camera& camera1, const Camera& camera2);
 };
 
-// What a test knows of one match.
+// The residual of one match in the one dimension it has: squared Sampson distance g^2 / |J|^2 and the variance of the
+// signed distance that comes from the motion, g_p Sigma_p g_p' / |J|^2; both px^2.
+struct MatchResidual {
+  double squared_distance = 0.0;
+  double motion_variance = 0.0;
+};
+MatchResidual EvaluateResidual(const UncertainFundamental& model, const Correspondence& match);
+
+// What a test leaves of one match.
 struct PointResidual {
   double d2 = 0.0;           // squared Mahalanobis distance
   double log_det_cov = 0.0;  // log det Sigma_delta (as printed), log s2 (rank-aware); known pose: unused

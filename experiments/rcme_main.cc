@@ -1,6 +1,7 @@
 // rcme: statistical validation of robust two-view motion estimators. Exit codes: 0 done, 2 usage or bad input, 1 else.
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <cstdio>
 #include <exception>
@@ -9,6 +10,7 @@
 #include "parameters/input_error.h"
 
 int main(int argc, char** argv) {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
   CLI::App app{
       "Validates robust two-view camera-motion estimators (RCME and peers) by simulation, and runs them on real matches.\n"
       "\n"

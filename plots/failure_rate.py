@@ -21,7 +21,7 @@ MAX_PANEL_ROWS = 6
 TITLES = {  # other quantities: their name in words
     "failure": "Failure rate", "success": "Success rate",
     "no_candidate": "Detect-fail rate",  # the paper's word
-    "kappa_flag": "Flagged by the quality test (kappa)", "nees_coverage": "NEES coverage",
+    "kappa_flag": "Kappa-flag rate", "nees_coverage": "NEES coverage",
 }
 
 EXAMPLE = """
@@ -58,6 +58,7 @@ def select(summary, x, quantities):
         if not (0 <= row.lower <= row.value <= row.upper <= 1 or (row.n == 0 and math.isnan(row.value))):
             raise PlotError(f"{path}: line {row.line}: a rate must lie in its interval and both in 0..1, "
                             "and may be empty only where n is 0.")
+    selected.loc[selected.value.isna(), ["lower", "upper"]] = math.nan  # the interval 0..1 of no trials says nothing
     return selected
 
 

@@ -11,6 +11,7 @@ carrier: each estimator also has its own marker and dash pattern, so a grey prin
 """
 
 import contextlib
+import math
 import os
 import textwrap
 from dataclasses import dataclass, replace
@@ -38,7 +39,7 @@ RC = {
     "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
     "axes.linewidth": 0.7, "xtick.major.width": 0.7, "ytick.major.width": 0.7, "ytick.minor.width": 0.5,
     "axes.grid": True, "axes.axisbelow": True, "grid.color": "0.9", "grid.linewidth": 0.6,
-    "legend.frameon": False, "legend.handlelength": 3.2, "legend.columnspacing": 1.6, "legend.handletextpad": 0.6,
+    "legend.frameon": False, "legend.handlelength": 2.8, "legend.columnspacing": 1.2, "legend.handletextpad": 0.5,
     "text.parse_math": False,  # names come from files; a "$" in one is only a "$"
     "pdf.fonttype": 42,  # real fonts, so that the text in the PDF can be searched and edited
     "savefig.dpi": 200,
@@ -78,16 +79,19 @@ def size_of(marker):
     return {"s": 0.86, "D": 0.8}.get(marker, 1)
 
 
-# One hue per family, and a darker or lighter neighbour with dashes for its rank-aware variant.
+# Keys are the estimators' labels in a study. One hue per family; a darker or lighter neighbour, with dashes, for its
+# rank-aware reading.
 KNOWN_LOOKS = {
     "standard": Look("Standard", BLACK, "o"),
     "prcme": Look("pRCME", ORANGE, "s"),
     "rcme": Look("RCME", BLUE, "D"),
+    "prcme_as_printed": Look("pRCME, as printed", ORANGE, "P"),
+    "rcme_as_printed": Look("RCME, as printed", BLUE, "X"),
     "prcme_rank_aware": Look("pRCME, rank-aware", VERMILLION, "^", DASHED),
     "rcme_rank_aware": Look("RCME, rank-aware", SKY_BLUE, "v", DASH_DOT),
 }
 OTHER_COLORS = (GREEN, PURPLE, BLUE, VERMILLION, BLACK, SKY_BLUE, ORANGE)
-OTHER_MARKERS = ("P", "X", "h", "*", "p", "<", ">", "d")
+OTHER_MARKERS = ("<", "*", "d", ">", "p", "h")
 OTHER_DASHES = (DOTTED, LONG_DASHED, DASH_DOT, SOLID, DASHED)
 
 
@@ -100,8 +104,8 @@ def looks_of(estimators):
     looks, others, last = {}, 0, len(estimators) - 1
     for position, name in enumerate(estimators):
         look = KNOWN_LOOKS.get(name)
-        if look is None:  # 7, 8 and 5 have no common divisor: 280 different looks
-            look = Look(name, OTHER_COLORS[others % 7], OTHER_MARKERS[others % 8], OTHER_DASHES[others % 5])
+        if look is None:  # 7, 6 and 5 have no common divisor: 210 different looks
+            look = Look(name, OTHER_COLORS[others % 7], OTHER_MARKERS[others % 6], OTHER_DASHES[others % 5])
             others += 1
         rim = 0.5 + (last / 2 - position) / max(last, 4)  # from 1 to 0; two estimators differ only a little
         looks[name] = replace(look, line_width=1.1 + 1.0 * rim,
@@ -142,9 +146,10 @@ def add_legend_and_caption(figure, handles, caption):
     width, height = figure.get_size_inches()
     caption = "\n".join(textwrap.wrap(caption, int(20 * width)))
     below = figure.text(0.006, 0.012, caption, fontsize=6.5, color="0.3", ha="left", va="bottom", linespacing=1.3)
-    for columns in range(len(handles), 0, -1):  # as wide as fits
+    for legend_rows in range(1, len(handles) + 1):  # as few as fit the width
+        columns = math.ceil(len(handles) / legend_rows)
         above = figure.legend(handles=handles, loc="upper center", ncols=columns, borderaxespad=0.2)
-        if columns == 1 or above.get_window_extent().width <= 0.99 * figure.bbox.width:
+        if columns == 1 or above.get_window_extent().width <= figure.bbox.width:
             break
         above.remove()
     height += max(0, above.get_window_extent().height / figure.dpi - 0.3)  # more than one row

@@ -29,7 +29,7 @@ demo,"a, first",0.4,1,mine,failure,rate,0.05,0.01,0.20,,400
 demo,b,0.0,1,standard,failure,rate,0,0,0.02,,390
 demo,b,0.0,1,mine,failure,rate,0,0,0.03,,390
 demo,c,0.8,1,standard,failure,rate,0.60,0.55,0.90,,400
-demo,c,0.8,1,mine,failure,rate,,,,,0
+demo,c,0.8,1,mine,failure,rate,,0,1,,0
 demo,"a, first",0.4,1,standard,no_candidate,rate,0,0,0.02,,400
 demo,"a, first",0.4,1,mine,no_candidate,rate,0.10,0.05,0.15,,400
 demo,b,0.0,1,standard,no_candidate,rate,0,0,0.02,,390
@@ -132,6 +132,7 @@ class DrawnValues(FailureRateTest):
         self.assertEqual(line_of(no_candidate, "mine"), [(0.0, 0), (0.4, 0.10)])
         self.assertLessEqual({(0.0, 0.02), (0.4, 0.10), (0.4, 0.50), (0.8, 0.55), (0.8, 0.90)}, band_of(failure, 0))
         self.assertLessEqual({(0.0, 0.03), (0.4, 0.01), (0.4, 0.20)}, band_of(failure, 1))
+        self.assertEqual(max(x for x, _ in band_of(failure, 1)), 0.4)
 
     def test_axes_are_in_per_cent_from_zero_and_in_words(self):
         failure, no_candidate = self.draw().axes
@@ -171,7 +172,7 @@ class DrawnValues(FailureRateTest):
         self.assertEqual([line.get_label() for line in one[0].lines], ["mine"])
 
     def test_looks_differ_without_colour(self):
-        names = [*style.KNOWN_LOOKS, *(f"other {number}" for number in range(7))]
+        names = [*style.KNOWN_LOOKS, *(f"other {number}" for number in range(6))]
         looks = style.looks_of(names)
         self.assertEqual(len({look.marker for look in looks.values()}), len(names))
         self.assertEqual(looks["rcme"].color, style.looks_of(["rcme"])["rcme"].color)

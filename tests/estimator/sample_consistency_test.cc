@@ -1,0 +1,164 @@
+#include "estimator/sample_consistency.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "stats/distributions.h"
+#include "stats/goodness_of_fit.h"
+#include "tests/test_support/coverage_count.h"
+#include "tests/test_support/random_problem.h"
+
+namespace rcme {
+namespace {
+
+constexpr Sample kAllEight = {0, 1, 2, 3, 4, 5, 6, 7};
+
+std::optional<Hypothesis> Solve(const MotionProblem& problem) {
+  std::optional<Hypothesis> hypothesis = InstantiateModel(problem, kAllEight);
+  if (hypothesis) PropagateCovariance(problem, &*hypothesis);
+  return hypothesis;
+}
+
+// T from a complement that is found numerically: the null space of [tangent, vec E]'.
+double StatisticByNullSpace(const Hypothesis& hypothesis) {
+  Eigen::Matrix<double, 6, 9> spanned;
+  const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(hypothesis.pose);
+  for (int k = 0; k < 5; ++k) spanned.row(k) = Vectorize(dE_dp[static_cast<size_t>(k)]);
+  spanned.row(5) = Vectorize(EssentialFromPose(hypothesis.pose));
+  const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 9>> svd(spanned, Eigen::ComputeFullV);
+  EXPECT_GT(svd.singularValues()(5), 0.1);
+  const Eigen::Matrix<double, 9, 3> N = svd.matrixV().rightCols<3>();
+  const Eigen::Vector3d misfit = N.transpose() * hypothesis.linear.f;
+  const Eigen::Matrix3d misfit_cov = N.transpose() * hypothesis.f_cov * N;
+  return misfit.dot(misfit_cov.inverse() * misfit);
+}
+
+TEST(JointSampleStatistic, UsesTheComplementOfTheTangentAndE) {
+  RandomStream rng({.seed = 1, .purpose = 170});
+  for (int i = 0; i < 200; ++i) {
+    RandomProblem random = MakeRandomProblem(rng);
+    AddNoise(0.5, rng, &random.problem);
+    const Hypothesis hypothesis = Solve(random.problem).value();
+    const double statistic = JointSampleStatistic(hypothesis);
+    EXPECT_GT(statistic, 0.0);
+    EXPECT_NEAR(statistic, StatisticByNullSpace(hypothesis), 1e-6 * statistic);
+  }
+}
+
+TEST(JointSampleStatistic, DoesNotDependOnTheSignOfF) {
+  RandomStream rng({.seed = 1, .purpose = 171});
+  RandomProblem random = MakeRandomProblem(rng);
+  AddNoise(0.5, rng, &random.problem);
+  Hypothesis hypothesis = Solve(random.problem).value();
+  const double statistic = JointSampleStatistic(hypothesis);
+  hypothesis.linear.f *= -1.0;
+  EXPECT_DOUBLE_EQ(JointSampleStatistic(hypothesis), statistic);
+  hypothesis.projection = ProjectToEssential(Matricize(hypothesis.linear.f));
+  EXPECT_NEAR(JointSampleStatistic(hypothesis), statistic, 1e-9 * statistic);
+}
+
+TEST(JointSampleStatistic, VanishesForExactMatches) {
+  RandomStream rng({.seed = 1, .purpose = 172});
+  for (int i = 0; i < 50; ++i) {
+    RandomProblem random = MakeRandomProblem(rng);
+    random.problem.sigma_px = 0.5;
+    EXPECT_LT(JointSampleStatistic(Solve(random.problem).value()), 1e-12);
+  }
+}
+
+TEST(JointSampleStatistic, SingularCovarianceIsInfinite) {
+  RandomStream rng({.seed = 1, .purpose = 173});
+  RandomProblem random = MakeRandomProblem(rng);
+  AddNoise(0.5, rng, &random.problem);
+  Hypothesis hypothesis = Solve(random.problem).value();
+  hypothesis.f_cov.setZero();
+  EXPECT_TRUE(std::isinf(JointSampleStatistic(hypothesis)));
+}
+
+std::vector<double> Statistics(double sigma_px, int num_trials, std::uint32_t purpose) {
+  std::vector<double> statistics;
+  RandomStream rng({.seed = 1, .purpose = purpose});
+  for (int trial = 0; trial < num_trials; ++trial) {
+    RandomProblem random = MakeRandomProblem(rng);
+    AddNoise(sigma_px, rng, &random.problem);
+    statistics.push_back(JointSampleStatistic(Solve(random.problem).value()));
+  }
+  return statistics;
+}
+
+CoverageCount Coverage(const std::vector<double>& statistics, double scale) {
+  const double limit = ChiSquareQuantile(3, 0.95);
+  CoverageCount count;
+  for (const double statistic : statistics) count.Add(statistic / scale <= limit);
+  return count;
+}
+
+TEST(JointSampleStatistic, IsChiSquareWithThreeDofInTheLimitOfSmallNoise) {
+  // SEE_MEASURED
+  const std::vector<double> statistics = Statistics(1e-5, 20'000, 180);
+  const CoverageCount coverage = Coverage(statistics, 1.0);
+  EXPECT_TRUE(coverage.Admits(0.95)) << coverage;
+  EXPECT_FALSE(Coverage(statistics, 1.25).Admits(0.95)) << "no power";
+  EXPECT_FALSE(Coverage(statistics, 0.8).Admits(0.95)) << "no power";
+  const auto cdf_of = [](int dof) { return [dof](double x) { return ChiSquareCdf(dof, x); }; };
+  EXPECT_GT(TestKolmogorovSmirnov(statistics, cdf_of(3)).p_value, 1e-4);
+  EXPECT_LT(TestKolmogorovSmirnov(statistics, cdf_of(2)).p_value, 1e-4) << "no power";
+  EXPECT_LT(TestKolmogorovSmirnov(statistics, cdf_of(4)).p_value, 1e-4) << "no power";
+}
+
+// How often the joint test (5 %) passes at sigma 0.5 px, with or without one mismatch among the eight.
+CoverageCount PassRate(bool with_outlier, int num_trials, std::uint32_t purpose) {
+  CoverageCount passes;
+  RandomStream rng({.seed = 1, .purpose = purpose});
+  for (int trial = 0; trial < num_trials; ++trial) {
+    RandomProblem random = MakeRandomProblem(rng);
+    AddNoise(0.5, rng, &random.problem);
+    if (with_outlier) {
+      random.problem.matches[rng.IntegerBelow(8)].x2_px << rng.Uniform(0.0, 799.0), rng.Uniform(0.0, 599.0);
+    }
+    const std::optional<Hypothesis> hypothesis = Solve(random.problem);
+    passes.Add(hypothesis && JointSampleStatistic(*hypothesis) <= ChiSquareQuantile(3, 0.95));
+  }
+  return passes;
+}
+
+TEST(JointSampleStatistic, RejectsSamplesWithOneOutlier) {
+  const CoverageCount clean = PassRate(false, 3000, 181), contaminated = PassRate(true, 3000, 182);
+  EXPECT_LT(contaminated.interval().upper, 0.15) << contaminated;
+  EXPECT_GT(clean.interval().lower, 0.5) << clean;
+}
+
+TEST(EverySamplePointFits, FailsIfOnePointIsBeyondTheThreshold) {
+  RandomStream rng({.seed = 1, .purpose = 183});
+  RandomProblem random = MakeRandomProblem(rng, {.num_matches = 9});
+  random.problem.sigma_px = 0.5;
+  Hypothesis hypothesis;
+  hypothesis.sample = kAllEight;
+  const KnownPoseTest test(FundamentalFromEssential(EssentialFromPose(random.pose_true), random.problem.camera1,
+                                                    random.problem.camera2),
+                           random.problem.sigma_px);
+  EXPECT_TRUE(EverySamplePointFits(random.problem, hypothesis, test, 3.84));
+  random.problem.matches[8].x2_px += Eigen::Vector2d(50.0, 50.0);
+  EXPECT_TRUE(EverySamplePointFits(random.problem, hypothesis, test, 3.84)) << "match 8 is not in the sample";
+  random.problem.matches[5].x2_px += Eigen::Vector2d(50.0, 50.0);
+  EXPECT_FALSE(EverySamplePointFits(random.problem, hypothesis, test, 3.84));
+  random.problem.matches[5].x2_px.x() = std::nan("");
+  EXPECT_FALSE(EverySamplePointFits(random.problem, hypothesis, test, 3.84));
+}
+
+TEST(JointSampleStatistic, DISABLED_Measure) {
+  for (const double sigma : {0.5, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    const std::vector<double> statistics = Statistics(sigma, 20'000, 184);
+    std::cout << "sigma " << sigma << ": " << Coverage(statistics, 1.0) << "  KS p "
+              << TestKolmogorovSmirnov(statistics, [](double x) { return ChiSquareCdf(3, x); }).p_value << "\n";
+  }
+  std::cout << "clean " << PassRate(false, 20'000, 185) << "\noutlier " << PassRate(true, 20'000, 186) << "\n";
+}
+
+}  // namespace
+}  // namespace rcme
