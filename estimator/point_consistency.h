@@ -30,8 +30,8 @@ struct UncertainFundamental {
                                                   const Camera& camera1, const Camera& camera2);
 };
 
-// The residual of one match in the one dimension it has: squared Sampson distance g^2 / |J|^2 and the variance of the
-// signed distance that comes from the motion, g_p Sigma_p g_p' / |J|^2; both px^2.
+// The residual of one match in the one dimension it has: squared Sampson distance g^2 / |J|^2 and the
+// variance of the signed distance that comes from the motion, g_p Sigma_p g_p' / |J|^2; both px^2.
 struct MatchResidual {
   double squared_distance = 0.0;
   double motion_variance = 0.0;

@@ -20,8 +20,8 @@ RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose);
 
 struct Truth {
   std::optional<RelativePose> cam2_from_cam1_true;
-  bool is_direction_known = true;     // false: score the rotation alone
-  std::vector<bool> is_inlier_true;   // per match; empty: unknown
+  bool is_direction_known = true;    // false: score the rotation alone
+  std::vector<bool> is_inlier_true;  // per match; empty: unknown
 };
 
 // A problem for the estimators and the truth for the score, kept apart from here on.
@@ -45,13 +45,15 @@ class DataSource {
 
 using Settings = std::vector<std::pair<std::string, std::string>>;  // key, value as text; later ones override
 
-// One data source, or several: a folder of real pairs makes one per scene it holds, with the level that names it.
+// One data source, or several: a folder of real pairs makes one per scene it holds, with the level that names
+// it.
 struct DataSources {
   std::string implied_factor;  // name of the factor that tells the sources apart; empty: there is only one
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;  // level, source
 };
 
-// The sources for the settings of a condition, `scene` among them. Throws InputError that names key and value.
+// The sources for the settings of a condition, `scene` among them. Throws InputError that names key and
+// value.
 DataSources MakeDataSources(const Settings& settings);
 
 // Every parameter of the scene with its value, `scene` first. Throws InputError that names key and value.

@@ -37,9 +37,9 @@ void Progress::Print(Clock::time_point now) {
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double rate = static_cast<double>(done_) / elapsed;
   const double seconds_left = rate > 0.0 ? static_cast<double>(total_ - done_) / rate : 0.0;
-  const std::string line =
-      fmt::format("{} / {} {} ({:.0f} %), {:.3g} per second, {} left", done_, total_, unit_,
-                  100.0 * static_cast<double>(done_) / static_cast<double>(total_), rate, DurationInWords(seconds_left));
+  const std::string line = fmt::format(
+      "{} / {} {} ({:.0f} %), {:.3g} per second, {} left", done_, total_, unit_,
+      100.0 * static_cast<double>(done_) / static_cast<double>(total_), rate, DurationInWords(seconds_left));
   if (is_terminal_) {
     fmt::print(stderr, "\r{:<79}", line);
   } else {

@@ -6,8 +6,8 @@
 
 namespace rcme {
 
-// Progress on standard error: done / total, rate, time left. One line rewritten on a terminal; elsewhere a plain line
-// every five seconds. Says nothing for work that ends within a second.
+// Progress on standard error: done / total, rate, time left. One line rewritten on a terminal; elsewhere a
+// plain line every five seconds. Says nothing for work that ends within a second.
 class Progress {
  public:
   Progress(std::string unit, std::int64_t total);

@@ -1,4 +1,5 @@
-// rcme: statistical validation of robust two-view motion estimators. Exit codes: 0 done, 2 usage or bad input, 1 else.
+// rcme: statistical validation of robust two-view motion estimators. Exit codes: 0 done, 2 usage or bad
+// input, 1 else.
 
 #include <fmt/format.h>
 #include <glog/logging.h>
@@ -12,7 +13,8 @@
 int main(int argc, char** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
   CLI::App app{
-      "Validates robust two-view camera-motion estimators (RCME and peers) by simulation, and runs them on real matches.\n"
+      "Validates robust two-view camera-motion estimators (RCME and peers) by simulation, and runs them on "
+      "real matches.\n"
       "\n"
       "A first session:\n"
       "  rcme list studies                                            what there is to run\n"

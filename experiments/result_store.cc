@@ -40,11 +40,13 @@ std::string CreateTrialsTable() {
                                                              : "INTEGER NOT NULL";
     return fmt::format("{} {}", name, type);
   });
-  return fmt::format("CREATE TABLE trials ({}, PRIMARY KEY (condition, trial, estimator)) WITHOUT ROWID", columns);
+  return fmt::format("CREATE TABLE trials ({}, PRIMARY KEY (condition, trial, estimator)) WITHOUT ROWID",
+                     columns);
 }
 
 std::string InsertTrial() {
-  return fmt::format("INSERT INTO trials VALUES ({})", JoinFields([](const char*, const auto&) { return "?"; }));
+  return fmt::format("INSERT INTO trials VALUES ({})",
+                     JoinFields([](const char*, const auto&) { return "?"; }));
 }
 
 std::string SelectTrials(const std::string& where) {
@@ -148,13 +150,16 @@ struct ResultStore::Connection {
   }
 
   void CheckFormat() {
-    if (Value("format") != kFormat) throw InputError(fmt::format("{}: is not an rcme result file ({})", path, kFormat));
+    if (Value("format") != kFormat)
+      throw InputError(fmt::format("{}: is not an rcme result file ({})", path, kFormat));
   }
 
   void Create(const StudyPlan& plan) {
     SQLite::Transaction creation(database);
     database.exec("CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL)");
-    database.exec("CREATE TABLE conditions (condition INTEGER, factor TEXT, level TEXT, PRIMARY KEY (condition, factor))");
+    database.exec(
+        "CREATE TABLE conditions (condition INTEGER, factor TEXT, level TEXT, PRIMARY KEY (condition, "
+        "factor))");
     database.exec("CREATE TABLE estimators (estimator INTEGER PRIMARY KEY, label TEXT NOT NULL)");
     database.exec(CreateTrialsTable());
     SetValue("format", kFormat);
@@ -166,7 +171,8 @@ struct ResultStore::Connection {
       }
     }
     for (size_t e = 0; e < plan.study.estimators.size(); ++e) {
-      Insert("INSERT INTO estimators VALUES (?, ?)", static_cast<std::int64_t>(e), plan.study.estimators[e].label);
+      Insert("INSERT INTO estimators VALUES (?, ?)", static_cast<std::int64_t>(e),
+             plan.study.estimators[e].label);
     }
     creation.commit();
   }
@@ -211,7 +217,8 @@ ResultStore::~ResultStore() {
 
 ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& plan) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  if (std::filesystem::is_directory(path)) throw InputError(fmt::format("{}: is a folder, not a result file", path));
+  if (std::filesystem::is_directory(path))
+    throw InputError(fmt::format("{}: is a folder, not a result file", path));
   if (!parent.empty() && !std::filesystem::is_directory(parent)) {
     throw InputError(fmt::format("{}: folder '{}' does not exist", path, parent.string()));
   }
@@ -225,8 +232,9 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
     connection->CheckFormat();
     const std::string identity = connection->Value("identity").value_or("");
     if (identity != plan.identity) {
-      throw InputError(fmt::format("{}: holds the results of another study; first difference: {}. Give another --out",
-                                   path, FirstDifference(identity, plan.identity)));
+      throw InputError(
+          fmt::format("{}: holds the results of another study; first difference: {}. Give another --out",
+                      path, FirstDifference(identity, plan.identity)));
     }
     connection->SetValue("study", plan.study_yaml);
     connection->insert.emplace(database, InsertTrial());
@@ -263,8 +271,9 @@ std::vector<std::uint32_t> ResultStore::MissingTrials(std::uint32_t condition, s
   const std::lock_guard lock(connection_->mutex);
   return connection_->Guarded([&] {
     std::vector<std::uint32_t> missing;
-    SQLite::Statement query(connection_->database,
-                            "SELECT trial FROM trials WHERE condition = ? AND trial >= ? AND trial < ? AND estimator = 0");
+    SQLite::Statement query(
+        connection_->database,
+        "SELECT trial FROM trials WHERE condition = ? AND trial >= ? AND trial < ? AND estimator = 0");
     query.bind(1, condition);
     query.bind(2, first);
     query.bind(3, last);

@@ -1,7 +1,9 @@
-// The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and again.
+// The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and
+// again.
 //
-// Tables: run (key, value: format, study, identity), conditions (condition, factor, level), estimators (estimator,
-// label), trials (one row per condition, trial and estimator, columns as in trial_fields.h). Unknown numbers are NULL.
+// Tables: run (key, value: format, study, identity), conditions (condition, factor, level), estimators
+// (estimator, label), trials (one row per condition, trial and estimator, columns as in trial_fields.h).
+// Unknown numbers are NULL.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +19,8 @@ namespace rcme {
 
 class ResultStore {
  public:
-  // Opens the file of this plan's study, or makes it. Throws InputError if the path cannot be written, is no result
-  // file, is in use by another run, or holds another study (the message says what differs).
+  // Opens the file of this plan's study, or makes it. Throws InputError if the path cannot be written, is no
+  // result file, is in use by another run, or holds another study (the message says what differs).
   static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan);
   // Opens an existing file to read. Throws InputError if it is none.
   static ResultStore OpenForReading(const std::string& path);
@@ -32,7 +34,8 @@ class ResultStore {
   // Trials of a condition in [first, last) that are not in the file. Callable while another thread adds.
   std::vector<std::uint32_t> MissingTrials(std::uint32_t condition, std::uint32_t first, std::uint32_t last);
 
-  // Adds the records of whole trials; they reach the disk within about half a second, all records of a call or none.
+  // Adds the records of whole trials; they reach the disk within about half a second, all records of a call
+  // or none.
   void Add(const std::vector<TrialRecord>& records);
   // Writes what has been added.
   void Commit();

@@ -6,14 +6,14 @@
 namespace rcme {
 
 struct RunReport {
-  std::int64_t num_trials = 0;     // of the study
-  std::int64_t num_run_now = 0;    // the others were in the file already
+  std::int64_t num_trials = 0;   // of the study
+  std::int64_t num_run_now = 0;  // the others were in the file already
   double seconds = 0.0;
 };
 
-// Runs every trial of the plan that the store does not hold yet, on `num_threads` threads (0: one per core), and shows
-// progress. The records do not depend on the number of threads or on the order in which trials end. Memory does not grow
-// with the number of trials.
+// Runs every trial of the plan that the store does not hold yet, on `num_threads` threads (0: one per core),
+// and shows progress. The records do not depend on the number of threads or on the order in which trials end.
+// Memory does not grow with the number of trials.
 RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store);
 
 }  // namespace rcme

@@ -58,7 +58,8 @@ std::vector<std::pair<std::string, YAML::Node>> Entries(const Place& place, cons
       place.Fail(entry.first,
                  fmt::format("{}: unknown key '{}'; known keys: {}", name, key, fmt::join(known, ", ")));
     }
-    if (!seen.insert(key).second) place.Fail(entry.first, fmt::format("{}: key '{}' stands twice", name, key));
+    if (!seen.insert(key).second)
+      place.Fail(entry.first, fmt::format("{}: key '{}' stands twice", name, key));
     entries.emplace_back(key, entry.second);
   }
   return entries;
@@ -69,7 +70,8 @@ long long WholeNumber(const Place& place, const YAML::Node& node, const std::str
   const std::string text = Scalar(place, node, key);
   long long value = 0;
   if (!ParseInteger(text, &value) || value < min || value > max) {
-    place.Fail(node, fmt::format("{}: '{}' is not allowed; give a whole number in [{}, {}]", key, text, min, max));
+    place.Fail(node,
+               fmt::format("{}: '{}' is not allowed; give a whole number in [{}, {}]", key, text, min, max));
   }
   return value;
 }
@@ -117,27 +119,32 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
     EstimatorSpec spec = ReadEstimator(place, entry);
     for (const EstimatorSpec& other : study->estimators) {
       if (other.label == spec.label) {
-        place.Fail(entry, fmt::format("estimators: label '{}' stands twice; give each a label of its own", spec.label));
+        place.Fail(entry, fmt::format("estimators: label '{}' stands twice; give each a label of its own",
+                                      spec.label));
       }
     }
     study->estimators.push_back(std::move(spec));
   }
 }
 
-// Data settings are checked by making the sources once with the fixed settings, and once with each level of each factor.
+// Data settings are checked by making the sources once with the fixed settings, and once with each level of
+// each factor.
 void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
   const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
     const YAML::Node map = root[block];
     return map && map.IsMap() && map[key] ? map[key] : root;
   };
-  const auto scene = std::find_if(study.data.begin(), study.data.end(), [](const auto& s) { return s.first == "scene"; });
-  if (scene == study.data.end()) place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
+  const auto scene =
+      std::find_if(study.data.begin(), study.data.end(), [](const auto& s) { return s.first == "scene"; });
+  if (scene == study.data.end())
+    place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
   for (const auto& setting : study.data) {
     place.At(line_of("data", setting.first), [&] { ResolveSettings({*scene, setting}); });
   }
   for (const Factor& factor : study.factors) {
     if (factor.key == "scene") {
-      place.Fail(line_of("factors", factor.key), "factors: 'scene' cannot be a factor; write one study per scene");
+      place.Fail(line_of("factors", factor.key),
+                 "factors: 'scene' cannot be a factor; write one study per scene");
     }
     for (const std::string& level : factor.levels) {
       place.At(line_of("factors", factor.key), [&] { ResolveSettings({*scene, {factor.key, level}}); });
@@ -146,7 +153,8 @@ void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
 }
 
 YAML::Node ParseYaml(const std::string& yaml, const std::string& path) {
-  if (yaml.size() > kMaxStudyBytes) throw InputError(fmt::format("{}: larger than a study can be (1 MiB)", path));
+  if (yaml.size() > kMaxStudyBytes)
+    throw InputError(fmt::format("{}: larger than a study can be (1 MiB)", path));
   try {
     return YAML::Load(yaml);
   } catch (const YAML::Exception& error) {
@@ -157,7 +165,8 @@ YAML::Node ParseYaml(const std::string& yaml, const std::string& path) {
 }  // namespace
 
 Study LoadStudy(const std::string& path) {
-  if (std::filesystem::is_directory(path)) throw InputError(fmt::format("{}: is a folder, not a study", path));
+  if (std::filesystem::is_directory(path))
+    throw InputError(fmt::format("{}: is a folder, not a study", path));
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: no such study file, or not readable", path));
   std::ostringstream text;
@@ -176,7 +185,8 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
     if (key == "name") study.name = Scalar(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
-      study.seed = static_cast<std::uint64_t>(WholeNumber(place, node, key, 0, std::numeric_limits<long long>::max()));
+      study.seed =
+          static_cast<std::uint64_t>(WholeNumber(place, node, key, 0, std::numeric_limits<long long>::max()));
     }
     if (key == "trials") study.trials = static_cast<int>(WholeNumber(place, node, key, 1, kMaxTrials));
     if (key == "data") {
@@ -204,7 +214,8 @@ void Override(Study* study, const std::string& key, const std::string& value) {
   RansacOptions option_names;
   FailureBounds bound_names;
   const auto is_in = [](const std::vector<Parameter>& parameters, const std::string& name) {
-    return std::any_of(parameters.begin(), parameters.end(), [&](const Parameter& p) { return p.name() == name; });
+    return std::any_of(parameters.begin(), parameters.end(),
+                       [&](const Parameter& p) { return p.name() == name; });
   };
   const size_t dot = key.find('.');
   const std::string option = dot == std::string::npos ? key : key.substr(dot + 1);
@@ -216,13 +227,14 @@ void Override(Study* study, const std::string& key, const std::string& value) {
       FindEstimator(spec.name).make(spec.options);
       is_used = true;
     }
-    if (!is_used) throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
+    if (!is_used)
+      throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
   } else if (is_in(Parameters(bound_names), key)) {
     FindParameter(Parameters(study->failure), key).SetFromText(value);
   } else {
     const auto is_key = [&](const auto& setting) { return setting.first == key; };
-    const auto scene =
-        std::find_if(study->data.begin(), study->data.end(), [](const auto& s) { return s.first == "scene"; });
+    const auto scene = std::find_if(study->data.begin(), study->data.end(),
+                                    [](const auto& s) { return s.first == "scene"; });
     ResolveSettings({*scene, {key, value}});
     std::erase_if(study->data, is_key);
     study->data.emplace_back(key, value);
@@ -239,7 +251,8 @@ std::string ToYaml(const Study& study) {
   out << YAML::Key << "seed" << YAML::Value << study.seed;
   out << YAML::Key << "trials" << YAML::Value << study.trials;
   out << YAML::Key << "data" << YAML::Value << YAML::BeginMap;
-  for (const auto& [key, value] : ResolveSettings(study.data)) out << YAML::Key << key << YAML::Value << value;
+  for (const auto& [key, value] : ResolveSettings(study.data))
+    out << YAML::Key << key << YAML::Value << value;
   out << YAML::EndMap;
   if (!study.factors.empty()) {
     out << YAML::Key << "factors" << YAML::Value << YAML::BeginMap;
@@ -251,7 +264,8 @@ std::string ToYaml(const Study& study) {
     out << YAML::BeginMap << YAML::Key << "name" << YAML::Value << spec.name;
     out << YAML::Key << "label" << YAML::Value << spec.label;
     out << YAML::Key << "options" << YAML::Value << YAML::BeginMap;
-    for (const Parameter& p : Parameters(spec.options)) out << YAML::Key << p.name() << YAML::Value << p.Value();
+    for (const Parameter& p : Parameters(spec.options))
+      out << YAML::Key << p.name() << YAML::Value << p.Value();
     out << YAML::EndMap << YAML::EndMap;
   }
   out << YAML::EndSeq;

@@ -32,7 +32,7 @@ std::vector<std::vector<std::string>> Combinations(const std::vector<Factor>& fa
 
 std::string Identity(const StudyPlan& plan) {
   Study same = plan.study;
-  same.trials = 1;          // more trials extend a run
+  same.trials = 1;  // more trials extend a run
   same.description.clear();
   std::string identity = ToYaml(same);
   for (const Condition& condition : plan.conditions) {

@@ -23,8 +23,8 @@ struct StudyPlan {
   std::vector<std::string> factor_names;
   std::vector<Condition> conditions;
   std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // as study.estimators
-  std::string study_yaml;  // the study in full (study_file.h)
-  std::string identity;    // equal for two runs that may share a result file
+  std::string study_yaml;                                          // the study in full (study_file.h)
+  std::string identity;  // equal for two runs that may share a result file
 
   std::int64_t NumTrials() const;
 };

@@ -11,8 +11,8 @@
 namespace rcme {
 namespace {
 
-// What a trial contributes to a quantity: nothing (it is not of those the quantity is about), or a number (a rate: 0 or
-// 1).
+// What a trial contributes to a quantity: nothing (it is not of those the quantity is about), or a number (a
+// rate: 0 or 1).
 using Contribution = std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)>;
 
 struct Quantity {
@@ -44,7 +44,8 @@ const std::vector<Quantity>& Quantities() {
   static const std::vector<Quantity> all = {
       {"success", kRate, "a motion within the failure bounds, of all trials",
        [](R r, B b) { return Yes(HasSucceeded(r, b)); }},
-      {"failure", kRate, "a motion beyond a failure bound, of all trials", [](R r, B b) { return Yes(HasFailed(r, b)); }},
+      {"failure", kRate, "a motion beyond a failure bound, of all trials",
+       [](R r, B b) { return Yes(HasFailed(r, b)); }},
       StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
       StatusRate(MotionStatus::kTooFewMatches, "too few distinct matches"),
       StatusRate(MotionStatus::kDegenerateMatches, "matches that determine no motion"),
@@ -125,7 +126,8 @@ Summary Summarize(const ResultStore& store, bool with_times) {
   const StudyPlan plan = MakePlan(ParseStudy(store.StudyYaml(), "study in the result file"));
   Summary summary{plan.study.name, plan.factor_names, {}, 0, plan.NumTrials()};
   const size_t num_estimators = plan.study.estimators.size();
-  std::vector<std::vector<Accumulator>> cells(plan.conditions.size(), std::vector<Accumulator>(num_estimators));
+  std::vector<std::vector<Accumulator>> cells(plan.conditions.size(),
+                                              std::vector<Accumulator>(num_estimators));
   store.ForEachRecord([&](const TrialRecord& record) {
     if (record.estimator == 0) ++summary.num_trials_done;
     cells.at(record.condition).at(record.estimator).Add(record, plan.study.failure);

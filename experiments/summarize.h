@@ -37,8 +37,8 @@ struct QuantityHelp {
 };
 const std::vector<QuantityHelp>& SummaryQuantities();
 
-// Every quantity of every estimator in every condition, from the raw trials, in one pass and constant memory. Times (which
-// no two runs share) only if asked for.
+// Every quantity of every estimator in every condition, from the raw trials, in one pass and constant memory.
+// Times (which no two runs share) only if asked for.
 Summary Summarize(const ResultStore& store, bool with_times);
 
 }  // namespace rcme

@@ -54,8 +54,9 @@ std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string SummaryAsTable(const Summary& summary) {
-  const std::vector<std::string> shown = {"failure",            "no_candidate",        "kappa_flag", "nees_coverage",
-                                          "rotation_error_deg", "direction_error_deg", "time_ms"};
+  const std::vector<std::string> shown = {"failure",       "no_candidate",       "kappa_flag",
+                                          "nees_coverage", "rotation_error_deg", "direction_error_deg",
+                                          "time_ms"};
   std::vector<std::vector<std::string>> rows = {summary.factor_names};
   rows[0].insert(rows[0].end(), {"estimator", "n"});
   const auto is_present = [&](const std::string& quantity) {
@@ -72,11 +73,12 @@ std::string SummaryAsTable(const Summary& summary) {
     }
     if (std::count(shown.begin(), shown.end(), row.quantity) > 0) rows.back().push_back(Cell(row));
   }
-  std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
-                                 summary.num_trials_planned, FormatColumns(rows));
+  std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study,
+                                 summary.num_trials_done, summary.num_trials_planned, FormatColumns(rows));
   text +=
       "Rates with exact 95 % (Clopper-Pearson) intervals; means of successes +- Monte-Carlo standard error.\n"
-      "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own flag.\n"
+      "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
+      "flag.\n"
       "nees_coverage: truth inside the reported 95 % region. All quantities: --format csv or json.\n";
   return text;
 }
@@ -89,9 +91,10 @@ std::string SummaryAsCsv(const Summary& summary) {
     text += fmt::format("{},{},", CsvField(summary.study), row.condition);
     for (const std::string& level : row.levels) text += CsvField(level) + ",";
     const bool is_rate = row.kind == SummaryRow::Kind::kRate;
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity, is_rate ? "rate" : "mean",
-                        Number(row.value), is_rate ? Number(row.interval.lower) : "",
-                        is_rate ? Number(row.interval.upper) : "", is_rate ? "" : Number(row.standard_error), row.n);
+    text += fmt::format("{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity,
+                        is_rate ? "rate" : "mean", Number(row.value),
+                        is_rate ? Number(row.interval.lower) : "", is_rate ? Number(row.interval.upper) : "",
+                        is_rate ? "" : Number(row.standard_error), row.n);
   }
   return text;
 }

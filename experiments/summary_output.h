@@ -9,8 +9,8 @@ namespace rcme {
 // For people: one row per condition and estimator with the main quantities, intervals and n.
 std::string SummaryAsTable(const Summary& summary);
 
-// For programs: every quantity in a row of its own (tidy), the columns study, condition, one per factor, estimator,
-// quantity, kind, value, lower, upper, standard_error, n. Empty cells: unknown.
+// For programs: every quantity in a row of its own (tidy), the columns study, condition, one per factor,
+// estimator, quantity, kind, value, lower, upper, standard_error, n. Empty cells: unknown.
 std::string SummaryAsCsv(const Summary& summary);
 
 // The same rows as an object {study, trials_done, trials_planned, rows: [...]}; unknown numbers are null.

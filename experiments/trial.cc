@@ -19,7 +19,8 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
   record->rotation_error_deg = kDegPerRad * RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R);
   if (!truth.is_direction_known) return;
   record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  record->nees = NormalizedErrorSquared(LocalCoordinates(estimate.cam2_from_cam1, pose_true), estimate.pose_cov);
+  record->nees =
+      NormalizedErrorSquared(LocalCoordinates(estimate.cam2_from_cam1, pose_true), estimate.pose_cov);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
@@ -39,7 +40,8 @@ bool HasFailed(const TrialRecord& record, const FailureBounds& bounds) {
 }
 
 bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds) {
-  return record.status == MotionStatus::kOk && !std::isnan(record.rotation_error_deg) && !HasFailed(record, bounds);
+  return record.status == MotionStatus::kOk && !std::isnan(record.rotation_error_deg) &&
+         !HasFailed(record, bounds);
 }
 
 TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double seconds) {

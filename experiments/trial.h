@@ -8,7 +8,8 @@
 
 namespace rcme {
 
-// What is kept of one estimator's call in one trial. Unknown numbers are NaN: no motion, or no truth to compare with.
+// What is kept of one estimator's call in one trial. Unknown numbers are NaN: no motion, or no truth to
+// compare with.
 struct TrialRecord {
   std::uint32_t condition = 0, trial = 0, estimator = 0;
   MotionStatus status = MotionStatus::kInvalidInput;
@@ -16,7 +17,7 @@ struct TrialRecord {
   double direction_error_deg = 0.0;
   double nees = 0.0;  // of the refined motion, 5 degrees of freedom; NaN where the direction is not known
   int num_matches = 0;
-  int num_inliers = 0;           // final inliers
+  int num_inliers = 0;            // final inliers
   double inlier_precision = 0.0;  // true ones among the final inliers
   double inlier_recall = 0.0;     // final inliers among the true ones
   int num_support = 0;            // n_j of the winner
@@ -42,8 +43,8 @@ struct TrialResult {
   std::vector<TrialRecord> records;
 };
 
-// One trial, a pure function of (study, condition, trial): every estimator on the same problem, with the same stream of
-// samples.
+// One trial, a pure function of (study, condition, trial): every estimator on the same problem, with the same
+// stream of samples.
 TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
 
 }  // namespace rcme

@@ -4,8 +4,8 @@
 
 namespace rcme {
 
-// The fields of a record with their column names, in one place: table, writing, reading and printing all visit them.
-// `Record` is TrialRecord or const TrialRecord.
+// The fields of a record with their column names, in one place: table, writing, reading and printing all
+// visit them. `Record` is TrialRecord or const TrialRecord.
 template <typename Record, typename Visitor>
 void VisitFields(Record& record, Visitor&& visit) {
   visit("condition", record.condition);

@@ -5,9 +5,9 @@
 
 namespace rcme {
 
-// Normalised estimation error squared e' Sigma^-1 e (NEES): chi-square with as many degrees of freedom as e has
-// coordinates, if e ~ N(0, Sigma). Infinite if Sigma is not positive definite: such a covariance claims to know a
-// direction exactly.
+// Normalised estimation error squared e' Sigma^-1 e (NEES): chi-square with as many degrees of freedom as e
+// has coordinates, if e ~ N(0, Sigma). Infinite if Sigma is not positive definite: such a covariance claims
+// to know a direction exactly.
 template <typename Vector, typename Matrix>
 double NormalizedErrorSquared(const Vector& error, const Matrix& covariance) {
   const Eigen::LLT<Matrix> llt(covariance);

@@ -9,13 +9,15 @@
 namespace rcme {
 namespace {
 
-// Wide enough to leave the Gaussian tails in: a fit to the matches within the 95 % quantile would report 0.76 of its true
-// variance, within 99.9 % it reports 0.99.
+// Wide enough to leave the Gaussian tails in: a fit to the matches within the 95 % quantile would report 0.76
+// of its true variance, within 99.9 % it reports 0.99.
 constexpr double kFitSignificance = 0.001;
 constexpr double kMaxRelativeLeverage = 10.0;
 
-// The triangulated point lies behind a camera, and its parallax is too large to be noise around a point at infinity.
-bool IsClearlyBehindACamera(const MotionProblem& problem, const RelativePose& pose, const Correspondence& match) {
+// The triangulated point lies behind a camera, and its parallax is too large to be noise around a point at
+// infinity.
+bool IsClearlyBehindACamera(const MotionProblem& problem, const RelativePose& pose,
+                            const Correspondence& match) {
   const Eigen::Vector3d ray1 = problem.camera1.Ray(match.x1_px);
   const Eigen::Vector3d ray2 = problem.camera2.Ray(match.x2_px);
   if (IsInFrontOfBothCameras(pose, ray1, ray2)) return false;
@@ -27,8 +29,8 @@ bool IsClearlyBehindACamera(const MotionProblem& problem, const RelativePose& po
 
 }  // namespace
 
-std::vector<int> FindAgreeing(const MotionProblem& problem, const RefinedMotion& motion, const std::vector<int>& fitted,
-                              double significance_level) {
+std::vector<int> FindAgreeing(const MotionProblem& problem, const RefinedMotion& motion,
+                              const std::vector<int>& fitted, double significance_level) {
   const auto model =
       UncertainFundamental::From(motion.cam2_from_cam1, motion.pose_cov, problem.camera1, problem.camera2);
   if (!model) return {};
@@ -38,7 +40,8 @@ std::vector<int> FindAgreeing(const MotionProblem& problem, const RefinedMotion&
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
     const MatchResidual residual = EvaluateResidual(*model, match);
     const bool is_fitted = std::binary_search(fitted.begin(), fitted.end(), i);
-    const double variance = problem.sigma_px * problem.sigma_px + (is_fitted ? -1.0 : 1.0) * residual.motion_variance;
+    const double variance =
+        problem.sigma_px * problem.sigma_px + (is_fitted ? -1.0 : 1.0) * residual.motion_variance;
     if (residual.squared_distance > threshold * variance) continue;
     if (!IsClearlyBehindACamera(problem, motion.cam2_from_cam1, match)) agreeing.push_back(i);
   }
@@ -51,8 +54,8 @@ std::vector<int> SelectFitSet(const MotionProblem& problem, const RefinedMotion&
       UncertainFundamental::From(motion.cam2_from_cam1, motion.pose_cov, problem.camera1, problem.camera2);
   std::vector<int> selected = FindAgreeing(problem, motion, fitted, kFitSignificance);
   if (!model || fitted.empty()) return selected;
-  const double max_motion_variance = kMaxRelativeLeverage * 5.0 / static_cast<double>(fitted.size()) *
-                                     problem.sigma_px * problem.sigma_px;
+  const double max_motion_variance =
+      kMaxRelativeLeverage * 5.0 / static_cast<double>(fitted.size()) * problem.sigma_px * problem.sigma_px;
   std::erase_if(selected, [&](int i) {
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
     return EvaluateResidual(*model, match).motion_variance > max_motion_variance;

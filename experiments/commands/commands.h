@@ -1,5 +1,5 @@
-// The commands of the program `rcme`. Each adds its subcommand to the parser; its callback does the work and throws
-// InputError for bad input.
+// The commands of the program `rcme`. Each adds its subcommand to the parser; its callback does the work and
+// throws InputError for bad input.
 #pragma once
 
 #include <CLI/CLI.hpp>

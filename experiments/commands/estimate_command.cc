@@ -30,7 +30,8 @@ std::vector<double> RowMajor(const Eigen::MatrixXd& matrix) {
   return numbers;
 }
 
-nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord& record, const std::string& estimator) {
+nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord& record,
+                              const std::string& estimator) {
   nlohmann::ordered_json json = {{"status", StatusName(estimate.status)},
                                  {"message", estimate.message},
                                  {"estimator", estimator},
@@ -56,14 +57,15 @@ void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, c
   const RelativePose& pose = estimate.cam2_from_cam1;
   fmt::print("cam2_from_cam1 (X2 = R X1 + t, |t| = 1)\n");
   for (int row = 0; row < 3; ++row) {
-    fmt::print("  R {:>12.8f} {:>12.8f} {:>12.8f}   t {:>12.8f}\n", pose.R(row, 0), pose.R(row, 1), pose.R(row, 2),
-               pose.t(row));
+    fmt::print("  R {:>12.8f} {:>12.8f} {:>12.8f}   t {:>12.8f}\n", pose.R(row, 0), pose.R(row, 1),
+               pose.R(row, 2), pose.t(row));
   }
   const Vector5d sd_deg = 180.0 / std::numbers::pi * estimate.pose_cov.diagonal().cwiseSqrt();
-  fmt::print("standard deviations (deg): rotation {:.4f} {:.4f} {:.4f}, direction {:.4f} {:.4f}\n", sd_deg(0), sd_deg(1),
-             sd_deg(2), sd_deg(3), sd_deg(4));
+  fmt::print("standard deviations (deg): rotation {:.4f} {:.4f} {:.4f}, direction {:.4f} {:.4f}\n", sd_deg(0),
+             sd_deg(1), sd_deg(2), sd_deg(3), sd_deg(4));
   fmt::print("inliers: {} of {} matches\n", record.num_inliers, record.num_matches);
-  if (estimate.failed_by_kappa) fmt::print("the paper's failure flag is set: refinement lost half of the inliers\n");
+  if (estimate.failed_by_kappa)
+    fmt::print("the paper's failure flag is set: refinement lost half of the inliers\n");
   if (!std::isnan(record.rotation_error_deg)) {
     fmt::print("against the file's true motion: rotation error {:.4f} deg, direction error {:.4f} deg\n",
                record.rotation_error_deg, record.direction_error_deg);
@@ -82,7 +84,8 @@ void RunEstimate(const EstimateArguments& arguments) {
   TrialData data;
   data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments.sigma_px};
   data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
-  RandomStream rng = StreamFor({static_cast<std::uint64_t>(arguments.seed), 0, 0, 0}, StreamPurpose::kSampling);
+  RandomStream rng =
+      StreamFor({static_cast<std::uint64_t>(arguments.seed), 0, 0, 0}, StreamPurpose::kSampling);
   const MotionEstimate estimate = estimator->Estimate(data.problem, rng);
   const TrialRecord record = Score(estimate, data, 0.0);
   if (arguments.as_json) {
@@ -90,7 +93,8 @@ void RunEstimate(const EstimateArguments& arguments) {
   } else {
     PrintForPeople(estimate, record, arguments.estimator);
   }
-  // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its answer.
+  // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
+  // answer.
   const bool is_bad_input = estimate.status == MotionStatus::kInvalidInput ||
                             estimate.status == MotionStatus::kTooFewMatches ||
                             estimate.status == MotionStatus::kDegenerateMatches;
@@ -100,13 +104,16 @@ void RunEstimate(const EstimateArguments& arguments) {
 }  // namespace
 
 void AddEstimateCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("estimate", "Estimate the motion between two images from a file of matches");
+  CLI::App* command =
+      app.add_subcommand("estimate", "Estimate the motion between two images from a file of matches");
   auto arguments = std::make_shared<EstimateArguments>();
   command
       ->add_option("matches", arguments->matches,
-                   "match file, plain or gzip: header '# size1: w h', '# K1_fx_fy_cx_cy: ...' (and 2), rows x1,y1,x2,y2")
+                   "match file, plain or gzip: header '# size1: w h', '# K1_fx_fy_cx_cy: ...' (and 2), rows "
+                   "x1,y1,x2,y2")
       ->required();
-  command->add_option("--estimator", arguments->estimator, "see `rcme list estimators`")->capture_default_str();
+  command->add_option("--estimator", arguments->estimator, "see `rcme list estimators`")
+      ->capture_default_str();
   command->add_option("--sigma", arguments->sigma_px, "noise standard deviation per coordinate, px")
       ->check(CLI::Range(1e-9, 1000.0))
       ->capture_default_str();
@@ -114,7 +121,8 @@ void AddEstimateCommand(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
   command->add_option("--set", arguments->overrides, "option=value, repeatable; see `rcme list options`");
-  command->add_flag("--json", arguments->as_json, "one JSON object; R row-major (9), pose_cov row-major (25), rad^2");
+  command->add_flag("--json", arguments->as_json,
+                    "one JSON object; R row-major (9), pose_cov row-major (25), rad^2");
   command->callback([arguments] { RunEstimate(*arguments); });
 }
 

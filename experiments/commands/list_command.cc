@@ -26,7 +26,8 @@ Rows ListEstimators() {
 Rows ListOptions() {
   Rows rows = {{"option", "default", "unit", "allowed", "what it is"}};
   RansacOptions defaults;
-  for (const Parameter& p : Parameters(defaults)) rows.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
+  for (const Parameter& p : Parameters(defaults))
+    rows.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
   return rows;
 }
 

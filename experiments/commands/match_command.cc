@@ -9,14 +9,17 @@
 namespace rcme {
 
 void AddMatchCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("match", "Match two undistorted images (SIFT) into a file for `rcme estimate`");
+  CLI::App* command =
+      app.add_subcommand("match", "Match two undistorted images (SIFT) into a file for `rcme estimate`");
   auto arguments = std::make_shared<MatchImagesOptions>();
   auto out = std::make_shared<std::string>();
   command->add_option("image1", arguments->image1, "first image")->required();
   command->add_option("image2", arguments->image2, "second image")->required();
   command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, px")->expected(4)->required();
-  command->add_option("--K2", arguments->K2, "fx fy cx cy of the second camera; default: as the first")->expected(4);
-  command->add_option("--ratio", arguments->max_ratio, "keep a match if nearest / second nearest is below this")
+  command->add_option("--K2", arguments->K2, "fx fy cx cy of the second camera; default: as the first")
+      ->expected(4);
+  command
+      ->add_option("--ratio", arguments->max_ratio, "keep a match if nearest / second nearest is below this")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   command->add_option("-o,--out", *out, "match file to write")->required();

@@ -32,19 +32,23 @@ std::string PoseText(const RelativePose& pose) {
   return fmt::format("  R =\n{}  t =\n{}", MatrixText(pose.R), MatrixText(pose.t.transpose()));
 }
 
-void PrintData(const StudyPlan& plan, const Condition& condition, std::uint32_t trial, const TrialData& data) {
-  fmt::print("Study {}, seed {}, condition {}, trial {} ({})\n", plan.study.name, plan.study.seed, condition.index,
-             trial, data.origin);
+void PrintData(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
+               const TrialData& data) {
+  fmt::print("Study {}, seed {}, condition {}, trial {} ({})\n", plan.study.name, plan.study.seed,
+             condition.index, trial, data.origin);
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {
     fmt::print("  {} = {}\n", plan.factor_names[f], condition.levels[f]);
   }
   fmt::print("  {} matches, sigma {} px\n", data.problem.matches.size(), data.problem.sigma_px);
-  if (data.truth.cam2_from_cam1_true) fmt::print("True motion\n{}", PoseText(*data.truth.cam2_from_cam1_true));
+  if (data.truth.cam2_from_cam1_true)
+    fmt::print("True motion\n{}", PoseText(*data.truth.cam2_from_cam1_true));
 }
 
 void PrintEstimate(const std::string& label, const MotionEstimate& estimate, const TrialRecord& record,
                    const FailureBounds& bounds) {
-  const char* verdict = HasFailed(record, bounds) ? "failed" : HasSucceeded(record, bounds) ? "success" : "no motion scored";
+  const char* verdict = HasFailed(record, bounds)      ? "failed"
+                        : HasSucceeded(record, bounds) ? "success"
+                                                       : "no motion scored";
   fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status), verdict, estimate.message);
   if (estimate.status == MotionStatus::kOk) {
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
@@ -73,8 +77,8 @@ void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t
   const ResultStore store = ResultStore::OpenForReading(run);
   const StudyPlan plan = MakePlan(ParseStudy(store.StudyYaml(), "study in " + run));
   if (condition_index >= plan.conditions.size()) {
-    throw InputError(fmt::format("--condition: {} is not allowed; the study has conditions 0 to {}", condition_index,
-                                 plan.conditions.size() - 1));
+    throw InputError(fmt::format("--condition: {} is not allowed; the study has conditions 0 to {}",
+                                 condition_index, plan.conditions.size() - 1));
   }
   const Condition& condition = plan.conditions[condition_index];
   const TrialResult result = RunTrial(plan, condition, trial);
@@ -83,23 +87,25 @@ void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t
   for (size_t e = 0; e < result.records.size(); ++e) {
     PrintEstimate(plan.study.estimators[e].label, result.estimates[e], result.records[e], plan.study.failure);
     const bool is_stored = e < stored.size();
-    fmt::print("  the record in the file:   {}\n", !is_stored                                ? "not run yet"
+    fmt::print("  the record in the file:   {}\n", !is_stored                               ? "not run yet"
                                                    : AreEqual(stored[e], result.records[e]) ? "the same"
-                                                                                             : "DIFFERENT");
+                                                                                            : "DIFFERENT");
   }
 }
 
 }  // namespace
 
 void AddReplayCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("replay", "Run one trial of a result file again and print it in full");
+  CLI::App* command =
+      app.add_subcommand("replay", "Run one trial of a result file again and print it in full");
   struct Arguments {
     std::string run;
     std::uint32_t condition = 0, trial = 0;
   };
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
-  command->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
+  command
+      ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
       ->required();
   command->add_option("--trial", arguments->trial, "trial, from 0")->required();
   command->callback([arguments] { Replay(arguments->run, arguments->condition, arguments->trial); });

@@ -36,11 +36,12 @@ Study StudyFrom(const RunArguments& arguments) {
 void Run(const RunArguments& arguments) {
   const StudyPlan plan = MakePlan(StudyFrom(arguments));
   ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
-  fmt::print(stderr, "{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name, plan.conditions.size(),
-             plan.NumTrials(), plan.estimators.size(), arguments.out);
+  fmt::print(stderr, "{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name,
+             plan.conditions.size(), plan.NumTrials(), plan.estimators.size(), arguments.out);
   const RunReport report = RunStudy(plan, arguments.threads, &store);
-  fmt::print(stderr, "done: {} trials ({} were there already) in {}; next: rcme summarize {}\n", report.num_trials,
-             report.num_trials - report.num_run_now, DurationInWords(report.seconds), arguments.out);
+  fmt::print(stderr, "done: {} trials ({} were there already) in {}; next: rcme summarize {}\n",
+             report.num_trials, report.num_trials - report.num_run_now, DurationInWords(report.seconds),
+             arguments.out);
 }
 
 }  // namespace
@@ -53,14 +54,17 @@ void AddRunCommand(CLI::App& app) {
       ->add_option("-o,--out", arguments->out,
                    "result file (SQLite); a run that was cut off is resumed, another study is refused")
       ->required();
-  command->add_option("--set", arguments->overrides,
-                      "key=value, repeatable: a data key (sigma_px=1), an option of all estimators (mu=-2) or of one "
-                      "(rcme.mu=-2), or a failure bound");
+  command->add_option(
+      "--set", arguments->overrides,
+      "key=value, repeatable: a data key (sigma_px=1), an option of all estimators (mu=-2) or of one "
+      "(rcme.mu=-2), or a failure bound");
   command->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{2'000'000'000}));
   command->add_option("--seed", arguments->seed, "seed of all random streams")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
-  command->add_option("--threads", arguments->threads, "threads; 0: one per core. The results do not depend on it")
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The results do not depend on it")
       ->check(CLI::Range(0, 1024));
   command->callback([arguments] { Run(*arguments); });
 }

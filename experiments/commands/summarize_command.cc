@@ -9,8 +9,8 @@
 namespace rcme {
 
 void AddSummarizeCommand(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("summarize", "Rates with exact 95 % intervals and means with standard errors, from a result file");
+  CLI::App* command = app.add_subcommand(
+      "summarize", "Rates with exact 95 % intervals and means with standard errors, from a result file");
   struct Arguments {
     std::string run, format = "table", out;
     bool with_times = false;

@@ -22,7 +22,8 @@ constexpr size_t kMaxBytes = size_t{1} << 30;  // of text, unpacked
 // The whole file as text, unpacked if it is gzip.
 std::string ReadText(const std::string& path) {
   if (!std::filesystem::exists(path)) throw InputError(fmt::format("{}: no such file", path));
-  if (std::filesystem::is_directory(path)) throw InputError(fmt::format("{}: is a folder, not a match file", path));
+  if (std::filesystem::is_directory(path))
+    throw InputError(fmt::format("{}: is a folder, not a match file", path));
   std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose_r);
   if (!file) throw InputError(fmt::format("{}: cannot be read", path));
   std::string text;
@@ -30,7 +31,8 @@ std::string ReadText(const std::string& path) {
   int num_read = 0;
   while ((num_read = gzread(file.get(), buffer.data(), buffer.size())) > 0) {
     text.append(buffer.data(), static_cast<size_t>(num_read));
-    if (text.size() > kMaxBytes) throw InputError(fmt::format("{}: more than {} bytes of text", path, kMaxBytes));
+    if (text.size() > kMaxBytes)
+      throw InputError(fmt::format("{}: more than {} bytes of text", path, kMaxBytes));
   }
   int error = Z_OK;
   const char* reason = gzerror(file.get(), &error);
@@ -83,7 +85,8 @@ class Header {
       if (!ParseReal(word, &number)) Fail(key, fmt::format("'{}' is not a finite number", word));
       numbers.push_back(number);
     }
-    if (numbers.size() != count) Fail(key, fmt::format("has {} numbers; {} are needed", numbers.size(), count));
+    if (numbers.size() != count)
+      Fail(key, fmt::format("has {} numbers; {} are needed", numbers.size(), count));
     return numbers;
   }
 
@@ -128,7 +131,8 @@ std::optional<RelativePose> TruePoseFrom(const Header& header) {
 Correspondence MatchFrom(std::string_view line, const std::string& path, int line_number) {
   const std::vector<std::string> fields = Split(line, ',');
   if (fields.size() < 4) {
-    throw InputError(fmt::format("{}:{}: {} columns; x1,y1,x2,y2 are needed", path, line_number, fields.size()));
+    throw InputError(
+        fmt::format("{}:{}: {} columns; x1,y1,x2,y2 are needed", path, line_number, fields.size()));
   }
   std::array<double, 4> x{};
   constexpr std::array<const char*, 4> kNames = {"x1", "y1", "x2", "y2"};
@@ -171,7 +175,8 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
   int index = 1;
   for (const Camera& camera : {file.camera1, file.camera2}) {
     text += fmt::format("# size{}: {} {}\n", index, camera.width, camera.height);
-    text += fmt::format("# K{}_fx_fy_cx_cy: {} {} {} {}\n", index++, camera.fx, camera.fy, camera.cx, camera.cy);
+    text +=
+        fmt::format("# K{}_fx_fy_cx_cy: {} {} {} {}\n", index++, camera.fx, camera.fy, camera.cx, camera.cy);
   }
   if (const std::optional<RelativePose>& pose = file.cam2_from_cam1_true) {
     const Eigen::Matrix3d R_rows = pose->R.transpose();

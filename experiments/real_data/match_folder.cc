@@ -19,14 +19,17 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   if (!fs::is_directory(folder)) {
-    throw InputError(fmt::format("folder: '{}' is not a folder; give one with *.csv or *.csv.gz match files", folder));
+    throw InputError(
+        fmt::format("folder: '{}' is not a folder; give one with *.csv or *.csv.gz match files", folder));
   }
   std::vector<fs::path> paths;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (name != "INDEX.csv" && (name.ends_with(".csv") || name.ends_with(".csv.gz"))) paths.push_back(entry.path());
+    if (name != "INDEX.csv" && (name.ends_with(".csv") || name.ends_with(".csv.gz")))
+      paths.push_back(entry.path());
   }
-  if (paths.empty()) throw InputError(fmt::format("folder: '{}' holds no *.csv or *.csv.gz match files", folder));
+  if (paths.empty())
+    throw InputError(fmt::format("folder: '{}' holds no *.csv or *.csv.gz match files", folder));
   std::sort(paths.begin(), paths.end());
   return paths;
 }

@@ -13,7 +13,8 @@ struct MatchImagesOptions {
   double max_ratio = 0.8;      // Lowe's ratio test
 };
 
-// Putative SIFT matches of two images, outliers kept. Throws InputError if an image cannot be read or a K is singular.
+// Putative SIFT matches of two images, outliers kept. Throws InputError if an image cannot be read or a K is
+// singular.
 MatchFile MatchImages(const MatchImagesOptions& options);
 
 }  // namespace rcme

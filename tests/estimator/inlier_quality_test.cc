@@ -32,7 +32,8 @@ TEST(InlierScore, WelfordAgreesWithTwoPasses) {
     const InlierScore score = ScoreOf(entropies);
     EXPECT_EQ(score.num_inliers, 500);
     EXPECT_NEAR(score.mean_entropy, static_cast<double>(mean), 1e-13 * (1.0 + std::abs(offset)));
-    EXPECT_NEAR(score.sum_squares, static_cast<double>(sum_squares), 1e-11 * static_cast<double>(sum_squares));
+    EXPECT_NEAR(score.sum_squares, static_cast<double>(sum_squares),
+                1e-11 * static_cast<double>(sum_squares));
   }
 }
 
@@ -62,8 +63,9 @@ TEST(ZStatistic, OneInlierOrNoSpreadIsTheLimitOfSmallSpread) {
 }
 
 TEST(ZStatistic, IsStandardNormalForIndependentEntropies) {
-  // Only the formula's scale is under test: 20 000 sets of 100, variance of Z within 5 sigma of 99 / 97 (Student).
-  // Dividing by s^2 / sqrt(n) instead, as boost::math's z-test did, gives s-fold values: variance 4.
+  // Only the formula's scale is under test: 20 000 sets of 100, variance of Z within 5 sigma of 99 / 97
+  // (Student). Dividing by s^2 / sqrt(n) instead, as boost::math's z-test did, gives s-fold values:
+  // variance 4.
   RandomStream rng({.seed = 1, .purpose = 121});
   double sum_squares = 0.0;
   constexpr int kSets = 20'000;

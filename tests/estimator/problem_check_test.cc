@@ -106,7 +106,8 @@ TEST(RefuseUnsolvable, PointsOfOneImageOnALine) {
       for (Correspondence& match : problem.matches) {
         Eigen::Vector2d& point = in_first ? match.x1_px : match.x2_px;
         // On the line, with the noise of the problem.
-        point = Eigen::Vector2d(300.0, 200.0) + rng.Uniform(-150.0, 150.0) * along + 0.5 * rng.Normal() * normal;
+        point =
+            Eigen::Vector2d(300.0, 200.0) + rng.Uniform(-150.0, 150.0) * along + 0.5 * rng.Normal() * normal;
       }
       ExpectRefusal(problem, MotionStatus::kDegenerateMatches, in_first ? "image 1" : "image 2");
     }

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -139,8 +139,8 @@ TEST(EverySamplePointFits, FailsIfOnePointIsBeyondTheThreshold) {
   random.problem.sigma_px = 0.5;
   Hypothesis hypothesis;
   hypothesis.sample = kAllEight;
-  const KnownPoseTest test(FundamentalFromEssential(EssentialFromPose(random.pose_true), random.problem.camera1,
-                                                    random.problem.camera2),
+  const KnownPoseTest test(FundamentalFromEssential(EssentialFromPose(random.pose_true),
+                                                    random.problem.camera1, random.problem.camera2),
                            random.problem.sigma_px);
   EXPECT_TRUE(EverySamplePointFits(random.problem, hypothesis, test, 3.84));
   random.problem.matches[8].x2_px += Eigen::Vector2d(50.0, 50.0);
@@ -155,9 +155,11 @@ TEST(JointSampleStatistic, DISABLED_Measure) {
   for (const double sigma : {0.5, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     const std::vector<double> statistics = Statistics(sigma, 20'000, 184);
     std::cout << "sigma " << sigma << ": " << Coverage(statistics, 1.0) << "  KS p "
-              << TestKolmogorovSmirnov(statistics, [](double x) { return ChiSquareCdf(3, x); }).p_value << "\n";
+              << TestKolmogorovSmirnov(statistics, [](double x) { return ChiSquareCdf(3, x); }).p_value
+              << "\n";
   }
-  std::cout << "clean " << PassRate(false, 20'000, 185) << "\noutlier " << PassRate(true, 20'000, 186) << "\n";
+  std::cout << "clean " << PassRate(false, 20'000, 185) << "\noutlier " << PassRate(true, 20'000, 186)
+            << "\n";
 }
 
 }  // namespace

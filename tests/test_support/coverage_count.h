@@ -8,7 +8,8 @@
 namespace rcme {
 
 // Counts how often something true happens and judges a nominal probability by the exact interval. A test that
-// asserts Admits(nominal) at the default confidence raises a false alarm at a rate of at most 1e-4 over seeds.
+// asserts Admits(nominal) at the default confidence raises a false alarm at a rate of at most 1e-4 over
+// seeds.
 class CoverageCount {
  public:
   void Add(bool hit) {

@@ -7,9 +7,9 @@
 
 namespace rcme {
 
-// df/dx (m x n) of a function R^n -> R^m, f(const Eigen::VectorXd&) -> Eigen column vector: central differences
-// with steps h and h / 2, extrapolated (Richardson), error O(h^4) + O(eps / h). `steps` holds one h per
-// coordinate, in its own units.
+// df/dx (m x n) of a function R^n -> R^m, f(const Eigen::VectorXd&) -> Eigen column vector: central
+// differences with steps h and h / 2, extrapolated (Richardson), error O(h^4) + O(eps / h). `steps` holds one
+// h per coordinate, in its own units.
 template <typename Function>
 Eigen::MatrixXd NumericJacobian(const Function& f, const Eigen::VectorXd& x, const Eigen::VectorXd& steps) {
   const auto slope = [&](Eigen::Index k, double h) -> Eigen::VectorXd {
@@ -36,8 +36,8 @@ Eigen::MatrixXd NumericJacobian(const Function& f, const Eigen::VectorXd& x, dou
 
 // Whether every entry agrees to `tolerance` times the largest entry of the numeric Jacobian. A zero, an
 // infinite or a NaN Jacobian on either side fails. A failure prints both.
-inline testing::AssertionResult JacobiansAgree(const Eigen::MatrixXd& analytic, const Eigen::MatrixXd& numeric,
-                                               double tolerance) {
+inline testing::AssertionResult JacobiansAgree(const Eigen::MatrixXd& analytic,
+                                               const Eigen::MatrixXd& numeric, double tolerance) {
   const auto fail = [&](const char* why) {
     return testing::AssertionFailure() << why << "\nanalytic:\n" << analytic << "\nnumeric:\n" << numeric;
   };

@@ -5,7 +5,8 @@
 #include "experiments/data_source.h"
 
 int main() {
-  const rcme::DataSources made = rcme::MakeDataSources({{"scene", "uniform_volume"}, {"outlier_ratio", "0.1"}});
+  const rcme::DataSources made =
+      rcme::MakeDataSources({{"scene", "uniform_volume"}, {"outlier_ratio", "0.1"}});
   const rcme::StreamName trial{1, 0, 0, 0};
   const rcme::TrialData data = made.sources.at(0).second->Make(trial);
   rcme::RandomStream rng = rcme::StreamFor(trial, rcme::StreamPurpose::kSampling);

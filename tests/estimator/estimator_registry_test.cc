@@ -1,0 +1,140 @@
+// The contract of every estimator in the registry: a new one is tested by its line there.
+#include "estimator/estimator_registry.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "parameters/input_error.h"
+#include "simulator/observe.h"
+#include "simulator/scenes/uniform_volume.h"
+
+namespace rcme {
+namespace {
+
+struct Pair {
+  MotionProblem problem;
+  RelativePose pose_true;
+};
+
+Pair MakePair(int num_matches, double sigma_px, double outlier_ratio, std::uint32_t trial) {
+  UniformVolume model;
+  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
+  RandomStream scene_rng({1, 0, trial, 1}), noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
+  const Scene scene = model.Generate(scene_rng);
+  return {{Observe(scene, {sigma_px}, {outlier_ratio}, noise_rng, outlier_rng).matches, scene.camera1,
+           scene.camera2, sigma_px},
+          scene.cam2_from_cam1_true};
+}
+
+class EstimatorContract : public testing::TestWithParam<std::tuple<EstimatorEntry, Reading>> {
+ protected:
+  void SetUp() override {
+    RansacOptions options;
+    options.reading = std::get<Reading>(GetParam());
+    estimator_ = std::get<EstimatorEntry>(GetParam()).make(options);
+  }
+  MotionEstimate Estimate(const MotionProblem& problem, std::uint32_t trial = 0) const {
+    RandomStream rng({1, 0, trial, 4});
+    return estimator_->Estimate(problem, rng);
+  }
+  std::unique_ptr<MotionEstimator> estimator_;
+};
+
+TEST_P(EstimatorContract, FindsTheMotionOfCleanMatches) {
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    const Pair pair = MakePair(100, 0.01, 0.0, trial);
+    const MotionEstimate estimate = Estimate(pair.problem);
+    ASSERT_EQ(estimate.status, MotionStatus::kOk) << estimate.message;
+    EXPECT_LT(RotationAngleBetween(estimate.cam2_from_cam1.R, pair.pose_true.R), 0.002);
+    EXPECT_LT(AngleBetween(estimate.cam2_from_cam1.t, pair.pose_true.t), 0.02);
+    EXPECT_NEAR(estimate.cam2_from_cam1.t.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(estimate.cam2_from_cam1.R.determinant(), 1.0, 1e-9);
+    EXPECT_GT(estimate.pose_cov.determinant(), 0.0);
+    EXPECT_TRUE(std::is_sorted(estimate.inliers.begin(), estimate.inliers.end()));
+    EXPECT_GT(estimate.inliers.size(), 80u);
+  }
+}
+
+TEST_P(EstimatorContract, IsAPureFunctionOfProblemAndStream) {
+  const Pair pair = MakePair(200, 0.5, 0.2, 0);
+  const MotionEstimate a = Estimate(pair.problem), b = Estimate(pair.problem);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.cam2_from_cam1.R, b.cam2_from_cam1.R);
+  EXPECT_EQ(a.cam2_from_cam1.t, b.cam2_from_cam1.t);
+  EXPECT_EQ(a.pose_cov, b.pose_cov);
+  EXPECT_EQ(a.inliers, b.inliers);
+}
+
+TEST_P(EstimatorContract, CountsAddUp) {
+  const LoopCounts c = Estimate(MakePair(100, 0.5, 0.3, 0).problem).counts;
+  EXPECT_EQ(c.num_hypotheses, 200);
+  EXPECT_EQ(c.num_degenerate_samples + c.num_inconsistent_samples + c.num_poor_inlier_sets +
+                c.num_too_small_inlier_sets + c.num_candidates,
+            c.num_hypotheses);
+}
+
+// What no estimator may crash, hang or throw at. Every call ends in a named status, and only kOk has inliers.
+TEST_P(EstimatorContract, SurvivesHostileMatches) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Pair good = MakePair(60, 0.5, 0.0, 0);
+  const auto with = [&](auto change) {
+    MotionProblem problem = good.problem;
+    change(problem);
+    return Estimate(problem).status;
+  };
+  EXPECT_EQ(with([](auto& p) { p.matches.clear(); }), MotionStatus::kTooFewMatches);
+  EXPECT_EQ(with([](auto& p) { p.matches.resize(7); }), MotionStatus::kTooFewMatches);
+  EXPECT_EQ(with([](auto& p) { p.matches.assign(60, p.matches[0]); }), MotionStatus::kTooFewMatches);
+  EXPECT_EQ(with([](auto& p) { p.matches[3].x1_px.x() = kNaN; }), MotionStatus::kInvalidInput);
+  EXPECT_EQ(with([](auto& p) { p.matches[3].x2_px.y() = kInfinity; }), MotionStatus::kInvalidInput);
+  EXPECT_EQ(with([](auto& p) { p.matches[3].x2_px.y() = 1e300; }), MotionStatus::kInvalidInput);
+  EXPECT_EQ(with([](auto& p) { p.camera1.fx = 0.0; }), MotionStatus::kInvalidInput);
+  EXPECT_EQ(with([](auto& p) { p.sigma_px = 0.0; }), MotionStatus::kInvalidInput);
+  EXPECT_EQ(with([](auto& p) { p.sigma_px = kNaN; }), MotionStatus::kInvalidInput);
+  EXPECT_EQ(with([](auto& p) {
+              for (auto& m : p.matches) m.x1_px.y() = 2.0 * m.x1_px.x() + 3.0;
+            }),
+            MotionStatus::kDegenerateMatches);
+  // The same image twice: no translation. Any named status will do, and no number may be bad.
+  MotionProblem still = good.problem;
+  for (Correspondence& match : still.matches) match.x2_px = match.x1_px;
+  const MotionEstimate estimate = Estimate(still);
+  EXPECT_TRUE(estimate.cam2_from_cam1.R.allFinite());
+  // Eight matches, the least there may be.
+  MotionProblem eight = good.problem;
+  eight.matches.resize(8);
+  EXPECT_TRUE(Estimate(eight).pose_cov.allFinite());
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, EstimatorContract,
+                         testing::Combine(testing::ValuesIn(EstimatorRegistry()),
+                                          testing::Values(Reading::kAsPrinted, Reading::kRankAware)),
+                         [](const auto& c) {
+                           const bool is_printed = std::get<Reading>(c.param) == Reading::kAsPrinted;
+                           return std::get<EstimatorEntry>(c.param).name +
+                                  (is_printed ? "_as_printed" : "_rank_aware");
+                         });
+
+TEST(FindEstimator, AnUnknownNameListsTheKnownOnes) {
+  try {
+    FindEstimator("magsac");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("standard, prcme, rcme"));
+  }
+}
+
+TEST(RansacOptions, ContradictionsAreErrors) {
+  RansacOptions options;
+  options.selection = Selection::kPredictiveLikelihood;
+  EXPECT_THROW(FindEstimator("rcme").make(options), InputError);
+  options.reading = Reading::kRankAware;
+  EXPECT_NO_THROW(FindEstimator("rcme").make(options));
+}
+
+}  // namespace
+}  // namespace rcme

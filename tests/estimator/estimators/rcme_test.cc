@@ -1,0 +1,129 @@
+// What the parts of RCME do when each is turned on or off: the same loop, the same samples.
+#include "estimator/estimators/rcme.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+
+#include "estimator/estimators/standard.h"
+#include "simulator/observe.h"
+#include "simulator/scenes/uniform_volume.h"
+
+namespace rcme {
+namespace {
+
+MotionProblem MakeProblem(double outlier_ratio, std::uint32_t trial, RelativePose* pose_true = nullptr) {
+  const UniformVolume model;
+  RandomStream scene_rng({1, 0, trial, 1}), noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
+  const Scene scene = model.Generate(scene_rng);
+  if (pose_true) *pose_true = scene.cam2_from_cam1_true;
+  return {Observe(scene, {0.5}, {outlier_ratio}, noise_rng, outlier_rng).matches, scene.camera1,
+          scene.camera2, 0.5};
+}
+
+MotionEstimate Run(const MotionEstimator& estimator, const MotionProblem& problem, std::uint32_t trial = 0) {
+  RandomStream rng({1, 0, trial, 4});
+  return estimator.Estimate(problem, rng);
+}
+
+constexpr auto kOn = RcmeEstimator::SampleTest::kOn;
+constexpr auto kOff = RcmeEstimator::SampleTest::kOff;
+
+TEST(Rcme, TheSampleTestIsTheOnlyDifferenceToPrcme) {
+  const MotionProblem problem = MakeProblem(0.2, 0);
+  const LoopCounts with = Run(RcmeEstimator({}, kOn), problem).counts;
+  const LoopCounts without = Run(RcmeEstimator({}, kOff), problem).counts;
+  EXPECT_EQ(without.num_inconsistent_samples, 0);
+  EXPECT_GT(with.num_inconsistent_samples, 100);  // 83 % of samples hold an outlier
+  EXPECT_EQ(with.num_degenerate_samples, without.num_degenerate_samples);
+}
+
+TEST(Rcme, AStricterMuRefusesMoreAndTheLaxestNothing) {
+  const MotionProblem problem = MakeProblem(0.2, 0);
+  RansacOptions options;
+  options.mu = -1000.0;
+  EXPECT_EQ(Run(RcmeEstimator(options, kOff), problem).status, MotionStatus::kNoCandidate);
+  options.mu = 1000.0;
+  EXPECT_EQ(Run(RcmeEstimator(options, kOff), problem).counts.num_poor_inlier_sets, 0);
+}
+
+TEST(Rcme, TheLevelAlphaTestPassesNoMoreThanThePrintedOne) {
+  const MotionProblem problem = MakeProblem(0.2, 0);
+  RansacOptions options;
+  const int printed = Run(RcmeEstimator(options, kOff), problem).counts.num_poor_inlier_sets;
+  options.quality_test = QualityTest::kLevelAlpha;
+  const int level = Run(RcmeEstimator(options, kOff), problem).counts.num_poor_inlier_sets;
+  EXPECT_GE(level, printed);
+}
+
+TEST(Rcme, TheSizeConditionUsesTheGivenInlierRatio) {
+  const MotionProblem problem = MakeProblem(0.5, 0);
+  RansacOptions options;
+  options.mu = 1000.0;
+  options.lambda = 1.0;
+  options.inlier_ratio = 1.0;  // no model can have all matches as inliers
+  const MotionEstimate refused = Run(RcmeEstimator(options, kOff), problem);
+  EXPECT_EQ(refused.status, MotionStatus::kNoCandidate);
+  EXPECT_GT(refused.counts.num_too_small_inlier_sets, 0);
+  options.inlier_ratio = 0.0;
+  EXPECT_EQ(Run(RcmeEstimator(options, kOff), problem).counts.num_too_small_inlier_sets, 0);
+}
+
+TEST(Rcme, EarlyStopEndsAtTheFirstCandidateBelowTheThreshold) {
+  const MotionProblem problem = MakeProblem(0.0, 0);
+  RansacOptions options;
+  const MotionEstimate whole = Run(RcmeEstimator(options, kOn), problem);
+  EXPECT_EQ(whole.counts.num_hypotheses, options.num_iterations);
+  options.early_stop_entropy = 1000.0;
+  const MotionEstimate early = Run(RcmeEstimator(options, kOn), problem);
+  EXPECT_LT(early.counts.num_hypotheses, options.num_iterations);
+  EXPECT_EQ(early.counts.num_candidates, 1);
+}
+
+TEST(Rcme, SelectionTakesTheLeastMeanEntropy) {
+  const MotionProblem problem = MakeProblem(0.0, 0);
+  RansacOptions options;
+  options.lambda = 0.0;
+  const double of_many = Run(RcmeEstimator(options, kOn), problem).mean_entropy;
+  options.num_iterations = 20;
+  EXPECT_LE(of_many, Run(RcmeEstimator(options, kOn), problem).mean_entropy);
+}
+
+TEST(Rcme, RefinementNoneReturnsTheWinnerItself) {
+  const MotionProblem problem = MakeProblem(0.0, 0);
+  RansacOptions options;
+  options.refinement = Refinement::kNone;
+  const MotionEstimate estimate = Run(RcmeEstimator(options, kOn), problem);
+  EXPECT_EQ(estimate.cam2_from_cam1.R, estimate.initial_pose.R);
+  EXPECT_EQ(estimate.num_consistent_before, estimate.num_consistent_after);
+}
+
+// OpenCV's essential matrix and pose on the same clean matches: another implementation, the same motion.
+TEST(Standard, AgreesWithOpenCv) {
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    RelativePose pose_true;
+    const MotionProblem problem = MakeProblem(0.1, trial, &pose_true);
+    std::vector<cv::Point2d> x1, x2;
+    for (const Correspondence& match : problem.matches) {
+      x1.emplace_back(match.x1_px.x(), match.x1_px.y());
+      x2.emplace_back(match.x2_px.x(), match.x2_px.y());
+    }
+    const Camera& c = problem.camera1;
+    const cv::Mat K = (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
+    cv::Mat mask, R, t;
+    const cv::Mat E = cv::findEssentialMat(x1, x2, K, cv::USAC_MAGSAC, 0.9999, 1.5, mask);
+    cv::recoverPose(E, x1, x2, K, R, t, mask);
+    RelativePose cv_pose;
+    for (int r = 0; r < 3; ++r) {
+      for (int col = 0; col < 3; ++col) cv_pose.R(r, col) = R.at<double>(r, col);
+      cv_pose.t(r) = t.at<double>(r);
+    }
+    const MotionEstimate estimate = Run(StandardEstimator({}), problem, trial);
+    ASSERT_EQ(estimate.status, MotionStatus::kOk);
+    EXPECT_LT(RotationAngleBetween(estimate.cam2_from_cam1.R, cv_pose.R), 0.02);
+    EXPECT_LT(AngleBetween(estimate.cam2_from_cam1.t, cv_pose.t), 0.15);
+  }
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,102 @@
+#include "estimator/ransac_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <map>
+#include <new>
+#include <set>
+
+#include "simulator/observe.h"
+#include "simulator/scenes/uniform_volume.h"
+#include "stats/distributions.h"
+
+namespace {
+std::atomic<long> num_allocations{0};
+}  // namespace
+
+// Counts every heap allocation of this test program.
+void* operator new(std::size_t size) {
+  ++num_allocations;
+  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace rcme {
+namespace {
+
+template <typename PointTestT>
+struct BarePipeline {
+  using PointTest = PointTestT;
+  static bool SampleIsConsistent(const MotionProblem&, const Hypothesis&, const PointTest&,
+                                 const Thresholds&) {
+    return true;
+  }
+  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
+  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
+    return a.num_inliers > b.num_inliers;
+  }
+};
+
+MotionProblem MakeProblem(int num_matches) {
+  UniformVolume model;
+  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
+  RandomStream scene_rng({1, 0, 0, 1}), noise_rng({1, 0, 0, 2}), outlier_rng({1, 0, 0, 3});
+  const Scene scene = model.Generate(scene_rng);
+  return {Observe(scene, {0.5}, {0.2}, noise_rng, outlier_rng).matches, scene.camera1, scene.camera2, 0.5};
+}
+
+template <typename PointTest>
+long CountAllocations(int num_matches, int num_iterations) {
+  const MotionProblem problem = MakeProblem(num_matches);
+  RansacOptions options;
+  options.num_iterations = num_iterations;
+  RandomStream rng({1, 0, 0, 4});
+  const long before = num_allocations;
+  RunRansacLoop<BarePipeline<PointTest>>(problem, options, rng);
+  return num_allocations - before;
+}
+
+// The candidate list is one allocation per call; beyond it nothing depends on the hypotheses or the points.
+template <typename PointTest>
+void ExpectNoAllocationPerHypothesisOrPoint() {
+  const long few = CountAllocations<PointTest>(100, 10);
+  EXPECT_GE(few, 1);
+  EXPECT_EQ(CountAllocations<PointTest>(100, 400), few);
+  EXPECT_EQ(CountAllocations<PointTest>(1000, 10), few);
+}
+
+TEST(RansacLoop, DoesNotAllocatePerHypothesisOrPoint) {
+  ExpectNoAllocationPerHypothesisOrPoint<KnownPoseTest>();
+  ExpectNoAllocationPerHypothesisOrPoint<AsPrintedTest>();
+  ExpectNoAllocationPerHypothesisOrPoint<RankAwareTest>();
+}
+
+TEST(DrawSample, IndicesAreDistinctAndInRange) {
+  RandomStream rng({1, 0, 0, 4});
+  for (int draw = 0; draw < 1000; ++draw) {
+    const Sample sample = DrawSample(8, rng);
+    EXPECT_EQ(std::set<int>(sample.begin(), sample.end()), (std::set<int>{0, 1, 2, 3, 4, 5, 6, 7}));
+  }
+}
+
+// Every one of the 45 sets of 8 out of 10 is equally likely: chi-square with 44 degrees of freedom over
+// 45,000 draws, at 1e-5. A set drawn 10 % too often alone adds 10 to the statistic's 44 +- 9.
+TEST(DrawSample, EverySetIsEquallyLikely) {
+  RandomStream rng({1, 0, 0, 4});
+  std::map<std::set<int>, int> counts;
+  for (int draw = 0; draw < 45'000; ++draw) {
+    const Sample sample = DrawSample(10, rng);
+    ++counts[std::set<int>(sample.begin(), sample.end())];
+  }
+  EXPECT_EQ(counts.size(), 45u);
+  double statistic = 0.0;
+  for (const auto& [set, count] : counts) statistic += (count - 1000.0) * (count - 1000.0) / 1000.0;
+  EXPECT_LT(statistic, ChiSquareQuantile(44, 1.0 - 1e-5));
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,83 @@
+#include "simulator/scenes/uniform_volume.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "parameters/input_error.h"
+#include "stats/goodness_of_fit.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+
+void Set(UniformVolume& model, const std::string& name, const std::string& value) {
+  FindParameter(model.Parameters(), name).SetFromText(value);
+}
+
+// With no rotation and a vanishing baseline image 2 sees all that image 1 sees, so the law is the
+// unconditional one. Kolmogorov-Smirnov at 1e-4 from 20,000 points; a coordinate with 3 % of its range
+// missing (D = 0.03) would give sqrt(n) D = 4.2, p < 1e-14.
+TEST(UniformVolume, ImageAndDepthAreUniform) {
+  UniformVolume model;
+  Set(model, "num_matches", "20000");
+  Set(model, "max_rotation_deg", "0");
+  Set(model, "baseline_m", "1e-9");
+  RandomStream rng({1, 0, 0, 1});
+  const Scene scene = model.Generate(rng);
+  std::vector<double> x, y, depth;
+  for (const Eigen::Vector3d& point : scene.points_in_cam1) {
+    const Eigen::Vector2d pixel = scene.camera1.Project(point);
+    x.push_back((pixel.x() + 0.5) / 640.0);
+    y.push_back((pixel.y() + 0.5) / 480.0);
+    depth.push_back((point.z() - 2.0) / 6.0);
+  }
+  const auto uniform = [](double u) { return std::clamp(u, 0.0, 1.0); };
+  EXPECT_GT(TestKolmogorovSmirnov(x, uniform).p_value, 1e-4);
+  EXPECT_GT(TestKolmogorovSmirnov(y, uniform).p_value, 1e-4);
+  EXPECT_GT(TestKolmogorovSmirnov(depth, uniform).p_value, 1e-4);
+  // The same test sees a depth that is uniform in its square instead.
+  for (double& d : depth) d = d * d;
+  EXPECT_LT(TestKolmogorovSmirnov(depth, uniform).p_value, 1e-10);
+}
+
+// Angle uniform up to the bound, direction uniform on the sphere (each coordinate uniform on [-1, 1]); 2,000
+// motions.
+TEST(UniformVolume, MotionsFollowTheirLaw) {
+  const GeneralMotion motion{10.0, 0.5};
+  std::vector<double> angles, tx, tz;
+  for (std::uint32_t trial = 0; trial < 2000; ++trial) {
+    RandomStream rng({1, 0, trial, 1});
+    const RelativePose pose = motion.Draw(rng);
+    angles.push_back(VectorFromRotation(pose.R).norm() * 180.0 / 3.14159265358979 / 10.0);
+    tx.push_back(0.5 * (pose.t.x() + 1.0));
+    tz.push_back(0.5 * (pose.t.z() + 1.0));
+  }
+  const auto uniform = [](double u) { return std::clamp(u, 0.0, 1.0); };
+  EXPECT_GT(TestKolmogorovSmirnov(angles, uniform).p_value, 1e-4);
+  EXPECT_GT(TestKolmogorovSmirnov(tx, uniform).p_value, 1e-4);
+  EXPECT_GT(TestKolmogorovSmirnov(tz, uniform).p_value, 1e-4);
+}
+
+TEST(UniformVolume, AnImpossibleRequestNamesTheKeysAndEnds) {
+  UniformVolume model;
+  Set(model, "focal_px", "1000000");  // the disparity is 60,000 px and more
+  RandomStream rng({1, 0, 0, 1});
+  try {
+    model.Generate(rng);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("baseline_m"));
+    EXPECT_THAT(error.what(), HasSubstr("max_rotation_deg"));
+  }
+}
+
+TEST(UniformVolume, AnEmptyDepthRangeIsAnError) {
+  UniformVolume model;
+  Set(model, "min_depth_m", "9");
+  RandomStream rng({1, 0, 0, 1});
+  EXPECT_THROW(model.Generate(rng), InputError);
+}
+
+}  // namespace
+}  // namespace rcme
