@@ -8,7 +8,7 @@ namespace rcme {
 
 double RansacOptions::MuOrDefault() const {
   if (!std::isnan(mu)) return mu;
-  return reading == Reading::kAsPrinted ? -3.53 : 3.0;
+  return reading == Reading::kAsPrinted ? -3.53 : 6.0;
 }
 
 std::vector<Parameter> Parameters(RansacOptions& o) {
@@ -20,7 +20,7 @@ std::vector<Parameter> Parameters(RansacOptions& o) {
                                  {{"as_printed", Reading::kAsPrinted}, {"rank_aware", Reading::kRankAware}},
                                  "how the covariance of the Sampson vector is read"),
       Parameter::RealOrWord("mu", &o.mu, {-1000.0, 1000.0}, "auto", "nats",
-                            "entropy threshold; auto: -3.53 as printed, 3 nats of excess entropy rank-aware"),
+                            "entropy threshold; auto: -3.53 as printed, 6 nats of excess entropy rank-aware"),
       Parameter::Choice<QualityTest>(
           "quality_test", &o.quality_test,
           {{"as_printed", QualityTest::kAsPrinted}, {"level_alpha", QualityTest::kLevelAlpha}},

@@ -69,7 +69,9 @@ void RefineWinner(const MotionProblem& problem, const RansacOptions& options, co
   const RefinedMotion& refined = fit.motion;
   if (!refined.converged) {
     estimate->status = MotionStatus::kRefinementDiverged;
-    estimate->message = fmt::format("the refinement over {} matches found no finite optimum", support.size());
+    estimate->message =
+        fmt::format("the refinement, begun with {} matches, was left with {} and no finite optimum",
+                    support.size(), fit.fitted.size());
     return;
   }
   estimate->status = MotionStatus::kOk;

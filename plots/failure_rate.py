@@ -21,6 +21,7 @@ MAX_PANEL_ROWS = 6
 TITLES = {  # other quantities: their name in words
     "failure": "Failure rate", "success": "Success rate",
     "no_candidate": "Detect-fail rate",  # the paper's word
+    "other_refusal": "Other refusals",
     "kappa_flag": "Kappa-flag rate", "nees_coverage": "NEES coverage",
 }
 
