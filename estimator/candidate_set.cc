@@ -21,7 +21,8 @@ void CandidateSet::Add(const Candidate& candidate) {
 }
 
 bool CandidateSet::MeetsSizeCondition(const Candidate& candidate) const {
-  return candidate.score.num_inliers >= lambda_ * inlier_ratio_ * num_matches_;
+  const double bound = lambda_ * inlier_ratio_ * num_matches_;
+  return candidate.score.num_inliers >= bound * (1.0 - 1e-12);  // n_j / n * n may round to more than n_j
 }
 
 int CandidateSet::CountMembers() const {

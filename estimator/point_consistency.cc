@@ -1,6 +1,7 @@
 #include "estimator/point_consistency.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
@@ -33,17 +34,27 @@ ConstraintSpread SpreadOfConstraint(const UncertainFundamental& model, const Epi
   return spread;
 }
 
+// 4x3 orthonormal basis of the complement of the unit vector u: the last columns of the Householder
+// reflection that takes u to the first axis.
+Eigen::Matrix<double, 4, 3> ComplementOf(const Eigen::Vector4d& u) {
+  Eigen::Vector4d h = u;
+  h(0) += u(0) < 0.0 ? -1.0 : 1.0;
+  const Eigen::Matrix4d reflection =
+      Eigen::Matrix4d::Identity() - (2.0 / h.squaredNorm()) * h * h.transpose();
+  return reflection.rightCols<3>();
+}
+
 }  // namespace
 
 std::optional<UncertainFundamental> UncertainFundamental::From(const RelativePose& pose,
                                                                const Matrix5d& pose_cov,
                                                                const Camera& camera1, const Camera& camera2) {
-  // LDL' also takes a covariance that is singular, such as zero for a motion that is known.
-  const Eigen::LDLT<Matrix5d> ldlt(pose_cov);
-  if (!pose_cov.allFinite() || ldlt.info() != Eigen::Success || !ldlt.isPositive()) return std::nullopt;
-  const Vector5d scale = ldlt.vectorD().cwiseMax(0.0).cwiseSqrt();
-  Matrix5d L = ldlt.matrixL();
-  L = ldlt.transpositionsP().transpose() * L * scale.asDiagonal();
+  if (!pose_cov.allFinite()) return std::nullopt;
+  // Eigenvectors also take a covariance that is singular to within rounding, such as zero for a known motion.
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(pose_cov);
+  const Vector5d& variances = eigen.eigenvalues();
+  if (eigen.info() != Eigen::Success || variances(0) < -1e-12 * std::abs(variances(4))) return std::nullopt;
+  const Matrix5d L = eigen.eigenvectors() * variances.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 
   UncertainFundamental model;
   model.F = FundamentalFromEssential(EssentialFromPose(pose), camera1, camera2);
@@ -67,37 +78,42 @@ AsPrintedTest::AsPrintedTest(const UncertainFundamental& model, double sigma_px)
       H_(ConstraintHessian(model.F)),
       point_noise_(sigma2_ * H_ * H_.transpose()) {}
 
-// The Sampson vector -j g / n2 (n2 = |j|^2) depends on the match and the motion through (j, g) alone. With
-// the reflection P = I - 2 j j' / n2, Qt = Q - a a' / D and v = D j - g a,
+// The Sampson vector -j g / n2 (n2 = |j|^2) depends on the match and the motion through (j, g) alone, with
+// cov(j, g) = [[Q, a], [a', D]]. With the reflection P = I - 2 j j' / n2,
 //
-//   n2^2 P Sigma_delta P = g^2 Qt + v v' / D,
+//   n2^2 P Sigma_delta P = g^2 Q - g (a j' + j a') + D j j' =: S,   P delta = +j g / n2.
 //
-// and the determinant lemma and Sherman-Morrison give, with s_xy = x' Qt^-1 y,
+// In the orthonormal basis [u, W], u = j / n, S is [[s11, g r'], [g r, g^2 W'QW]] with
 //
-//   d2 = g^2 V / U,  U = D g^2 + s_vv,  V = D s_jj + s_jj s_aa - s_ja^2,  det Sigma_delta = g^6 det(Qt) U /
-//   (D n2^8).
+//   s11 = g^2 u'Qu - 2 g n u'a + n2 D,   r = W'(g Q u - n a),
 //
-// Stable where the 4x4 inverse is not: nothing is divided by g.
+// so that with the Schur complement c = s11 - r' (W'QW)^-1 r
+//
+//   d2 = g^2 n2 / c,   det Sigma_delta = g^6 det(W'QW) c / n2^8.
+//
+// Nothing is divided by g, and W'QW stays regular where the motion is known (Sigma_p = 0) and the 4x4 matrix
+// has lost its digits. There, d2 = (|x1 - e1|^2 + |x2 - e2|^2) / sigma^2, e1 and e2 the epipoles: it does not
+// depend on the residual at all.
 double AsPrintedTest::Distance(const Correspondence& match, PointResidual* residual) const {
   const EpipolarConstraint c = EvaluateConstraint(model_.F, match);
   const ConstraintSpread spread = SpreadOfConstraint(model_, c, sigma2_, H_, point_noise_, match);
-  const Eigen::LLT<Eigen::Matrix4d> llt(spread.Q - spread.a * spread.a.transpose() / spread.D);
-  if (llt.info() != Eigen::Success) {
+  const double n2 = c.squared_gradient(), n = std::sqrt(n2);
+  const Eigen::Vector4d u = c.gradient / n;
+  const Eigen::Matrix<double, 4, 3> W = ComplementOf(u);
+  const Eigen::Vector4d Qu = spread.Q * u;
+  const Eigen::Vector3d r = W.transpose() * (c.g * Qu - n * spread.a);
+  const Eigen::LLT<Eigen::Matrix3d> llt(W.transpose() * spread.Q * W);
+  const double s11 = c.g * c.g * u.dot(Qu) - 2.0 * c.g * n * u.dot(spread.a) + n2 * spread.D;
+  const double schur = s11 - llt.matrixL().solve(r).squaredNorm();
+  if (llt.info() != Eigen::Success || !(schur > 0.0)) {
     residual->d2 = std::numeric_limits<double>::infinity();
     return residual->d2;
   }
-  const Eigen::Vector4d y_j = llt.matrixL().solve(c.gradient);
-  const Eigen::Vector4d y_a = llt.matrixL().solve(spread.a);
-  const double U = spread.D * c.g * c.g + (spread.D * y_j - c.g * y_a).squaredNorm();
-  const double s_ja = y_j.dot(y_a);
-  const double V = spread.D * y_j.squaredNorm() + y_j.squaredNorm() * y_a.squaredNorm() - s_ja * s_ja;
-  residual->d2 = c.g * c.g * V / U;
-
-  const double log_det_Qt = 2.0 * std::log(llt.matrixLLT().diagonal().prod());
+  residual->d2 = c.g * c.g * n2 / schur;
   const double abs_g =
       std::max(std::abs(c.g), std::numeric_limits<double>::min());  // g = 0 exactly: keep h finite
-  residual->log_det_cov =
-      6.0 * std::log(abs_g) + log_det_Qt + std::log(U / spread.D) - 8.0 * std::log(c.squared_gradient());
+  residual->log_det_cov = 6.0 * std::log(abs_g) + 2.0 * std::log(llt.matrixLLT().diagonal().prod()) +
+                          std::log(schur) - 8.0 * std::log(n2);
   return residual->d2;
 }
 

@@ -64,7 +64,7 @@ class AsPrintedTest {
   static constexpr int kDegreesOfFreedom = 3;  // the paper's "4 - 1"
   AsPrintedTest(const UncertainFundamental& model, double sigma_px);
 
-  // d2 = g^2 V / U; a singular Sigma_delta gives d2 = infinity: nothing can be said for the match.
+  // Closed form, see the source; a singular Sigma_delta gives d2 = infinity: nothing can be said for the match.
   double Distance(const Correspondence& match, PointResidual* residual) const;
   // h = 1/2 log((2 pi e)^4 det Sigma_delta).
   double Entropy(const PointResidual& residual) const;

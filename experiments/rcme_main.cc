@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "experiments/commands/commands.h"
 #include "parameters/input_error.h"
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
   CLI::App app{
       "Validates robust two-view camera-motion estimators (RCME and peers) by simulation, and runs them on "
@@ -24,7 +27,6 @@ int main(int argc, char** argv) {
       "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
       "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
-  app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   rcme::AddRunCommand(app);
   rcme::AddSummarizeCommand(app);
@@ -34,6 +36,7 @@ int main(int argc, char** argv) {
   rcme::AddListCommand(app);
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     if (std::fflush(stdout) != 0) throw rcme::InputError("standard output cannot be written");
     return 0;
   } catch (const CLI::ParseError& error) {
@@ -41,7 +44,14 @@ int main(int argc, char** argv) {
   } catch (const rcme::InputError& error) {
     fmt::print(stderr, "rcme: {}\n", error.what());
     return 2;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "rcme: {}\n", error.what());
+    return 2;
   } catch (const std::exception& error) {
+    if (std::ferror(stdout)) {
+      fmt::print(stderr, "rcme: standard output cannot be written ({})\n", error.what());
+      return 2;
+    }
     fmt::print(stderr, "rcme: internal error: {}\n", error.what());
     return 1;
   }

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 
+#include "experiments/study_file.h"
 #include "experiments/trial_fields.h"
 #include "parameters/input_error.h"
 
@@ -109,7 +110,10 @@ std::string FirstDifference(const std::string& there, const std::string& here) {
 }  // namespace
 
 struct ResultStore::Connection {
-  Connection(const std::string& file, int flags) : path(file), database(file, flags) {
+  // By the absolute path: SQLite reads '', ':memory:' and 'file:...' as something else than a file of that
+  // name.
+  Connection(const std::string& file, int flags)
+      : path(file), database(std::filesystem::absolute(file).string(), flags) {
     database.setBusyTimeout(1000);
   }
 
@@ -177,6 +181,16 @@ struct ResultStore::Connection {
     creation.commit();
   }
 
+  // A file without a trial (its run failed at once) takes any study.
+  void AdoptIfEmpty(const StudyPlan& plan) {
+    if (Value("identity") == plan.identity) return;
+    if (database.execAndGet("SELECT count(*) FROM (SELECT 1 FROM trials LIMIT 1)").getInt() > 0) return;
+    for (const char* table : {"run", "conditions", "estimators", "trials"}) {
+      database.exec(fmt::format("DROP TABLE {}", table));
+    }
+    Create(plan);
+  }
+
   void SetValue(const std::string& key, const std::string& value) {
     Insert("INSERT OR REPLACE INTO run VALUES (?, ?)", key, value);
   }
@@ -216,6 +230,7 @@ ResultStore::~ResultStore() {
 }
 
 ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& plan) {
+  if (path.empty()) throw InputError("--out: '' is not allowed; give the path of a result file");
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   if (std::filesystem::is_directory(path))
     throw InputError(fmt::format("{}: is a folder, not a result file", path));
@@ -230,6 +245,7 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
     const bool is_new = database.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
     if (is_new) connection->Create(plan);
     connection->CheckFormat();
+    connection->AdoptIfEmpty(plan);
     const std::string identity = connection->Value("identity").value_or("");
     if (identity != plan.identity) {
       throw InputError(
@@ -262,8 +278,17 @@ ResultStore ResultStore::OpenForReading(const std::string& path) {
   }
 }
 
-std::string ResultStore::StudyYaml() const {
-  return connection_->Guarded([&] { return connection_->Value("study").value_or(""); });
+StudyPlan ResultStore::Plan() const {
+  const std::string& path = connection_->path;
+  const auto value = [&](const std::string& key) {
+    return connection_->Guarded([&] { return connection_->Value(key).value_or(""); });
+  };
+  StudyPlan plan = MakePlan(ParseStudy(value("study"), path + " (its study)"));
+  if (plan.identity != value("identity")) {
+    throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
+                                 FirstDifference(value("identity"), plan.identity)));
+  }
+  return plan;
 }
 
 std::vector<std::uint32_t> ResultStore::MissingTrials(std::uint32_t condition, std::uint32_t first,

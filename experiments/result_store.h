@@ -28,8 +28,9 @@ class ResultStore {
   ResultStore(ResultStore&&) noexcept;
   ~ResultStore();  // commits what has been added
 
-  // The study as YAML.
-  std::string StudyYaml() const;
+  // The plan of the study in the file. Throws InputError if its data (a folder of pairs) are gone or have
+  // changed.
+  StudyPlan Plan() const;
 
   // Trials of a condition in [first, last) that are not in the file. Callable while another thread adds.
   std::vector<std::uint32_t> MissingTrials(std::uint32_t condition, std::uint32_t first, std::uint32_t last);

@@ -22,6 +22,8 @@ struct EstimatorSpec {
   RansacOptions options;
 };
 
+inline constexpr size_t kMaxConditions = 100'000;  // of a study
+
 // One data setting and the values it takes; conditions are all combinations of all factors (full factorial).
 struct Factor {
   std::string key;

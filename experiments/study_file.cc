@@ -8,7 +8,6 @@
 #include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 
 #include "estimator/estimator_registry.h"
 #include "parameters/input_error.h"
@@ -24,7 +23,7 @@ class Place {
  public:
   explicit Place(std::string path) : path_(std::move(path)) {}
   [[noreturn]] void Fail(const YAML::Node& node, const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", path_, node.Mark().line + 1, what));
+    throw InputError(fmt::format("{}:{}: {}", path_, std::max(node.Mark().line, 0) + 1, what));
   }
   // Runs `action`; an InputError from it gets file and line.
   template <typename Action>
@@ -77,14 +76,21 @@ long long WholeNumber(const Place& place, const YAML::Node& node, const std::str
 }
 
 void ReadFactors(const Place& place, const YAML::Node& node, Study* study) {
+  size_t num_combinations = 1;
   for (const auto& [key, levels] : Entries(place, node, "factors", {})) {
     Factor factor{key, {}};
     if (!levels.IsSequence() || levels.size() == 0) {
       place.Fail(levels, fmt::format("factors: {}: a list of at least one level is needed", key));
     }
+    num_combinations *= levels.size();
+    if (num_combinations > kMaxConditions) {
+      place.Fail(levels, fmt::format("factors: {}: more than {} combinations of levels; give fewer levels",
+                                     key, kMaxConditions));
+    }
+    std::set<std::string> seen;
     for (const YAML::Node& level : levels) {
       const std::string text = Scalar(place, level, key);
-      if (std::count(factor.levels.begin(), factor.levels.end(), text) > 0) {
+      if (!seen.insert(text).second) {
         place.Fail(level, fmt::format("factors: {}: level '{}' stands twice", key, text));
       }
       factor.levels.push_back(text);
@@ -156,7 +162,10 @@ YAML::Node ParseYaml(const std::string& yaml, const std::string& path) {
   if (yaml.size() > kMaxStudyBytes)
     throw InputError(fmt::format("{}: larger than a study can be (1 MiB)", path));
   try {
-    return YAML::Load(yaml);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
+    if (documents.size() > 1)
+      throw InputError(fmt::format("{}: holds more than one YAML document (---)", path));
+    return documents.empty() ? YAML::Node() : documents[0];
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}:{}: not valid YAML: {}", path, error.mark.line + 1, error.msg));
   }
@@ -169,9 +178,10 @@ Study LoadStudy(const std::string& path) {
     throw InputError(fmt::format("{}: is a folder, not a study", path));
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: no such study file, or not readable", path));
-  std::ostringstream text;
-  text << file.rdbuf();
-  return ParseStudy(text.str(), path);
+  std::string text(kMaxStudyBytes + 1, '\0');  // one more than ParseStudy accepts: the path may be endless
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<size_t>(file.gcount()));
+  return ParseStudy(text, path);
 }
 
 Study ParseStudy(const std::string& yaml, const std::string& path) {
@@ -231,6 +241,8 @@ void Override(Study* study, const std::string& key, const std::string& value) {
       throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
   } else if (is_in(Parameters(bound_names), key)) {
     FindParameter(Parameters(study->failure), key).SetFromText(value);
+  } else if (dot != std::string::npos) {
+    FindParameter(Parameters(option_names), option);  // throws: it is no option
   } else {
     const auto is_key = [&](const auto& setting) { return setting.first == key; };
     const auto scene = std::find_if(study->data.begin(), study->data.end(),

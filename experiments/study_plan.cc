@@ -9,8 +9,6 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kMaxConditions = 100'000;
-
 // All combinations of the factors' levels, the first factor slowest.
 std::vector<std::vector<std::string>> Combinations(const std::vector<Factor>& factors) {
   std::vector<std::vector<std::string>> rows = {{}};

@@ -1,10 +1,12 @@
 #include "experiments/summarize.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <optional>
 
-#include "experiments/study_file.h"
+#include "parameters/input_error.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
 
@@ -47,6 +49,8 @@ const std::vector<Quantity>& Quantities() {
       {"failure", kRate, "a motion beyond a failure bound, of all trials",
        [](R r, B b) { return Yes(HasFailed(r, b)); }},
       StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
+      {"other_refusal", kRate, "no motion for any other reason (the sum of the next four), of all trials",
+       [](R r, B) { return Yes(!IsOk(r) && r.status != MotionStatus::kNoCandidate); }},
       StatusRate(MotionStatus::kTooFewMatches, "too few distinct matches"),
       StatusRate(MotionStatus::kDegenerateMatches, "matches that determine no motion"),
       StatusRate(MotionStatus::kRefinementDiverged, "refinement without a finite optimum"),
@@ -123,12 +127,16 @@ const std::vector<QuantityHelp>& SummaryQuantities() {
 }
 
 Summary Summarize(const ResultStore& store, bool with_times) {
-  const StudyPlan plan = MakePlan(ParseStudy(store.StudyYaml(), "study in the result file"));
+  const StudyPlan plan = store.Plan();
   Summary summary{plan.study.name, plan.factor_names, {}, 0, plan.NumTrials()};
   const size_t num_estimators = plan.study.estimators.size();
   std::vector<std::vector<Accumulator>> cells(plan.conditions.size(),
                                               std::vector<Accumulator>(num_estimators));
   store.ForEachRecord([&](const TrialRecord& record) {
+    if (record.condition >= cells.size() || record.estimator >= num_estimators) {
+      throw InputError(fmt::format("the result file is damaged: no condition {} or estimator {} in its study",
+                                   record.condition, record.estimator));
+    }
     if (record.estimator == 0) ++summary.num_trials_done;
     cells.at(record.condition).at(record.estimator).Add(record, plan.study.failure);
   });

@@ -22,14 +22,16 @@ nlohmann::ordered_json JsonNumber(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
 }
 
-// "12.3 % [10.1, 14.8]" or "1.23 +- 0.04".
-std::string Cell(const SummaryRow& row) {
+// "12.34 % [10.10, 14.80]" or "1.23 +- 0.04"; with its n where that is not all of the trials.
+std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
   if (row.n == 0) return "-";
+  const std::string of = row.n == num_trials ? "" : fmt::format(" (n {})", row.n);
   if (row.kind == SummaryRow::Kind::kRate) {
-    return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * row.value, 100.0 * row.interval.lower,
-                       100.0 * row.interval.upper);
+    return fmt::format("{:.2f} % [{:.2f}, {:.2f}]{}", 100.0 * row.value, 100.0 * row.interval.lower,
+                       100.0 * row.interval.upper, of);
   }
-  return fmt::format("{:.3g} +- {:.2g}", row.value, row.standard_error);
+  if (row.n == 1) return fmt::format("{:.3g}{}", row.value, of);
+  return fmt::format("{:.3g} +- {:.2g}{}", row.value, row.standard_error, of);
 }
 
 }  // namespace
@@ -54,9 +56,9 @@ std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string SummaryAsTable(const Summary& summary) {
-  const std::vector<std::string> shown = {"failure",       "no_candidate",       "kappa_flag",
-                                          "nees_coverage", "rotation_error_deg", "direction_error_deg",
-                                          "time_ms"};
+  const std::vector<std::string> shown = {
+      "failure",       "no_candidate",       "other_refusal",       "kappa_flag",
+      "nees_coverage", "rotation_error_deg", "direction_error_deg", "time_ms"};
   std::vector<std::vector<std::string>> rows = {summary.factor_names};
   rows[0].insert(rows[0].end(), {"estimator", "n"});
   const auto is_present = [&](const std::string& quantity) {
@@ -66,17 +68,21 @@ std::string SummaryAsTable(const Summary& summary) {
   for (const std::string& quantity : shown) {
     if (is_present(quantity)) rows[0].push_back(quantity);
   }
+  std::int64_t num_trials = 0;
   for (const SummaryRow& row : summary.rows) {
     if (row.quantity == "success") {  // the first quantity of each condition and estimator
+      num_trials = row.n;
       rows.push_back(row.levels);
       rows.back().insert(rows.back().end(), {row.estimator, fmt::format("{}", row.n)});
     }
-    if (std::count(shown.begin(), shown.end(), row.quantity) > 0) rows.back().push_back(Cell(row));
+    if (std::count(shown.begin(), shown.end(), row.quantity) > 0)
+      rows.back().push_back(Cell(row, num_trials));
   }
   std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study,
                                  summary.num_trials_done, summary.num_trials_planned, FormatColumns(rows));
   text +=
-      "Rates with exact 95 % (Clopper-Pearson) intervals; means of successes +- Monte-Carlo standard error.\n"
+      "Rates with exact 95 % (Clopper-Pearson) intervals; means of successes +- Monte-Carlo standard error;\n"
+      "(n ...) where a number is not of all trials.\n"
       "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
       "flag.\n"
       "nees_coverage: truth inside the reported 95 % region. All quantities: --format csv or json.\n";

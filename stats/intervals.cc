@@ -1,6 +1,10 @@
 #include "stats/intervals.h"
 
+#include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
+#include <cmath>
+
+#include "stats/distributions.h"
 
 namespace rcme {
 
@@ -11,6 +15,17 @@ Interval ExactBinomialInterval(std::int64_t successes, std::int64_t n, double co
   const double trials = static_cast<double>(n), k = static_cast<double>(successes);
   return {successes == 0 ? 0.0 : Binomial::find_lower_bound_on_p(trials, k, tail),
           successes == n ? 1.0 : Binomial::find_upper_bound_on_p(trials, k, tail)};
+}
+
+Interval WilsonInterval(std::int64_t successes, std::int64_t n, double confidence) {
+  if (n <= 0) return {0.0, 1.0};
+  const double z = NormalQuantile(0.5 * (1.0 + confidence));
+  const double trials = static_cast<double>(n), rate = static_cast<double>(successes) / trials;
+  const double scale = 1.0 / (1.0 + z * z / trials);
+  const double center = scale * (rate + 0.5 * z * z / trials);
+  const double half = scale * z * std::sqrt(rate * (1.0 - rate) / trials + 0.25 * z * z / (trials * trials));
+  return {successes == 0 ? 0.0 : std::max(0.0, center - half),
+          successes == n ? 1.0 : std::min(1.0, center + half)};
 }
 
 }  // namespace rcme

@@ -16,6 +16,16 @@ class Moments {
     sum_squares_ += step * (x - mean_);
   }
 
+  // As if the other's numbers had been added here (Chan, Golub & LeVeque 1983); equal up to rounding.
+  void Merge(const Moments& other) {
+    if (other.n_ == 0) return;
+    const double n = static_cast<double>(n_), m = static_cast<double>(other.n_);
+    const double step = other.mean_ - mean_;
+    n_ += other.n_;
+    mean_ += step * m / (n + m);
+    sum_squares_ += other.sum_squares_ + step * step * n * m / (n + m);
+  }
+
   std::int64_t n() const { return n_; }
   // NaN where there are not enough numbers.
   double mean() const { return n_ > 0 ? mean_ : kNaN; }

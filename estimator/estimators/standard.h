@@ -9,7 +9,8 @@ namespace rcme {
 // refinement. Uses num_iterations, significance_level, refinement and kappa of the options.
 class StandardEstimator : public MotionEstimator {
  public:
-  explicit StandardEstimator(const RansacOptions& options) : options_(options) {}
+  // Throws InputError if the options contradict each other.
+  explicit StandardEstimator(const RansacOptions& options) : options_(options) { Validate(options); }
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override;
 
  private:

@@ -73,6 +73,7 @@ void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, c
 }
 
 void RunEstimate(const EstimateArguments& arguments) {
+  if (!std::isfinite(arguments.sigma_px)) throw InputError("--sigma: give a number in [1e-9, 1000]");
   RansacOptions options;
   for (const std::string& text : arguments.overrides) {
     const size_t equals = std::min(text.find('='), text.size());

@@ -4,7 +4,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/result_store.h"
-#include "experiments/study_file.h"
 #include "experiments/trial_fields.h"
 #include "parameters/input_error.h"
 
@@ -75,7 +74,7 @@ bool AreEqual(const TrialRecord& a, const TrialRecord& b) {
 
 void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t trial) {
   const ResultStore store = ResultStore::OpenForReading(run);
-  const StudyPlan plan = MakePlan(ParseStudy(store.StudyYaml(), "study in " + run));
+  const StudyPlan plan = store.Plan();
   if (condition_index >= plan.conditions.size()) {
     throw InputError(fmt::format("--condition: {} is not allowed; the study has conditions 0 to {}",
                                  condition_index, plan.conditions.size() - 1));

@@ -33,8 +33,17 @@ Study StudyFrom(const RunArguments& arguments) {
   return study;
 }
 
+// The plan of a study; what is wrong with the study as a whole names its file.
+StudyPlan PlanOf(const Study& study, const std::string& path) {
+  try {
+    return MakePlan(study);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
 void Run(const RunArguments& arguments) {
-  const StudyPlan plan = MakePlan(StudyFrom(arguments));
+  const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
   ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
   fmt::print(stderr, "{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name,
              plan.conditions.size(), plan.NumTrials(), plan.estimators.size(), arguments.out);

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -106,7 +107,8 @@ class Header {
 Camera CameraFrom(const Header& header, const std::string& size_key, const std::string& k_key) {
   const std::vector<double> size = header.Numbers(size_key, 2);
   for (const double length : size) {
-    if (!(length >= 1.0 && length <= 1e6)) header.Fail(size_key, "width and height must be in [1, 1e6] px");
+    if (length >= 1.0 && length <= 1e6 && length == std::floor(length)) continue;
+    header.Fail(size_key, "width and height must be whole numbers in [1, 1e6] px");
   }
   const std::vector<double> k = header.Numbers(k_key, 4);
   const Camera camera{k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1])};
@@ -115,7 +117,7 @@ Camera CameraFrom(const Header& header, const std::string& size_key, const std::
 }
 
 std::optional<RelativePose> TruePoseFrom(const Header& header) {
-  if (!header.Has("R_rowmajor") || !header.Has("t_unit")) return std::nullopt;
+  if (!header.Has("R_rowmajor") && !header.Has("t_unit")) return std::nullopt;
   const std::vector<double> r = header.Numbers("R_rowmajor", 9);
   const std::vector<double> t = header.Numbers("t_unit", 3);
   RelativePose pose;

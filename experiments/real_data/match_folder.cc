@@ -6,6 +6,7 @@
 #include <bit>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -35,7 +36,9 @@ std::vector<fs::path> MatchFilesIn(const std::string& folder) {
 }
 
 // File names (without .csv, .csv.gz) whose true direction the index calls weak.
-std::set<std::string> PairsWithWeakDirection(const fs::path& folder) {
+std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder) {
+  // Without a slash at the end, so that 'x/' too has its parent above it.
+  const fs::path folder = (fs::absolute(given_folder) / "").lexically_normal().parent_path();
   std::set<std::string> weak;
   for (const fs::path& index : {folder / "INDEX.csv", folder.parent_path() / "INDEX.csv"}) {
     std::ifstream file(index);
@@ -56,8 +59,8 @@ std::set<std::string> PairsWithWeakDirection(const fs::path& folder) {
   return weak;
 }
 
-// FNV-1a over the numbers of a pair: changed data are another study.
-std::uint64_t Digest(const MatchFile& file, std::uint64_t hash) {
+// FNV-1a over the numbers of a pair and its truth: changed data are another study.
+std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64_t hash) {
   const auto add = [&hash](double x) { hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3ULL; };
   for (const Camera& c : {file.camera1, file.camera2}) {
     for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) add(x);
@@ -65,10 +68,22 @@ std::uint64_t Digest(const MatchFile& file, std::uint64_t hash) {
   for (const Correspondence& m : file.matches) {
     for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) add(x);
   }
+  if (const std::optional<RelativePose>& pose = file.cam2_from_cam1_true) {
+    for (const double x : pose->R.reshaped()) add(x);
+    for (const double x : pose->t) add(x);
+    add(is_direction_known ? 1.0 : 0.0);
+  }
   return hash;
 }
 
 }  // namespace
+
+int MatchFolderData::NumTrials(int trials) const {
+  const auto product = static_cast<std::int64_t>(trials) * static_cast<std::int64_t>(pairs_.size());
+  if (product <= std::numeric_limits<int>::max()) return static_cast<int>(product);
+  throw InputError(fmt::format("trials: {} passes over {} pairs are more trials than {}", trials,
+                               pairs_.size(), std::numeric_limits<int>::max()));
+}
 
 std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatchFolder(
     const MatchFolderSettings& settings) {
@@ -81,12 +96,12 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   for (const fs::path& path : MatchFilesIn(settings.folder)) {
     MatchFile file = ReadMatchFile(path.string());
     Group& group = groups[file.scene];
-    group.digest = Digest(file, group.digest);
     TrialData data;
     const std::string name = path.filename().string();
     data.origin = name;
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.is_direction_known = weak.count(name.substr(0, name.find(".csv"))) == 0;
+    group.digest = Digest(file, data.truth.is_direction_known, group.digest);
     data.problem = {std::move(file.matches), file.camera1, file.camera2, settings.sigma_px};
     group.pairs.push_back(std::move(data));
   }

@@ -99,7 +99,9 @@ CoverageCount Coverage(const std::vector<double>& statistics, double scale) {
 }
 
 TEST(JointSampleStatistic, IsChiSquareWithThreeDofInTheLimitOfSmallNoise) {
-  // SEE_MEASURED
+  // Coverage of the nominal 95 % over 20 000 random samples of this family: 0.652 at 0.5 px, 0.897 at 0.01,
+  // 0.937 at 0.001 (Kolmogorov-Smirnov rejects, p = 3e-5), 0.947 at 1e-4 (p = 0.33), 0.950 at 1e-5. False
+  // alarm 2e-4.
   const std::vector<double> statistics = Statistics(1e-5, 20'000, 180);
   const CoverageCount coverage = Coverage(statistics, 1.0);
   EXPECT_TRUE(coverage.Admits(0.95)) << coverage;
@@ -149,17 +151,6 @@ TEST(EverySamplePointFits, FailsIfOnePointIsBeyondTheThreshold) {
   EXPECT_FALSE(EverySamplePointFits(random.problem, hypothesis, test, 3.84));
   random.problem.matches[5].x2_px.x() = std::nan("");
   EXPECT_FALSE(EverySamplePointFits(random.problem, hypothesis, test, 3.84));
-}
-
-TEST(JointSampleStatistic, DISABLED_Measure) {
-  for (const double sigma : {0.5, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    const std::vector<double> statistics = Statistics(sigma, 20'000, 184);
-    std::cout << "sigma " << sigma << ": " << Coverage(statistics, 1.0) << "  KS p "
-              << TestKolmogorovSmirnov(statistics, [](double x) { return ChiSquareCdf(3, x); }).p_value
-              << "\n";
-  }
-  std::cout << "clean " << PassRate(false, 20'000, 185) << "\noutlier " << PassRate(true, 20'000, 186)
-            << "\n";
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ TEST(Parameter, WrongTextIsRefusedAndLeavesTheFieldAlone) {
     EXPECT_NE(Refusal(o, "open", text), "") << "'" << text << "'";
     EXPECT_EQ(o.open, 1.0);
   }
-  for (const std::string text : {"0", "1000001", "1.5", "1e3", "99999999999999999999", "4294967297", "nan",
-                                 "", "seven", "7 "}) {
+  for (const std::string text :
+       {"0", "1000001", "1.5", "1e3", "99999999999999999999", "4294967297", "nan", "", "seven", "7 "}) {
     Options o;
     EXPECT_NE(Refusal(o, "integer", text), "") << "'" << text << "'";
     EXPECT_EQ(o.integer, 7);

@@ -50,8 +50,11 @@ TEST(ChiSquare, TwoDegreesOfFreedomIsAnExponential) {
 TEST(Normal, QuantilesAndCdfAreTheKnownOnes) {
   const struct {
     double probability, quantile;
-  } kKnown[] = {{0.001, -3.0902323061678135}, {0.025, -1.9599639845400542}, {0.95, 1.6448536269514727},
-                {0.975, 1.9599639845400542},  {0.9999, 3.7190164854556806}};
+  } kKnown[] = {{0.001, -3.0902323061678135},
+                {0.025, -1.9599639845400542},
+                {0.95, 1.6448536269514727},
+                {0.975, 1.9599639845400542},
+                {0.9999, 3.7190164854556806}};
   for (const auto& known : kKnown) {
     ExpectRelative(NormalQuantile(known.probability), known.quantile, 1e-12);
     ExpectRelative(NormalCdf(known.quantile), known.probability, 1e-13);

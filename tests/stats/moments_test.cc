@@ -61,5 +61,22 @@ TEST(Moments, TooFewNumbersAreNan) {
   EXPECT_EQ(MomentsOf({3.0, 3.0}).variance(), 0.0);
 }
 
+TEST(Moments, MergedPartsEqualOnePass) {
+  // Parts of very different size and mean: without Chan's cross term the variance would be 100 times too
+  // small.
+  RandomStream rng({.seed = 1, .purpose = 21});
+  for (const size_t split : {size_t{0}, size_t{1}, size_t{3}, size_t{500}, size_t{1000}}) {
+    std::vector<double> numbers(1000);
+    for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = (i < split ? 1e3 : 1.0) + rng.Normal();
+    const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(split);
+    Moments merged = MomentsOf({numbers.begin(), middle});
+    merged.Merge(MomentsOf({middle, numbers.end()}));
+    const Moments whole = MomentsOf(numbers);
+    EXPECT_EQ(merged.n(), 1000);
+    EXPECT_NEAR(merged.mean(), whole.mean(), 1e-12 * whole.mean());
+    EXPECT_NEAR(merged.variance(), whole.variance(), 1e-12 * whole.variance());
+  }
+}
+
 }  // namespace
 }  // namespace rcme

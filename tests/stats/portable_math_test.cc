@@ -12,7 +12,8 @@
 namespace rcme {
 namespace {
 
-// The references are the C library's long double functions (64-bit mantissa on x86: error far below a double's).
+// The references are the C library's long double functions (64-bit mantissa on x86: error far below a
+// double's).
 double RelativeErrorOfLog(double x) {
   const long double exact = std::log(static_cast<long double>(x));
   if (exact == 0.0L) return PortableLog(x) == 0.0 ? 0.0 : 1.0;
@@ -34,10 +35,10 @@ TEST(PortableLog, ErrorIsBelow2em15Relative) {
     if (!(error <= worst)) worst = error, worst_x = x;
   };
   for (int i = 0; i < 300'000; ++i) {
-    check(1.0 - rng.Uniform());                            // what Normal() feeds it
-    check(std::exp2(rng.Uniform(-1021.9, 1023.9)));        // every exponent
-    check(1.0 + std::exp2(-rng.Uniform(1.0, 52.0)));       // just above 1
-    check(1.0 - std::exp2(-rng.Uniform(1.0, 53.0)));       // just below 1
+    check(1.0 - rng.Uniform());                                 // what Normal() feeds it
+    check(std::exp2(rng.Uniform(-1021.9, 1023.9)));             // every exponent
+    check(1.0 + std::exp2(-rng.Uniform(1.0, 52.0)));            // just above 1
+    check(1.0 - std::exp2(-rng.Uniform(1.0, 53.0)));            // just below 1
     check(std::numbers::sqrt2 * (1.0 + 1e-14 * rng.Normal()));  // where the exponent is chosen
     check(std::numbers::sqrt2 / 2.0 * (1.0 + 1e-14 * rng.Normal()));
   }

@@ -1,8 +1,8 @@
 // The known answers of the stream come from tests/known_answers/philox_stream.py (plain Python integers and
 // math.log / math.cos):  python3 tests/known_answers/philox_stream.py
 //
-// Every statistical test here is decided at a false-alarm rate of 1e-4 over seeds (the seed is 1), and is shown
-// to reject a generator that is wrong on purpose.
+// Every statistical test here is decided at a false-alarm rate of 1e-4 over seeds (the seed is 1), and is
+// shown to reject a generator that is wrong on purpose.
 #include "stats/random.h"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ RandomStream KnownStream() {
 
 // Pearson's statistic of equally likely cells.
 double ChiSquareOfEqualCells(const std::vector<int>& counts) {
-  const double expected =
-      static_cast<double>(std::accumulate(counts.begin(), counts.end(), 0)) / static_cast<double>(counts.size());
+  const double expected = static_cast<double>(std::accumulate(counts.begin(), counts.end(), 0)) /
+                          static_cast<double>(counts.size());
   double statistic = 0.0;
   for (const int count : counts) statistic += (count - expected) * (count - expected) / expected;
   return statistic;
@@ -52,8 +52,8 @@ TEST(Philox, KnownAnswersOfRandom123) {
 
 TEST(RandomStream, WordsAreTheKnownOnes) {
   RandomStream rng = KnownStream();
-  for (const std::uint32_t word : {0x8cb0dfeau, 0x1aaef39fu, 0x34d03ec5u, 0x761bbc05u, 0x054854beu, 0x51949cdfu,
-                                   0x1cbf9dcbu, 0xb2637762u, 0x8fb045beu, 0xa4fba1f7u}) {
+  for (const std::uint32_t word : {0x8cb0dfeau, 0x1aaef39fu, 0x34d03ec5u, 0x761bbc05u, 0x054854beu,
+                                   0x51949cdfu, 0x1cbf9dcbu, 0xb2637762u, 0x8fb045beu, 0xa4fba1f7u}) {
     EXPECT_EQ(rng.Next32(), word);
   }
   RandomStream far = KnownStream();
@@ -88,8 +88,8 @@ TEST(RandomStream, IntegersAreTheKnownOnes) {
   EXPECT_EQ(rng.IntegerBelow(2), 0u);
   EXPECT_EQ(rng.IntegerBelow(6), 1u);
   EXPECT_EQ(rng.IntegerBelow(1000), 461u);
-  for (const std::uint32_t integer : {66469774u, 1026520487u, 361739864u, 2244647305u, 1808020558u, 2075965817u,
-                                      2579569292u, 2075140603u}) {
+  for (const std::uint32_t integer : {66469774u, 1026520487u, 361739864u, 2244647305u, 1808020558u,
+                                      2075965817u, 2579569292u, 2075140603u}) {
     EXPECT_EQ(rng.IntegerBelow(3u << 30), integer);  // a quarter of the words is refused
   }
   EXPECT_EQ(rng.IntegerBelow(0xffffffffu), 2718900680u);
@@ -145,7 +145,8 @@ TEST(RandomStream, IntegerBelowSixIsUniform) {
 }
 
 TEST(RandomStream, IntegerBelowALargeBoundIsUnbiased) {
-  // n = 3 * 2^30. Without rejection, word % n gives the lowest third twice as often as the others, and word * n
+  // n = 3 * 2^30. Without rejection, word % n gives the lowest third twice as often as the others, and word *
+  // n
   // >> 32 gives the multiples of 3 twice as often. Nine cells (third, remainder by 3), 9000 draws: the
   // noncentrality of either fault is 9000 / 8 = 1125 at a limit of 31.8, power 1 to within 1e-100.
   constexpr std::uint32_t kBound = 3u << 30;
@@ -157,7 +158,8 @@ TEST(RandomStream, IntegerBelowALargeBoundIsUnbiased) {
     ASSERT_LT(drawn, kBound);
     ++counts[cell(drawn)];
     ++modulo[cell(rng.Next32() % kBound)];
-    ++no_rejection[cell(static_cast<std::uint32_t>((static_cast<std::uint64_t>(rng.Next32()) * kBound) >> 32))];
+    ++no_rejection[cell(
+        static_cast<std::uint32_t>((static_cast<std::uint64_t>(rng.Next32()) * kBound) >> 32))];
   }
   EXPECT_TRUE(CellsAreEqual(counts)) << ChiSquareOfEqualCells(counts);
   EXPECT_FALSE(CellsAreEqual(modulo)) << "no power: " << ChiSquareOfEqualCells(modulo);
@@ -166,7 +168,8 @@ TEST(RandomStream, IntegerBelowALargeBoundIsUnbiased) {
 
 TEST(RandomStream, ShuffleGivesEveryOrderEquallyOften) {
   // 48 000 shuffles of four items over 24 orders, limit 58.6 (23 dof). The well-known wrong shuffle, which
-  // swaps every item with any other, has orders with 8/256 to 15/256 instead of 1/24: noncentrality above 1000.
+  // swaps every item with any other, has orders with 8/256 to 15/256 instead of 1/24: noncentrality above
+  // 1000.
   std::map<std::vector<int>, int> index;
   std::vector<int> order = {0, 1, 2, 3};
   do {
@@ -206,16 +209,17 @@ TEST(RandomStream, UniformIsUniform) {
 }
 
 TEST(RandomStream, NormalIsNormal) {
-  // Kolmogorov-Smirnov over 4 million draws: the limit is 2.23 / sqrt(n) = 0.00111. The sum of twelve uniforms
-  // minus six is 0.0023 away from the normal law (kurtosis 2.9) and a sigma off by 2 % is 0.0048 away; both are
-  // more than 5 standard errors beyond the limit, power above 0.999999.
+  // Kolmogorov-Smirnov over 4 million draws: the limit is 2.23 / sqrt(n) = 0.00111. The sum of twelve
+  // uniforms minus six is 0.0023 away from the normal law (kurtosis 2.9) and a sigma off by 2 % is 0.0048
+  // away; both are more than 5 standard errors beyond the limit, power above 0.999999.
   constexpr size_t kDraws = 4'000'000;
   RandomStream rng({.seed = 1, .purpose = 14});
   std::vector<double> sample(kDraws);
   for (double& z : sample) z = rng.Normal();
   EXPECT_GT(TestKolmogorovSmirnov(sample, NormalCdf).p_value, kFalseAlarmRate);
   for (double& z : sample) z *= 1.02;
-  EXPECT_LT(TestKolmogorovSmirnov(sample, NormalCdf).p_value, kFalseAlarmRate) << "no power: sigma off by 2 %";
+  EXPECT_LT(TestKolmogorovSmirnov(sample, NormalCdf).p_value, kFalseAlarmRate)
+      << "no power: sigma off by 2 %";
   for (double& z : sample) {
     z = -6.0;
     for (int k = 0; k < 12; ++k) z += rng.Uniform();
@@ -231,8 +235,8 @@ double NormalizedCorrelation(const std::vector<double>& a, const std::vector<dou
 }
 
 TEST(RandomStream, NeighbouringNamesAreUncorrelated) {
-  // 5 pairs of streams and the two members of each Box-Muller pair, 100 000 normals each; the limit shares the
-  // false-alarm rate among them. A correlation of 0.03 (9.5 standard errors) is caught with power above
+  // 5 pairs of streams and the two members of each Box-Muller pair, 100 000 normals each; the limit shares
+  // the false-alarm rate among them. A correlation of 0.03 (9.5 standard errors) is caught with power above
   // 0.999999.
   constexpr size_t kDraws = 100'000;
   const double limit = NormalQuantile(1.0 - 0.5 * kFalseAlarmRate / 6.0);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "estimator/geometry/pose.h"
@@ -45,9 +46,11 @@ inline Camera TestCamera1() { return {700.0, 650.0, 330.0, 235.0, 640, 480}; }
 inline Camera TestCamera2() { return {820.0, 860.0, 395.0, 310.0, 800, 600}; }
 
 // One point seen by both cameras: uniform over image 1, uniform in depth, drawn until image 2 sees it.
-inline Eigen::Vector3d RandomPoint(const RelativePose& pose, const Camera& camera1, const Camera& camera2,
-                                   const RandomProblemOptions& options, RandomStream& rng) {
-  while (true) {
+// Nothing after 200 draws: the images hardly overlap.
+inline std::optional<Eigen::Vector3d> RandomPoint(const RelativePose& pose, const Camera& camera1,
+                                                  const Camera& camera2, const RandomProblemOptions& options,
+                                                  RandomStream& rng) {
+  for (int draw = 0; draw < 200; ++draw) {
     const double depth = rng.Uniform(options.min_depth, options.max_depth);
     const double u = rng.Uniform(0.0, camera1.width - 1.0), v = rng.Uniform(0.0, camera1.height - 1.0);
     const Eigen::Vector3d point(depth * (u - camera1.cx) / camera1.fx, depth * (v - camera1.cy) / camera1.fy,
@@ -58,6 +61,7 @@ inline Eigen::Vector3d RandomPoint(const RelativePose& pose, const Camera& camer
     const double v2 = camera2.fy * in_cam2.y() / in_cam2.z() + camera2.cy;
     if (u2 >= 0.0 && u2 <= camera2.width - 1.0 && v2 >= 0.0 && v2 <= camera2.height - 1.0) return point;
   }
+  return std::nullopt;
 }
 
 inline Correspondence ProjectToBoth(const Eigen::Vector3d& point, const RelativePose& pose,
@@ -71,17 +75,24 @@ inline Correspondence ProjectToBoth(const Eigen::Vector3d& point, const Relative
   return match;
 }
 
+// Motions whose images hardly overlap are drawn again.
 inline RandomProblem MakeRandomProblem(RandomStream& rng, const RandomProblemOptions& options = {}) {
+  const Camera camera1 = TestCamera1(), camera2 = TestCamera2();
   RandomProblem random;
+  random.problem.camera1 = camera1;
+  random.problem.camera2 = camera2;
   random.pose_true = RandomPose(rng, options.max_rotation_deg);
-  random.problem.camera1 = TestCamera1();
-  random.problem.camera2 = TestCamera2();
-  for (int k = 0; k < options.num_matches; ++k) {
-    const Eigen::Vector3d point =
-        RandomPoint(random.pose_true, random.problem.camera1, random.problem.camera2, options, rng);
-    random.points_in_cam1.push_back(point);
-    random.problem.matches.push_back(
-        ProjectToBoth(point, random.pose_true, random.problem.camera1, random.problem.camera2));
+  while (static_cast<int>(random.problem.matches.size()) < options.num_matches) {
+    const std::optional<Eigen::Vector3d> point =
+        RandomPoint(random.pose_true, camera1, camera2, options, rng);
+    if (!point) {
+      random.points_in_cam1.clear();
+      random.problem.matches.clear();
+      random.pose_true = RandomPose(rng, options.max_rotation_deg);
+      continue;
+    }
+    random.points_in_cam1.push_back(*point);
+    random.problem.matches.push_back(ProjectToBoth(*point, random.pose_true, camera1, camera2));
   }
   return random;
 }

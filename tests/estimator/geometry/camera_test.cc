@@ -59,8 +59,8 @@ TEST(Camera, ImageBorderIsHalfAPixelOutside) {
 TEST(Camera, ValidOnlyIfEveryNumberMakesSense) {
   EXPECT_TRUE(TestCamera1().IsValid());
   EXPECT_FALSE(Camera().IsValid()) << "the default must be filled in";
-  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (double Camera::*field : {&Camera::fx, &Camera::fy}) {
       Camera camera = TestCamera1();
       camera.*field = bad;

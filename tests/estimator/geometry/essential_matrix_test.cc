@@ -33,8 +33,7 @@ TEST(EssentialFromPose, SatisfiesTheEpipolarConstraintOfProjectedPoints) {
     const RandomProblem random = MakeRandomProblem(rng, {.num_matches = 10, .max_rotation_deg = 40.0});
     const Eigen::Matrix3d E = EssentialFromPose(random.pose_true);
     EXPECT_NEAR(E.norm(), std::sqrt(2.0), 1e-14);
-    const Eigen::Matrix3d F =
-        FundamentalFromEssential(E, random.problem.camera1, random.problem.camera2);
+    const Eigen::Matrix3d F = FundamentalFromEssential(E, random.problem.camera1, random.problem.camera2);
     for (const Correspondence& match : random.problem.matches) {
       const Eigen::Vector3d ray1 = random.problem.camera1.Ray(match.x1_px);
       const Eigen::Vector3d ray2 = random.problem.camera2.Ray(match.x2_px);
@@ -62,7 +61,8 @@ TEST(FundamentalFromEssential, IsBilinearInRays) {
     const Eigen::Vector2d x1(rng.Uniform(0, 640), rng.Uniform(0, 480));
     const Eigen::Vector2d x2(rng.Uniform(0, 800), rng.Uniform(0, 600));
     const Eigen::Matrix3d F = FundamentalFromEssential(matrix, camera1, camera2);
-    EXPECT_NEAR(x2.homogeneous().dot(F * x1.homogeneous()), camera2.Ray(x2).dot(matrix * camera1.Ray(x1)), 1e-12);
+    EXPECT_NEAR(x2.homogeneous().dot(F * x1.homogeneous()), camera2.Ray(x2).dot(matrix * camera1.Ray(x1)),
+                1e-12);
   }
 }
 
@@ -124,8 +124,7 @@ TEST(ProjectToEssential, IsTheNearestEssentialMatrix) {
   // which would reveal a projection that is only close (a first-order error of 0.01 is lost in 1 + 1e-4).
   RandomStream rng({.seed = 1, .purpose = 76});
   for (int i = 0; i < 20; ++i) {
-    const Eigen::Matrix3d matrix =
-        EssentialFromPose(RandomPose(rng, 180.0)) + 0.3 * RandomMatrix(rng);
+    const Eigen::Matrix3d matrix = EssentialFromPose(RandomPose(rng, 180.0)) + 0.3 * RandomMatrix(rng);
     const EssentialProjection p = ProjectToEssential(matrix);
     const Eigen::Matrix3d E = p.U * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal() * p.V.transpose();
     const double distance = DistanceUpToScale(matrix, E);
@@ -141,8 +140,8 @@ TEST(ProjectToEssential, IsTheNearestEssentialMatrix) {
     };
     for (int k = 0; k < 5; ++k) {
       const double h = 1e-4;
-      const double slope = (squared_distance(h * Vector5d::Unit(k)) - squared_distance(-h * Vector5d::Unit(k))) /
-                           (2.0 * h);
+      const double slope =
+          (squared_distance(h * Vector5d::Unit(k)) - squared_distance(-h * Vector5d::Unit(k))) / (2.0 * h);
       EXPECT_NEAR(slope, 0.0, 1e-6) << "not stationary along tangent " << k;
       EXPECT_GT(squared_distance(0.01 * Vector5d::Unit(k)), distance * distance);
       EXPECT_GT(squared_distance(-0.01 * Vector5d::Unit(k)), distance * distance);
@@ -156,7 +155,8 @@ TEST(PosesFromEssential, ContainTheTruthForEitherSignOfE) {
     const RelativePose truth = RandomPose(rng, 180.0);
     for (const double scale : {1.0, -1.0, 0.3, -20.0}) {
       double least = std::numeric_limits<double>::infinity();
-      for (const RelativePose& pose : PosesFromEssential(ProjectToEssential(scale * EssentialFromPose(truth)))) {
+      for (const RelativePose& pose :
+           PosesFromEssential(ProjectToEssential(scale * EssentialFromPose(truth)))) {
         least = std::min(least, (pose.R - truth.R).norm() + (pose.t - truth.t).norm());
       }
       EXPECT_LT(least, 1e-13);

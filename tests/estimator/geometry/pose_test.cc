@@ -59,8 +59,9 @@ TEST(Rotation, HalfTurnComesBackAsTheSameRotation) {
 TEST(DirectionBasis, IsOrthonormalAndNormalToT) {
   RandomStream rng({.seed = 1, .purpose = 53});
   for (int i = 0; i < 100; ++i) {
-    const Eigen::Vector3d t = i < 6 ? Eigen::Vector3d((i % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(i / 2))
-                                    : RandomDirection(rng);
+    const Eigen::Vector3d t = i < 6
+                                  ? Eigen::Vector3d((i % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(i / 2))
+                                  : RandomDirection(rng);
     const Eigen::Matrix<double, 3, 2> basis = DirectionBasis(t);
     EXPECT_LT((basis.transpose() * basis - Eigen::Matrix2d::Identity()).norm(), 1e-14);
     EXPECT_LT((basis.transpose() * t).norm(), 1e-14);

@@ -39,7 +39,8 @@ Case MakeCase(RandomStream& rng, double sigma_px) {
   made.F = FundamentalOf(made.random, made.random.pose_true);
   const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(made.random.pose_true);
   for (size_t k = 0; k < 5; ++k) {
-    made.dF_dp[k] = FundamentalFromEssential(dE_dp[k], made.random.problem.camera1, made.random.problem.camera2);
+    made.dF_dp[k] =
+        FundamentalFromEssential(dE_dp[k], made.random.problem.camera1, made.random.problem.camera2);
   }
   return made;
 }
@@ -67,7 +68,8 @@ TEST(ConstraintHessian, HasANumericTwin) {
     const auto gradient = [&](const Eigen::VectorXd& X) -> Eigen::VectorXd {
       return EvaluateConstraint(c.F, MatchOf(X)).gradient;
     };
-    EXPECT_JACOBIAN_NEAR(ConstraintHessian(c.F), NumericJacobian(gradient, CoordinatesOf(c.match), 10.0), 1e-9);
+    EXPECT_JACOBIAN_NEAR(ConstraintHessian(c.F), NumericJacobian(gradient, CoordinatesOf(c.match), 10.0),
+                         1e-9);
   }
 }
 
@@ -110,7 +112,9 @@ TEST(SampsonVector, PointJacobianHasANumericTwin) {
   for (const double sigma_px : {0.0, 0.5, 20.0}) {
     for (int i = 0; i < 50; ++i) {
       const Case c = MakeCase(rng, sigma_px);
-      const auto delta = [&](const Eigen::VectorXd& X) -> Eigen::VectorXd { return SampsonVector(c.F, MatchOf(X)); };
+      const auto delta = [&](const Eigen::VectorXd& X) -> Eigen::VectorXd {
+        return SampsonVector(c.F, MatchOf(X));
+      };
       EXPECT_JACOBIAN_NEAR(SampsonVectorPointJacobian(c.F, c.match),
                            NumericJacobian(delta, CoordinatesOf(c.match), kStepPx), 1e-7);
     }

@@ -76,12 +76,12 @@ TEST(Cheirality, PicksTheTruthAmongTheFourPoses) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 20, .max_rotation_deg = 40.0});
     const std::array<RelativePose, 4> poses =
         PosesFromEssential(ProjectToEssential(EssentialFromPose(random.pose_true)));
-    const RelativePose exact = SelectPoseByCheirality(poses, random.problem.matches, random.problem.camera1,
-                                                      random.problem.camera2);
+    const RelativePose exact =
+        SelectPoseByCheirality(poses, random.problem.matches, random.problem.camera1, random.problem.camera2);
     EXPECT_LT((exact.R - random.pose_true.R).norm() + (exact.t - random.pose_true.t).norm(), 1e-12);
     AddNoise(1.0, rng, &random.problem);
-    const RelativePose noisy = SelectPoseByCheirality(poses, random.problem.matches, random.problem.camera1,
-                                                      random.problem.camera2);
+    const RelativePose noisy =
+        SelectPoseByCheirality(poses, random.problem.matches, random.problem.camera1, random.problem.camera2);
     EXPECT_LT((noisy.R - random.pose_true.R).norm() + (noisy.t - random.pose_true.t).norm(), 1e-12);
   }
 }

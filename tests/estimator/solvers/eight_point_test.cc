@@ -41,13 +41,15 @@ double DistanceOfLines(const Vector9d& a, const Vector9d& b) {
 double ReciprocalCondition(const RayPair& rays) {
   Eigen::Matrix<double, 8, 9> M;
   for (int k = 0; k < 8; ++k) {
-    M.row(k) = Vectorize(rays.second[static_cast<size_t>(k)] * rays.first[static_cast<size_t>(k)].transpose());
+    M.row(k) =
+        Vectorize(rays.second[static_cast<size_t>(k)] * rays.first[static_cast<size_t>(k)].transpose());
   }
   const Eigen::VectorXd s = M.jacobiSvd().singularValues();
   return s(7) / s(0);
 }
 
-// Hartley's way (Hartley & Zisserman, algorithm 11.1 up to rank 2): centroid to zero, mean distance sqrt(2), SVD.
+// Hartley's way (Hartley & Zisserman, algorithm 11.1 up to rank 2): centroid to zero, mean distance sqrt(2),
+// SVD.
 Vector9d NullVectorInHartleyCoordinates(const RayPair& rays) {
   const auto normalization = [](const EightPoint::Rays& points) {
     Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
@@ -126,7 +128,8 @@ TEST(EightPoint, GInvertsTheConstraintsOnTheComplement) {
     ASSERT_TRUE(model);
     Eigen::Matrix<double, 8, 9> M;
     for (int k = 0; k < 8; ++k) {
-      M.row(k) = Vectorize(rays.second[static_cast<size_t>(k)] * rays.first[static_cast<size_t>(k)].transpose());
+      M.row(k) =
+          Vectorize(rays.second[static_cast<size_t>(k)] * rays.first[static_cast<size_t>(k)].transpose());
     }
     const double tolerance = 1e-14 / ReciprocalCondition(rays);
     EXPECT_LT((M * model->G - Eigen::Matrix<double, 8, 8>::Identity()).norm(), tolerance);
@@ -235,7 +238,8 @@ TEST(EightPoint, CoplanarScenePointsAreDegenerate) {
 TEST(EightPoint, BadNumbersGiveNoModel) {
   RandomStream rng({.seed = 1, .purpose = 110});
   const RandomProblem random = MakeRandomProblem(rng);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     MotionProblem problem = random.problem;
     problem.matches[3].x2_px.y() = bad;
     EXPECT_FALSE(Solve(problem));

@@ -36,8 +36,8 @@ RelativePose NearestTo(const RelativePose& reference, const std::array<RelativeP
 TEST(ConstraintVariances, AreSigmaSquaredTimesTheSquaredGradient) {
   RandomStream rng({.seed = 1, .purpose = 150});
   const RandomProblem random = MakeRandomProblem(rng);
-  const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(random.pose_true), random.problem.camera1,
-                                                     random.problem.camera2);
+  const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(random.pose_true),
+                                                     random.problem.camera1, random.problem.camera2);
   std::array<Correspondence, 8> sample;
   std::copy_n(random.problem.matches.begin(), 8, sample.begin());
   const Eigen::Matrix<double, 8, 1> variances = ConstraintVariances(F, sample, 0.7);
@@ -56,14 +56,15 @@ TEST(ConstraintVariances, AreSigmaSquaredTimesTheSquaredGradient) {
 
 TEST(CovarianceOfF, EqualsTheTextbookForm) {
   // A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A', J_Omega = dOmega/df read sample by sample as the minimum-norm
-  // implicit derivative -(dg/dX)^+ (dg/df), 4x9. Its rows and D^-1 share the noise: J_Omega' Sigma_X^-1 J_Omega.
+  // implicit derivative -(dg/dX)^+ (dg/df), 4x9. Its rows and D^-1 share the noise: J_Omega' Sigma_X^-1
+  // J_Omega.
   RandomStream rng({.seed = 1, .purpose = 151});
   for (int i = 0; i < 100; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.5, rng, &random.problem);
     const Hypothesis hypothesis = Solve(random.problem);
-    const Eigen::Matrix3d F =
-        FundamentalFromEssential(Matricize(hypothesis.linear.f), random.problem.camera1, random.problem.camera2);
+    const Eigen::Matrix3d F = FundamentalFromEssential(Matricize(hypothesis.linear.f), random.problem.camera1,
+                                                       random.problem.camera2);
     Matrix9d information = Matrix9d::Zero();
     double largest_term = 0.0;
     for (const Correspondence& match : random.problem.matches) {
@@ -71,7 +72,8 @@ TEST(CovarianceOfF, EqualsTheTextbookForm) {
       const Eigen::Vector3d ray2 = random.problem.camera2.Ray(match.x2_px);
       const Eigen::RowVector4d dg_dX = EvaluateConstraint(F, match).gradient.transpose();
       const Eigen::Vector4d pseudo_inverse = dg_dX.transpose() / dg_dX.squaredNorm();
-      const Eigen::Matrix<double, 4, 9> J_omega = -pseudo_inverse * Vectorize(ray2 * ray1.transpose()).transpose();
+      const Eigen::Matrix<double, 4, 9> J_omega =
+          -pseudo_inverse * Vectorize(ray2 * ray1.transpose()).transpose();
       information += J_omega.transpose() * J_omega / (random.problem.sigma_px * random.problem.sigma_px);
     }
     largest_term = information.norm();
@@ -98,8 +100,8 @@ TEST(CovarianceOfF, HasRankEightAndNullVectorF) {
 }
 
 TEST(MotionJacobian, HasANumericTwin) {
-  // d(tangent)/df through SVD, projection and the nearest of the four poses, at exact essential matrices; also
-  // for -f, whose Jacobian is the negative one.
+  // d(tangent)/df through SVD, projection and the nearest of the four poses, at exact essential matrices;
+  // also for -f, whose Jacobian is the negative one.
   RandomStream rng({.seed = 1, .purpose = 153});
   for (int i = 0; i < 50; ++i) {
     const RelativePose pose = RandomPose(rng, 180.0);
@@ -165,7 +167,8 @@ TEST(CovarianceOfQuaternionAndTranslation, HasRankFive) {
   }
 }
 
-// NEES of Sigma_p (5 dof) and of Sigma_f (8 dof, on the basis A) over random motions and random minimal samples.
+// NEES of Sigma_p (5 dof) and of Sigma_f (8 dof, on the basis A) over random motions and random minimal
+// samples.
 struct NormalizedErrors {
   std::vector<double> pose, f;
 };
@@ -202,7 +205,11 @@ CoverageCount Coverage(const std::vector<double>& normalized_errors, int dof, do
 }
 
 TEST(MotionCovariance, CoversInTheLimitOfSmallNoise) {
-  // SEE_MEASURED
+  // Random minimal samples differ a thousandfold in conditioning, and the first order holds for each only
+  // well below its own noise level: over 20 000 samples of this family the 95 % region of Sigma_p (Sigma_f)
+  // covered 0.632 (0.787) at 0.5 px, 0.801 (0.906) at 0.1, 0.902 (0.946) at 0.01, 0.935 (0.950) at 0.001,
+  // 0.947 (0.950) at 1e-4, 0.950 (0.950) at 1e-5. So 1e-5 it is. False alarm 2e-4; a covariance off by a
+  // factor of 1.25 covers 0.983, of 0.8 covers 0.885, and the interval is 0.012 wide: power 1.
   const NormalizedErrors errors = MeasureErrors(1e-5, 20'000, 160);
   const CoverageCount pose = Coverage(errors.pose, 5, 1.0), f = Coverage(errors.f, 8, 1.0);
   EXPECT_TRUE(pose.Admits(0.95)) << "Sigma_p: " << pose;
@@ -210,14 +217,6 @@ TEST(MotionCovariance, CoversInTheLimitOfSmallNoise) {
   for (const double scale : {1.25, 0.8}) {
     EXPECT_FALSE(Coverage(errors.pose, 5, scale).Admits(0.95)) << "no power against Sigma_p times " << scale;
     EXPECT_FALSE(Coverage(errors.f, 8, scale).Admits(0.95)) << "no power against Sigma_f times " << scale;
-  }
-}
-
-TEST(MotionCovariance, DISABLED_Measure) {
-  for (const double sigma : {0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    const NormalizedErrors errors = MeasureErrors(sigma, 20'000, 161);
-    std::cout << "sigma " << sigma << "  p: " << Coverage(errors.pose, 5, 1.0)
-              << "\n            f: " << Coverage(errors.f, 8, 1.0) << "\n";
   }
 }
 

@@ -1,0 +1,55 @@
+#include "stats/accuracy.h"
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace rcme {
+
+Measured Accuracy::bias() const { return {errors_.mean(), errors_.standard_error()}; }
+
+Measured Accuracy::empirical_standard_error() const {
+  const double s = std::sqrt(errors_.variance());
+  return {s, s / std::sqrt(2.0 * static_cast<double>(n() - 1))};
+}
+
+Measured Accuracy::mean_squared_error() const { return {squares_.mean(), squares_.standard_error()}; }
+
+Measured Accuracy::root_mean_squared_error() const {
+  const double root = std::sqrt(squares_.mean());
+  return {root, root == 0.0 ? 0.0 : squares_.standard_error() / (2.0 * root)};
+}
+
+MeasuredQuantile MeasureQuantile(std::vector<double> values, double p, double confidence) {
+  if (values.empty()) throw std::invalid_argument("quantile: no values");
+  if (!(p > 0.0 && p < 1.0)) throw std::invalid_argument("quantile: p must be in (0, 1)");
+  if (!(confidence > 0.0 && confidence < 1.0))
+    throw std::invalid_argument("quantile: confidence must be in (0, 1)");
+  for (const double x : values) {
+    if (std::isnan(x)) throw std::invalid_argument("quantile: a value is NaN");
+  }
+  std::sort(values.begin(), values.end());
+  const double n = static_cast<double>(values.size());
+  const auto ranked = [&](double rank) { return values[static_cast<size_t>(std::clamp(rank, 1.0, n)) - 1]; };
+
+  // The number of values <= the quantile is B ~ Binomial(n, p). The r-th smallest lies above it if B < r:
+  // lower is the largest r with P(B < r) <= tail, upper the least with P(B >= r) <= tail.
+  using boost::math::policies::discrete_quantile;
+  using boost::math::policies::integer_round_up;
+  using Policy = boost::math::policies::policy<discrete_quantile<integer_round_up>>;
+  const boost::math::binomial_distribution<double, Policy> law(n, p);
+  const double tail = 0.5 * (1.0 - confidence);
+  const double lower = quantile(law, tail), upper = quantile(complement(law, tail)) + 1.0;
+
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double spread = std::sqrt(n * p * (1.0 - p));
+  MeasuredQuantile measured;
+  measured.value = ranked(std::ceil(n * p));
+  measured.standard_error = 0.5 * (ranked(std::ceil(n * p + spread)) - ranked(std::floor(n * p - spread)));
+  measured.interval = {lower < 1.0 ? -kInfinity : ranked(lower), upper > n ? kInfinity : ranked(upper)};
+  return measured;
+}
+
+}  // namespace rcme

@@ -1,0 +1,53 @@
+// Performance measures of an estimator from its errors (estimate minus truth) over independent trials, each
+// with its Monte-Carlo standard error (Morris, White & Crowther 2019, table 6).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "stats/intervals.h"
+#include "stats/moments.h"
+
+namespace rcme {
+
+struct Measured {
+  double value = 0.0, standard_error = 0.0;
+};
+
+// A stream of errors in constant memory. NaN where there are not enough of them (one for a value, two for a
+// standard error); a NaN or infinite error spoils every measure, as it should: an estimator's refusals are
+// counted elsewhere, not here.
+class Accuracy {
+ public:
+  void Add(double error) { errors_.Add(error), squares_.Add(error * error); }
+  void Merge(const Accuracy& other) { errors_.Merge(other.errors_), squares_.Merge(other.squares_); }
+
+  std::int64_t n() const { return errors_.n(); }
+  // Mean error; s / sqrt(n).
+  Measured bias() const;
+  // Standard deviation s of the errors; s / sqrt(2 (n - 1)), which holds for normal errors.
+  Measured empirical_standard_error() const;
+  // Mean squared error; standard deviation of the squares / sqrt(n).
+  Measured mean_squared_error() const;
+  // Its root, not in the table: by the delta method the MSE's standard error / (2 RMSE). 0 of 0 is 0.
+  Measured root_mean_squared_error() const;
+
+ private:
+  Moments errors_, squares_;
+};
+
+// The p-quantile of a law from n independent values: the ceil(n p)-th smallest (the left-continuous inverse
+// of the empirical distribution function).
+struct MeasuredQuantile {
+  double value = 0.0;
+  // Half the distance between the order statistics n p +- sqrt(n p (1 - p)), rounded outwards and kept
+  // to 1..n: no density is estimated and no normality assumed.
+  double standard_error = 0.0;
+  // Between two order statistics, distribution-free: holds the quantile with at least `confidence`, each end
+  // missed with at most half of the rest. An end is infinite if no order statistic is far enough out.
+  Interval interval;
+};
+// Throws std::invalid_argument if there are no values, one is NaN, or p or confidence is not in (0, 1).
+MeasuredQuantile MeasureQuantile(std::vector<double> values, double p, double confidence = 0.95);
+
+}  // namespace rcme

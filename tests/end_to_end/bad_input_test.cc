@@ -1,0 +1,244 @@
+// What the program answers to input that is wrong: exit code 2, a sentence on standard error that names the
+// thing, and nothing lost or left behind.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/test_support/gzip.h"
+#include "tests/test_support/match_text.h"
+#include "tests/test_support/run_program.h"
+#include "tests/test_support/small_study.h"
+
+namespace rcme {
+namespace {
+
+// Whether the program ended with 2 and its standard error holds every fragment.
+testing::AssertionResult IsRefused(const ProgramResult& result, const std::vector<std::string>& fragments) {
+  const auto fail = [&](const std::string& why) {
+    return testing::AssertionFailure()
+           << why << "; exit code " << result.exit_code << ", standard error: " << result.err;
+  };
+  if (result.exit_code != 2) return fail("the exit code is not 2");
+  for (const std::string& fragment : fragments) {
+    if (result.err.find(fragment) == std::string::npos)
+      return fail("the error does not say '" + fragment + "'");
+  }
+  if (result.err.find("internal error") != std::string::npos) return fail("called an internal error");
+  return testing::AssertionSuccess();
+}
+
+class BadInput : public testing::Test {
+ protected:
+  ProgramResult Estimate(const std::string& name, const std::string& bytes) {
+    return RunRcme({"estimate", folder_.Write(name, bytes), "--json"});
+  }
+  ProgramResult Run(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"run", study_, "--threads", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunRcme(arguments);
+  }
+
+  TempFolder folder_;
+  std::string study_ = folder_.Write("small.yaml", SmallStudyYaml());
+  std::string out_ = folder_.Path("run.sqlite");
+};
+
+TEST_F(BadInput, MissingFiles) {
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", folder_.Path("none.csv")}), {"none.csv", "no such file"}));
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"summarize", folder_.Path("none.sqlite")}), {"none.sqlite", "no such result file"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"replay", folder_.Path("none.sqlite"), "--condition", "0", "--trial", "0"}),
+                        {"none.sqlite", "no such result file"}));
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"run", folder_.Path("none.yaml"), "--out", out_}), {"none.yaml", "no such study"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"match", folder_.Path("1.png"), folder_.Path("2.png"), "--K1", "1", "1", "0",
+                                 "0", "--out", folder_.Path("m.csv")}),
+                        {"1.png", "no such image"}));
+  EXPECT_EQ(folder_.NumEntries(), 1) << "something was left behind";
+}
+
+TEST_F(BadInput, TruncatedGzip) {
+  const std::string whole = Gzip(MatchHeader() + MatchRows(100));
+  EXPECT_TRUE(
+      IsRefused(Estimate("cut.csv.gz", whole.substr(0, whole.size() / 2)), {"cut.csv.gz", "truncated gzip"}));
+}
+
+TEST_F(BadInput, NumbersThatAreNone) {
+  for (const std::string word : {"nan", "inf", "-inf", "1e999"}) {
+    EXPECT_TRUE(IsRefused(Estimate("m.csv", MatchHeader() + MatchRows(20) + "1,2," + word + ",4\n"),
+                          {"m.csv:25: x2: '" + word + "' is not a finite number"}));
+  }
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", MatchHeader() + MatchRows(20) + "1e308,1e308,1e308,1e308\n"),
+                        {"m.csv", "match 20", "not a finite pixel position"}));
+}
+
+TEST_F(BadInput, SingularK) {
+  std::string header = MatchHeader();
+  header.replace(header.find("600 600"), 7, "600 0");
+  EXPECT_TRUE(
+      IsRefused(Estimate("m.csv", header + MatchRows(20)), {"m.csv:3: K1_fx_fy_cx_cy: K is singular"}));
+}
+
+TEST_F(BadInput, TooFewMatches) {
+  for (const std::string estimator : {"standard", "prcme", "rcme"}) {
+    const std::string path = folder_.Write("m.csv", MatchHeader() + MatchRows(7));
+    const ProgramResult result = RunRcme({"estimate", path, "--estimator", estimator, "--json"});
+    EXPECT_TRUE(IsRefused(result, {"m.csv", "7 distinct matches of 7; at least 8"}));
+    EXPECT_NE(result.out.find("\"status\": \"too_few_matches\""), std::string::npos) << result.out;
+  }
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", MatchHeader()), {"m.csv", "0 distinct matches"}));
+}
+
+TEST_F(BadInput, DuplicateMatchesOnly) {
+  std::string rows;
+  for (int i = 0; i < 100; ++i) rows += MatchRows(1);
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", MatchHeader() + rows), {"m.csv", "1 distinct matches of 100"}));
+}
+
+TEST_F(BadInput, AllPointsOnOneLine) {
+  std::string rows;
+  for (int i = 0; i < 60; ++i)
+    rows += fmt::format("{},{},{},{}\n", 10 + 9 * i, 20 + 5 * i, 600 - 7 * i, 30 + 4 * i);
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", MatchHeader() + rows), {"m.csv", "on one line"}));
+}
+
+TEST_F(BadInput, EmptyAndBinaryFiles) {
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", ""), {"m.csv", "size1", "is missing"}));
+  std::string bytes;
+  for (int i = 0; i < 100'000; ++i) bytes += static_cast<char>((i * i) >> 3);
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", bytes), {"m.csv"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", folder_.Write("bytes.yaml", bytes), "--out", out_}), {"bytes.yaml"}));
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"summarize", folder_.Path("m.csv")}), {"m.csv", "is not an rcme result file"}));
+}
+
+TEST_F(BadInput, UnknownStudyKey) {
+  const std::string bad = folder_.Write("bad.yaml", SmallStudyYaml() + "trails: 5\n");
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"run", bad, "--out", out_}), {"bad.yaml:10:", "'trails'", "known keys", "trials"}));
+  EXPECT_FALSE(std::filesystem::exists(out_)) << "a result file was made for a study that is none";
+}
+
+TEST_F(BadInput, StudiesThatCannotBePlannedNameTheirFile) {
+  const std::string bad =
+      folder_.Write("bad.yaml", "data: {scene: match_files, folder: " + folder_.Path("none") +
+                                    "}\nestimators: [{name: rcme}]\n");
+  EXPECT_TRUE(IsRefused(RunRcme({"run", bad, "--out", out_}), {"bad.yaml", "folder", "is not a folder"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", folder_.path(), "--out", out_}), {folder_.path(), "is a folder"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", "/dev/zero", "--out", out_}), {"/dev/zero", "larger than a study"}));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(BadInput, UnwritableOutput) {
+  EXPECT_TRUE(
+      IsRefused(Run({"--out", folder_.Path("none/run.sqlite")}), {"none/run.sqlite", "does not exist"}));
+  EXPECT_TRUE(IsRefused(Run({"--out", folder_.path()}), {folder_.path(), "is a folder"}));
+  EXPECT_TRUE(IsRefused(Run({"--out", ""}), {"--out", "''"}));
+  EXPECT_TRUE(IsRefused(Run({"--out", study_}), {"small.yaml", "is not an rcme result file"}));
+  EXPECT_EQ(ReadBytes(study_), SmallStudyYaml());
+  ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
+  EXPECT_TRUE(IsRefused(RunRcme({"summarize", out_, "--out", folder_.Path("none/table")}),
+                        {"none/table", "cannot be"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"summarize", out_, "--out", folder_.path()}),
+                        {folder_.path(), "cannot be written"}));
+  EXPECT_EQ(folder_.NumEntries(), 2) << "something was left behind";
+}
+
+TEST_F(BadInput, FullOutput) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
+  EXPECT_TRUE(IsRefused(Run({"--out", "/dev/full"}), {"/dev/full", "cannot be written"}));
+  for (const std::string format : {"table", "csv", "json"}) {
+    EXPECT_TRUE(IsRefused(RunRcme({"summarize", out_, "--format", format, "--out", "/dev/full"}),
+                          {"/dev/full", "No space left"}));
+    EXPECT_TRUE(IsRefused(RunShell("\"$RCME\" summarize '" + out_ + "' --format " + format + " > /dev/full"),
+                          {"standard output cannot be written"}));
+  }
+  const std::string matches = folder_.Write("m.csv", MatchHeader() + MatchRows(50));
+  for (const std::string& command :
+       {"estimate '" + matches + "'", "replay '" + out_ + "' --condition 0 --trial 0", std::string("list")}) {
+    EXPECT_TRUE(
+        IsRefused(RunShell("\"$RCME\" " + command + " > /dev/full"), {"standard output cannot be written"}));
+  }
+}
+
+TEST_F(BadInput, ADiskThatFillsUpLosesNothingThatWasThere) {
+  // A file-size limit (1 block: 512 bytes) stands for the full disk; the signal that comes with it is
+  // ignored.
+  const std::string run = "\"$RCME\" run '" + study_ + "' --out '" + out_ + "' --threads 1 --trials ";
+  ASSERT_EQ(RunShell(run + "20").exit_code, 0);
+  EXPECT_TRUE(
+      IsRefused(RunShell("trap '' XFSZ; ulimit -f 60; " + run + "2000"), {out_, "cannot be written"}));
+  const ProgramResult after = RunShell(run + "20");
+  EXPECT_EQ(after.exit_code, 0);
+  EXPECT_NE(after.err.find("(40 were there already)"), std::string::npos) << after.err;
+  EXPECT_EQ(RunRcme({"summarize", out_}).exit_code, 0);
+}
+
+TEST_F(BadInput, ResultsOfAnotherStudy) {
+  ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
+  const std::string bytes = ReadBytes(out_);
+  EXPECT_TRUE(IsRefused(Run({"--out", out_, "--seed", "9"}),
+                        {"run.sqlite", "another study", "'seed: 3' there, 'seed: 9' here", "--out"}));
+  EXPECT_TRUE(
+      IsRefused(Run({"--out", out_, "--set", "ours.mu=-1"}), {"run.sqlite", "another study", "mu: -1"}));
+  EXPECT_EQ(ReadBytes(out_), bytes);
+}
+
+TEST_F(BadInput, CommandLine) {
+  EXPECT_TRUE(IsRefused(RunRcme({}), {"subcommand", "--help"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"frobnicate"}), {"frobnicate"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run"}), {"study"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", study_}), {"--out"}));
+  EXPECT_TRUE(IsRefused(Run({"--out", out_, "--frobnicate"}), {"--frobnicate"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"list", "moons"}), {"moons", "estimators", "scenes"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"summarize", out_, "--format", "xml"}), {"--format", "xml", "csv"}));
+  for (const std::string value : {"0", "-3", "1e3", "99999999999999999999", "many"}) {
+    EXPECT_TRUE(IsRefused(Run({"--out", out_, "--trials", value}), {"--trials", value}));
+  }
+  EXPECT_TRUE(IsRefused(Run({"--out", out_, "--seed", "-1"}), {"--seed", "-1"}));
+  EXPECT_TRUE(IsRefused(Run({"--out", out_, "--threads", "-1"}), {"--threads", "-1"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", study_, "--estimator", "magsac"}),
+                        {"'magsac'", "standard, prcme, rcme"}));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(BadInput, Set) {
+  const auto refuses = [&](const std::string& text, const std::vector<std::string>& fragments) {
+    return IsRefused(Run({"--out", out_, "--set", text}), fragments);
+  };
+  EXPECT_TRUE(refuses("garbage", {"--set", "'garbage'", "key=value"}));
+  EXPECT_TRUE(refuses("=1", {"--set", "'=1'", "key=value"}));
+  EXPECT_TRUE(refuses("garbage=1", {"'garbage'", "known keys", "sigma_px"}));
+  EXPECT_TRUE(refuses("ours.garbage=1", {"'garbage'", "known keys", "num_iterations"}));
+  EXPECT_TRUE(refuses("theirs.mu=1", {"theirs"}));
+  EXPECT_TRUE(refuses("sigma_px=nan", {"sigma_px", "'nan'", "a number in"}));
+  EXPECT_TRUE(refuses("outlier_ratio=2", {"outlier_ratio", "'2'", "a number in [0, 1]"}));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(BadInput, Replay) {
+  ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
+  EXPECT_TRUE(IsRefused(RunRcme({"replay", out_, "--condition", "2", "--trial", "0"}),
+                        {"--condition", "2", "conditions 0 to 1"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"replay", out_, "--condition", "0", "--trial", "-1"}), {"--trial", "-1"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"replay", out_, "--condition", "0"}), {"--trial"}));
+}
+
+TEST(Help, IsThereForEveryCommand) {
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{}, {"run"}, {"summarize"}, {"replay"}, {"estimate"}, {"match"}, {"list"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.push_back("--help");
+    const ProgramResult result = RunRcme(arguments);
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.out.find("Usage"), std::string::npos) << result.out;
+    EXPECT_EQ(result.err, "");
+  }
+  EXPECT_EQ(RunRcme({"--version"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,281 @@
+#include "experiments/result_store.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using Trials = std::vector<std::uint32_t>;
+
+// Both estimators' records of one trial, no two numbers alike.
+std::vector<TrialRecord> RecordsOfTrial(std::uint32_t condition, std::uint32_t trial) {
+  std::vector<TrialRecord> records;
+  for (std::uint32_t estimator = 0; estimator < 2; ++estimator) {
+    TrialRecord record;
+    int next = static_cast<int>(100'000 * condition + 1000 * trial + 100 * estimator);
+    VisitFields(record, [&]([[maybe_unused]] const char* name, auto& field) {
+      using Field = std::decay_t<decltype(field)>;
+      if constexpr (std::is_same_v<Field, double>) {
+        field = ++next + 1.0 / 3.0;
+      } else if constexpr (std::is_same_v<Field, int>) {
+        field = ++next;
+      }
+    });
+    record.status = MotionStatus::kOk;
+    record.condition = condition;
+    record.trial = trial;
+    record.estimator = estimator;
+    record.failed_by_kappa = estimator == 1;
+    records.push_back(record);
+  }
+  return records;
+}
+
+// The first column of the first row that `sql` gives.
+std::string Query(const std::string& path, const std::string& sql) {
+  sqlite3* database = nullptr;
+  sqlite3_open(path.c_str(), &database);
+  std::string answer = "(no row)";
+  const auto keep_first = [](void* out, int, char** values, char**) {
+    *static_cast<std::string*>(out) = values[0] ? values[0] : "NULL";
+    return 0;
+  };
+  char* error = nullptr;
+  if (sqlite3_exec(database, sql.c_str(), keep_first, &answer, &error) != SQLITE_OK) answer = error;
+  sqlite3_free(error);
+  sqlite3_close(database);
+  return answer;
+}
+
+class ResultStoreTest : public testing::Test {
+ protected:
+  std::string Text(const ResultStore& store) {
+    std::string text;
+    store.ForEachRecord([&](const TrialRecord& record) { text += RecordText(record) + "\n"; });
+    return text;
+  }
+  testing::AssertionResult RefusesToRun(const std::string& path, std::vector<std::string> fragments) {
+    fragments.push_back(path);
+    return ThrowsInputError([&] { ResultStore::OpenForRun(path, plan_); }, fragments);
+  }
+
+  TempFolder folder_;
+  std::string path_ = folder_.Path("run.sqlite");
+  StudyPlan plan_ = MakePlan(SmallStudy());
+};
+
+TEST_F(ResultStoreTest, KeepsEveryFieldOfEveryRecord) {
+  std::string expected;
+  for (const auto& [condition, trial] : {std::pair{0u, 0u}, {0u, 4u}, {1u, 2u}}) {
+    for (const TrialRecord& record : RecordsOfTrial(condition, trial)) expected += RecordText(record) + "\n";
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    store.Add(RecordsOfTrial(1, 2));  // in any order
+    store.Add(RecordsOfTrial(0, 4));
+    store.Add(RecordsOfTrial(0, 0));
+    EXPECT_EQ(Text(store), expected);  // seen before it is written
+  }
+  const ResultStore store = ResultStore::OpenForReading(path_);
+  EXPECT_EQ(Text(store), expected);
+  EXPECT_EQ(store.Plan().study_yaml, plan_.study_yaml);
+  ASSERT_EQ(store.RecordsOf(0, 4).size(), 2u);
+  EXPECT_EQ(RecordText(store.RecordsOf(0, 4)[1]), RecordText(RecordsOfTrial(0, 4)[1]));
+  EXPECT_EQ(store.RecordsOf(0, 4)[1].seconds, RecordsOfTrial(0, 4)[1].seconds);
+  EXPECT_TRUE(store.RecordsOf(0, 5).empty());
+}
+
+TEST_F(ResultStoreTest, TablesAreReadableWithoutUs) {
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    store.Add(RecordsOfTrial(1, 2));
+  }
+  EXPECT_EQ(Query(path_, "SELECT level FROM conditions WHERE condition = 1 AND factor = 'outlier_ratio'"),
+            "0.3");
+  EXPECT_EQ(Query(path_, "SELECT label FROM estimators WHERE estimator = 1"), "ours");
+  EXPECT_EQ(Query(path_, "SELECT count(*) FROM trials WHERE status = 'ok'"), "2");
+  EXPECT_EQ(Query(path_, "PRAGMA integrity_check"), "ok");
+}
+
+TEST_F(ResultStoreTest, UnknownNumbersAreNull) {
+  TrialRecord record;
+  record.status = MotionStatus::kNoCandidate;
+  record.rotation_error_deg = kNaN;
+  record.nees = std::numeric_limits<double>::infinity();
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    store.Add({record});
+  }
+  EXPECT_EQ(Query(path_, "SELECT rotation_error_deg FROM trials"), "NULL");
+  EXPECT_EQ(Query(path_, "SELECT count(*) FROM trials WHERE direction_error_deg IS NULL"), "0");
+  const ResultStore store = ResultStore::OpenForReading(path_);
+  const TrialRecord again = store.RecordsOf(0, 0).at(0);
+  EXPECT_TRUE(std::isnan(again.rotation_error_deg));
+  EXPECT_EQ(again.direction_error_deg, 0.0);
+  EXPECT_EQ(again.nees, std::numeric_limits<double>::infinity());
+}
+
+TEST_F(ResultStoreTest, EveryStatusComesBack) {
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  std::uint32_t trial = 0;
+  for (const MotionStatus status : AllStatuses()) {
+    TrialRecord record;
+    record.trial = trial++;
+    record.status = status;
+    store.Add({record});
+  }
+  trial = 0;
+  for (const MotionStatus status : AllStatuses()) EXPECT_EQ(store.RecordsOf(0, trial++).at(0).status, status);
+}
+
+TEST_F(ResultStoreTest, MissingTrials) {
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  EXPECT_EQ(store.MissingTrials(0, 0, 4), (Trials{0, 1, 2, 3}));
+  EXPECT_EQ(store.MissingTrials(0, 3, 3), Trials{});
+  for (const std::uint32_t trial : {0u, 2u, 5u}) store.Add(RecordsOfTrial(0, trial));
+  EXPECT_EQ(store.MissingTrials(0, 0, 7), (Trials{1, 3, 4, 6}));
+  EXPECT_EQ(store.MissingTrials(0, 2, 6), (Trials{3, 4}));
+  EXPECT_EQ(store.MissingTrials(0, 5, 6), Trials{});
+  EXPECT_EQ(store.MissingTrials(1, 0, 2), (Trials{0, 1}));
+}
+
+TEST_F(ResultStoreTest, AddsWholeTrialsOnce) {
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  store.Add(RecordsOfTrial(0, 0));
+  EXPECT_TRUE(ThrowsInputError([&] { store.Add(RecordsOfTrial(0, 0)); }, {path_}));
+}
+
+TEST_F(ResultStoreTest, ReopensForMoreTrialsAndAnotherDescription) {
+  { ResultStore::OpenForRun(path_, plan_).Add(RecordsOfTrial(0, 0)); }
+  Study study = SmallStudy();
+  study.trials = 50;
+  study.description = "now with a description";
+  const StudyPlan longer = MakePlan(study);
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, longer);
+    EXPECT_EQ(store.MissingTrials(0, 0, 2), Trials{1});
+  }
+  EXPECT_EQ(ResultStore::OpenForReading(path_).Plan().study_yaml, longer.study_yaml);
+}
+
+TEST_F(ResultStoreTest, RefusesAnotherStudyAndSaysWhatDiffers) {
+  { ResultStore::OpenForRun(path_, plan_).Add(RecordsOfTrial(0, 0)); }
+  const std::string bytes = ReadBytes(path_);
+  const auto refuses = [&](const std::string& key, const std::string& value, const std::string& difference) {
+    Study study = SmallStudy();
+    Override(&study, key, value);
+    return ThrowsInputError([&] { ResultStore::OpenForRun(path_, MakePlan(study)); },
+                            {path_, "another study", difference, "--out"});
+  };
+  EXPECT_TRUE(refuses("sigma_px", "0.7", "sigma_px: 0.7' here"));
+  EXPECT_TRUE(refuses("sigma_px", "0.7", "sigma_px: 0.5' there"));
+  EXPECT_TRUE(refuses("ours.mu", "-1", "mu: -1' here"));
+  EXPECT_TRUE(refuses("max_rotation_error_deg", "1", "max_rotation_error_deg: 1' here"));
+  EXPECT_TRUE(refuses("outlier_ratio", "0.3", "outlier_ratio"));
+  Study study = SmallStudy();
+  study.seed = 4;
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForRun(path_, MakePlan(study)); },
+                               {"'seed: 3' there, 'seed: 4' here"}));
+  study = SmallStudy();
+  study.estimators.pop_back();
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForRun(path_, MakePlan(study)); }, {"another study"}));
+  EXPECT_EQ(ReadBytes(path_), bytes) << "a refusal changed the file";
+}
+
+TEST_F(ResultStoreTest, RefusesFilesOfOthers) {
+  const std::string text = "this is a letter, not a database; it must not be lost\n" + std::string(5000, '.');
+  const std::string letter = folder_.Write("letter.txt", text);
+  EXPECT_TRUE(RefusesToRun(letter, {"is not an rcme result file"}));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ResultStore::OpenForReading(letter); }, {letter, "is not an rcme result file"}));
+  EXPECT_EQ(ReadBytes(letter), text);
+
+  const std::string other = folder_.Path("other.sqlite");
+  Query(other, "CREATE TABLE letters (text)");
+  EXPECT_TRUE(RefusesToRun(other, {"is not an rcme result file"}));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ResultStore::OpenForReading(other); }, {other, "is not an rcme result file"}));
+  EXPECT_EQ(Query(other, "SELECT count(*) FROM sqlite_master"), "1");
+
+  const std::string later = folder_.Path("later.sqlite");
+  { ResultStore::OpenForRun(later, plan_); }
+  Query(later, "UPDATE run SET value = 'rcme results 99' WHERE key = 'format'");
+  EXPECT_TRUE(RefusesToRun(later, {"rcme results 1"}));
+}
+
+TEST_F(ResultStoreTest, PathsThatCannotBeWritten) {
+  EXPECT_TRUE(RefusesToRun(folder_.path(), {"is a folder"}));
+  EXPECT_TRUE(RefusesToRun(folder_.Path("none/run.sqlite"), {"does not exist"}));
+  EXPECT_TRUE(RefusesToRun("", {"--out", "''"}));
+  if (std::filesystem::exists("/dev/full")) {
+    EXPECT_TRUE(RefusesToRun("/dev/full", {"cannot be written"}));
+  }
+}
+
+TEST_F(ResultStoreTest, NamesThatSqliteReadsOtherwiseAreFiles) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  for (const std::string name : {":memory:", "file:run", "file:run?mode=memory", "r\xC3\xA4n 1.sqlite"}) {
+    { ResultStore::OpenForRun(name, plan_).Add(RecordsOfTrial(0, 0)); }
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder_.Path(name))) << name;
+    EXPECT_EQ(ResultStore::OpenForReading(name).RecordsOf(0, 0).size(), 2u) << name;
+  }
+  std::filesystem::current_path(before);
+}
+
+TEST_F(ResultStoreTest, ReadOnlyFolder) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  std::filesystem::permissions(folder_.path(),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_TRUE(RefusesToRun(path_, {"cannot be opened for writing"}));
+  std::filesystem::permissions(folder_.path(), std::filesystem::perms::owner_all);
+}
+
+TEST_F(ResultStoreTest, ASecondRunIsRefusedWhileTheFirstGoesOn) {
+  {
+    ResultStore first = ResultStore::OpenForRun(path_, plan_);
+    first.Add(RecordsOfTrial(0, 0));
+    EXPECT_TRUE(RefusesToRun(path_, {"in use by another run"}));
+    EXPECT_TRUE(
+        ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, {path_, "in use by another run"}));
+    first.Add(RecordsOfTrial(0, 1));
+  }
+  EXPECT_EQ(ResultStore::OpenForRun(path_, plan_).MissingTrials(0, 0, 3), Trials{2});
+}
+
+TEST_F(ResultStoreTest, NothingToRead) {
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, {path_, "no such result file"}));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ResultStore::OpenForReading(folder_.path()); }, {"no such result file"}));
+  EXPECT_EQ(folder_.NumEntries(), 0) << "looking for a file made one";
+}
+
+TEST_F(ResultStoreTest, ADamagedFileIsNamed) {
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    for (std::uint32_t trial = 0; trial < 200; ++trial) store.Add(RecordsOfTrial(0, trial));
+  }
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 2);
+  EXPECT_TRUE(ThrowsInputError(
+      [&] {
+        const ResultStore store = ResultStore::OpenForReading(path_);
+        Text(store);
+      },
+      {path_, "damaged"}));
+}
+
+}  // namespace
+}  // namespace rcme

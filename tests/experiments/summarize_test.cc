@@ -1,0 +1,283 @@
+#include "experiments/summarize.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "experiments/summary_output.h"
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TrialRecord Motion(std::uint32_t trial, double rotation_deg, double direction_deg, double nees) {
+  TrialRecord record;
+  record.trial = trial;
+  record.status = MotionStatus::kOk;
+  record.rotation_error_deg = rotation_deg;
+  record.direction_error_deg = direction_deg;
+  record.nees = nees;
+  record.inlier_precision = 0.5;
+  record.inlier_recall = 0.25;
+  record.num_support = 10 + static_cast<int>(trial);
+  record.mean_entropy = -4.0;
+  record.counts.num_candidates = 3;
+  record.seconds = 0.002;
+  return record;
+}
+
+TrialRecord NoMotion(std::uint32_t trial, MotionStatus status) {
+  TrialRecord record;
+  record.trial = trial;
+  record.status = status;
+  record.rotation_error_deg = record.direction_error_deg = record.nees = kNaN;
+  record.inlier_precision = record.inlier_recall = record.mean_entropy = record.z_statistic = kNaN;
+  record.seconds = 0.004;
+  return record;
+}
+
+// Condition 0, estimator 0 ("standard"), ten trials: four successes, two failures, four without a motion.
+std::vector<TrialRecord> HandMadeRecords() {
+  std::vector<TrialRecord> records = {
+      Motion(0, 1.0, 2.0, 4.0),
+      Motion(1, 2.0, 4.0, 6.0),
+      Motion(2, 3.0, 15.0, 20.0),  // at both bounds: a success; outside of the 95 % region (11.07)
+      Motion(3, 2.0, 3.0, 2.0),
+      Motion(4, 3.5, 1.0, 30.0),  // fails by its rotation
+      Motion(5, 1.0, 40.0, 3.0),  // fails by its direction
+      NoMotion(6, MotionStatus::kNoCandidate),
+      NoMotion(7, MotionStatus::kNoCandidate),
+      NoMotion(8, MotionStatus::kRefinementDiverged),
+      NoMotion(9, MotionStatus::kTooFewMatches),
+  };
+  records[5].failed_by_kappa = true;
+  records[3].inlier_precision = 1.0;
+  return records;
+}
+
+class SummarizeTest : public testing::Test {
+ protected:
+  SummarizeTest() { Write("run", HandMadeRecords()); }
+
+  void Write(const std::string& name, const std::vector<TrialRecord>& records) {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path(name), MakePlan(study_));
+    store.Add(records);
+  }
+  Summary SummaryOf(const std::string& name, bool with_times = false) {
+    return Summarize(ResultStore::OpenForReading(folder_.Path(name)), with_times);
+  }
+  SummaryRow Row(const std::string& quantity, std::uint32_t condition = 0,
+                 const std::string& estimator = "standard") {
+    for (const SummaryRow& row : SummaryOf("run", true).rows) {
+      if (row.quantity == quantity && row.condition == condition && row.estimator == estimator) return row;
+    }
+    ADD_FAILURE() << "no row of " << quantity;
+    return {};
+  }
+  void ExpectRate(const std::string& quantity, std::int64_t count, std::int64_t n) {
+    const SummaryRow row = Row(quantity);
+    EXPECT_EQ(row.kind, SummaryRow::Kind::kRate) << quantity;
+    EXPECT_EQ(row.n, n) << quantity;
+    EXPECT_DOUBLE_EQ(row.value, static_cast<double>(count) / static_cast<double>(n)) << quantity;
+    EXPECT_EQ(row.interval.lower, ExactBinomialInterval(count, n).lower) << quantity;
+    EXPECT_EQ(row.interval.upper, ExactBinomialInterval(count, n).upper) << quantity;
+  }
+  void ExpectMean(const std::string& quantity, const std::vector<double>& values) {
+    double mean = 0.0, sum_squares = 0.0;
+    const double n = static_cast<double>(values.size());
+    for (const double value : values) mean += value / n;
+    for (const double value : values) sum_squares += (value - mean) * (value - mean);
+    const SummaryRow row = Row(quantity);
+    EXPECT_EQ(row.kind, SummaryRow::Kind::kMean) << quantity;
+    EXPECT_EQ(row.n, static_cast<std::int64_t>(values.size())) << quantity;
+    EXPECT_NEAR(row.value, mean, 1e-12) << quantity;
+    EXPECT_NEAR(row.standard_error, std::sqrt(sum_squares / (n - 1.0) / n), 1e-12) << quantity;
+  }
+
+  TempFolder folder_;
+  Study study_ = SmallStudy();
+};
+
+TEST_F(SummarizeTest, RatesByHand) {
+  ExpectRate("success", 4, 10);
+  ExpectRate("failure", 2, 10);
+  ExpectRate("no_candidate", 2, 10);
+  ExpectRate("too_few_matches", 1, 10);
+  ExpectRate("degenerate_matches", 0, 10);
+  ExpectRate("refinement_diverged", 1, 10);
+  ExpectRate("invalid_input", 0, 10);
+  ExpectRate("other_refusal", 2, 10);  // too_few_matches and refinement_diverged
+  ExpectRate("kappa_flag", 1, 6);      // of the six returned motions
+  ExpectRate("nees_coverage", 4, 6);   // 4, 6, 2, 3 of 4, 6, 20, 2, 30, 3
+}
+
+TEST_F(SummarizeTest, AKnownInterval) {
+  // Clopper-Pearson of 4 of 10, e.g. R: binom.test(4, 10)$conf.int.
+  EXPECT_NEAR(Row("success").interval.lower, 0.1215523, 1e-7);
+  EXPECT_NEAR(Row("success").interval.upper, 0.7376219, 1e-7);
+}
+
+TEST_F(SummarizeTest, MeansByHand) {
+  ExpectMean("nees", {4, 6, 20, 2});
+  ExpectMean("rotation_error_deg", {1, 2, 3, 2});
+  ExpectMean("direction_error_deg", {2, 4, 15, 3});
+  ExpectMean("inlier_precision", {0.5, 0.5, 0.5, 1.0, 0.5, 0.5});
+  ExpectMean("inlier_recall", {0.25, 0.25, 0.25, 0.25, 0.25, 0.25});
+  ExpectMean("num_support", {10, 11, 12, 13, 14, 15});
+  ExpectMean("mean_entropy", {-4, -4, -4, -4, -4, -4});
+  ExpectMean("num_candidates", {3, 3, 3, 3, 3, 3, 0, 0, 0, 0});
+  ExpectMean("time_ms", {2, 2, 2, 2, 2, 2, 4, 4, 4, 4});
+}
+
+TEST_F(SummarizeTest, EveryTrialHasExactlyOneOutcome) {
+  double sum = 0.0;
+  std::set<std::string> outcomes = {"success", "failure"};
+  for (const MotionStatus status : AllStatuses()) {
+    if (status != MotionStatus::kOk) outcomes.insert(StatusName(status));
+  }
+  for (const std::string& outcome : outcomes) sum += Row(outcome).value;
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST_F(SummarizeTest, EmptyCellsSayThatNothingIsKnown) {
+  for (const auto& [condition, estimator] : {std::pair{0u, "ours"}, {1u, "standard"}, {1u, "ours"}}) {
+    for (const char* quantity : {"success", "nees_coverage"}) {
+      const SummaryRow row = Row(quantity, condition, estimator);
+      EXPECT_EQ(row.n, 0);
+      EXPECT_TRUE(std::isnan(row.value));
+      EXPECT_EQ(row.interval.lower, 0.0);
+      EXPECT_EQ(row.interval.upper, 1.0);
+    }
+    EXPECT_TRUE(std::isnan(Row("nees", condition, estimator).value));
+    EXPECT_TRUE(std::isnan(Row("nees", condition, estimator).standard_error));
+  }
+}
+
+TEST_F(SummarizeTest, RowsAreComplete) {
+  const Summary summary = SummaryOf("run", true);
+  EXPECT_EQ(summary.study, "small");
+  EXPECT_EQ(summary.factor_names, std::vector<std::string>{"outlier_ratio"});
+  EXPECT_EQ(summary.num_trials_done, 10);
+  EXPECT_EQ(summary.num_trials_planned, 12);
+  EXPECT_EQ(summary.rows.size(), 2 * 2 * SummaryQuantities().size());
+  EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0.0"});
+  EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
+  for (const SummaryRow& row : SummaryOf("run").rows)
+    EXPECT_NE(row.quantity, "time_ms") << "times were not asked for";
+}
+
+TEST_F(SummarizeTest, ARecordOutsideOfTheStudyIsDamage) {
+  TrialRecord record = Motion(0, 1.0, 1.0, 1.0);
+  record.condition = 2;
+  Write("damaged", {record});
+  EXPECT_TRUE(ThrowsInputError([&] { SummaryOf("damaged"); }, {"damaged", "condition 2"}));
+}
+
+TEST_F(SummarizeTest, UnknownTruthIsNotCounted) {
+  TrialRecord unknown = Motion(0, kNaN, kNaN, kNaN);
+  unknown.condition = 1;
+  TrialRecord no_direction = Motion(1, 1.0, kNaN, kNaN);
+  no_direction.condition = 1;
+  Write("run", {unknown, no_direction});
+  EXPECT_EQ(Row("rotation_error_deg", 1).n, 1);
+  EXPECT_EQ(Row("direction_error_deg", 1).n, 0);
+  EXPECT_EQ(Row("nees_coverage", 1).n, 0);
+  EXPECT_EQ(Row("num_support", 1).n, 2);
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(SummarizeTest, Csv) {
+  const std::vector<std::string> lines = Lines(SummaryAsCsv(SummaryOf("run")));
+  ASSERT_EQ(lines.size(), 1 + SummaryOf("run").rows.size());
+  EXPECT_EQ(lines[0],
+            "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n");
+  EXPECT_EQ(lines[1], "small,0,0.0,standard,success,rate,0.4,0.12155226,0.73762192,,10");
+  const auto has_line = [&](const std::string& line) {
+    return std::count(lines.begin(), lines.end(), line) == 1;
+  };
+  EXPECT_TRUE(has_line("small,0,0.0,standard,rotation_error_deg,mean,2,,,0.40824829,4"));  // sqrt(2 / 3 / 4)
+  EXPECT_TRUE(has_line("small,1,0.3,ours,success,rate,,0,1,,0"));
+  EXPECT_TRUE(has_line("small,1,0.3,ours,nees,mean,,,,,0"));
+  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 10) << line;
+}
+
+TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
+  study_.name = "a, \"b\"";
+  study_.estimators[0].label = "line\nbreak";
+  Write("quoted", {});
+  const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0.0,\"line\nbreak\",success,rate,,0,1,,0\n"), std::string::npos)
+      << csv;
+}
+
+TEST_F(SummarizeTest, JsonHoldsTheSameRows) {
+  const Summary summary = SummaryOf("run");
+  const nlohmann::json json = nlohmann::json::parse(SummaryAsJson(summary));
+  EXPECT_EQ(json["study"], "small");
+  EXPECT_EQ(json["trials_done"], 10);
+  EXPECT_EQ(json["trials_planned"], 12);
+  ASSERT_EQ(json["rows"].size(), summary.rows.size());
+  for (size_t i = 0; i < summary.rows.size(); ++i) {
+    const SummaryRow& row = summary.rows[i];
+    const nlohmann::json& entry = json["rows"][i];
+    EXPECT_EQ(entry["condition"], row.condition);
+    EXPECT_EQ(entry["levels"]["outlier_ratio"], row.levels[0]);
+    EXPECT_EQ(entry["estimator"], row.estimator);
+    EXPECT_EQ(entry["quantity"], row.quantity);
+    EXPECT_EQ(entry["n"], row.n);
+    EXPECT_EQ(entry["value"].is_null(), row.n == 0);
+    if (row.n > 0) {
+      EXPECT_EQ(entry["value"], row.value);
+    }
+    if (row.kind == SummaryRow::Kind::kRate) {
+      EXPECT_EQ(entry["kind"], "rate");
+      EXPECT_EQ(entry["interval"], nlohmann::json({row.interval.lower, row.interval.upper}));
+    } else {
+      EXPECT_EQ(entry["kind"], "mean");
+      EXPECT_EQ(entry["standard_error"].is_null(), std::isnan(row.standard_error));
+    }
+  }
+}
+
+TEST_F(SummarizeTest, TableShowsIntervalsAndCounts) {
+  const std::string table = SummaryAsTable(SummaryOf("run"));
+  EXPECT_NE(table.find("Study small: 10 of 12 trials done"), std::string::npos) << table;
+  EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;  // failure, 2 of 10
+  EXPECT_NE(table.find("Clopper-Pearson"), std::string::npos) << table;
+}
+
+TEST_F(SummarizeTest, EqualDataGiveEqualBytesInWhateverOrderTheyCame) {
+  std::vector<TrialRecord> reversed = HandMadeRecords();
+  std::reverse(reversed.begin(), reversed.end());
+  for (TrialRecord& record : reversed) record.seconds *= 7.0;
+  Write("reversed", reversed);
+  EXPECT_EQ(SummaryAsCsv(SummaryOf("run")), SummaryAsCsv(SummaryOf("reversed")));
+  EXPECT_EQ(SummaryAsJson(SummaryOf("run")), SummaryAsJson(SummaryOf("reversed")));
+  EXPECT_EQ(SummaryAsTable(SummaryOf("run")), SummaryAsTable(SummaryOf("reversed")));
+}
+
+TEST(FormatColumns, PadsToTheWidestCell) {
+  EXPECT_EQ(FormatColumns({{"a", "bcd"}, {"long", "x"}, {"", "y"}}),
+            "a     bcd\n----  ---  \nlong  x\n      y\n");
+}
+
+}  // namespace
+}  // namespace rcme

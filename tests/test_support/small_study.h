@@ -1,0 +1,43 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <type_traits>
+
+#include "experiments/study_file.h"
+#include "experiments/study_plan.h"
+#include "experiments/trial_fields.h"
+
+namespace rcme {
+
+// Two conditions, two estimators, quick to run.
+inline std::string SmallStudyYaml() {
+  return "name: small\n"
+         "seed: 3\n"
+         "trials: 6\n"
+         "data: {scene: uniform_volume, num_matches: 60, sigma_px: 0.5}\n"
+         "factors:\n"
+         "  outlier_ratio: [0.0, 0.3]\n"
+         "estimators:\n"
+         "  - {name: standard, options: {num_iterations: 20}}\n"
+         "  - {name: rcme, label: ours, options: {num_iterations: 20, reading: rank_aware}}\n";
+}
+
+inline Study SmallStudy() { return ParseStudy(SmallStudyYaml(), "small.yaml"); }
+
+// Every field of a record but the time, as text with all bits.
+inline std::string RecordText(const TrialRecord& record) {
+  std::string text;
+  VisitFields(record, [&](const std::string& name, const auto& field) {
+    if (name == "seconds") return;
+    if constexpr (std::is_same_v<std::decay_t<decltype(field)>, MotionStatus>) {
+      text += name + "=" + StatusName(field) + " ";
+    } else {
+      text += fmt::format("{}={} ", name, field);
+    }
+  });
+  return text;
+}
+
+}  // namespace rcme
