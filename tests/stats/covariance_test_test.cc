@@ -170,6 +170,10 @@ TEST(CovarianceTest, BadInput) {
   EXPECT_EQ(errors.n(), 100);
   EXPECT_EQ(errors.num_not_whitened(), 2);
   EXPECT_EQ(errors.Test().p_value, 0.0);
+  WhitenedErrors merged(2);
+  merged.Merge(errors);
+  EXPECT_EQ(merged.num_not_whitened(), 2);
+  EXPECT_EQ(merged.Test().p_value, 0.0);
   EXPECT_THROW(errors.Add(Eigen::Vector3d::Zero(), identity), std::invalid_argument);
   EXPECT_THROW(errors.Merge(WhitenedErrors(3)), std::invalid_argument);
 }

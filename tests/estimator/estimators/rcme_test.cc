@@ -38,13 +38,17 @@ TEST(Rcme, TheSampleTestIsTheOnlyDifferenceToPrcme) {
   EXPECT_EQ(with.num_degenerate_samples, without.num_degenerate_samples);
 }
 
-TEST(Rcme, AStricterMuRefusesMoreAndTheLaxestNothing) {
+TEST(Rcme, AStricterMuRefusesMore) {
   const MotionProblem problem = MakeProblem(0.2, 0);
-  RansacOptions options;
-  options.mu = -1000.0;
-  EXPECT_EQ(RunOn(RcmeEstimator(options, kOff), problem).status, MotionStatus::kNoCandidate);
-  options.mu = 1000.0;
-  EXPECT_EQ(RunOn(RcmeEstimator(options, kOff), problem).counts.num_poor_inlier_sets, 0);
+  const auto run_at = [&](double mu) {
+    RansacOptions options;
+    options.mu = mu;
+    return RunOn(RcmeEstimator(options, kOff), problem);
+  };
+  EXPECT_EQ(run_at(-1000.0).status, MotionStatus::kNoCandidate);
+  EXPECT_EQ(run_at(-1000.0).counts.num_poor_inlier_sets, 200);
+  EXPECT_GT(run_at(-3.53).counts.num_poor_inlier_sets, run_at(1000.0).counts.num_poor_inlier_sets);
+  EXPECT_EQ(run_at(1000.0).status, MotionStatus::kOk);
 }
 
 TEST(Rcme, TheLevelAlphaTestPassesNoMoreThanThePrintedOne) {
