@@ -89,7 +89,7 @@ KNOWN_LOOKS = {
     "rcme_as_printed": Look("RCME, as printed", BLUE, "X"),
     "prcme_rank_aware": Look("pRCME, rank-aware", VERMILLION, "^", DASHED),
     "rcme_rank_aware": Look("RCME, rank-aware", SKY_BLUE, "v", DASH_DOT),
-    "rcme_predictive": Look("RCME, predictive likelihood", GREEN, "d", DOTTED),
+    "rcme_predictive": Look("RCME, predictive likelihood", GREEN, "H", DOTTED),
 }
 OTHER_COLORS = (GREEN, PURPLE, BLUE, VERMILLION, BLACK, SKY_BLUE, ORANGE)
 OTHER_MARKERS = ("<", "*", "d", ">", "p", "h")

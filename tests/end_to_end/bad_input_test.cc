@@ -107,7 +107,7 @@ TEST_F(BadInput, AllPointsOnOneLine) {
 TEST_F(BadInput, EmptyAndBinaryFiles) {
   EXPECT_TRUE(IsRefused(Estimate("m.csv", ""), {"m.csv", "size1", "is missing"}));
   std::string bytes;
-  for (int i = 0; i < 100'000; ++i) bytes += static_cast<char>((i * i) >> 3);
+  for (unsigned i = 0; i < 100'000; ++i) bytes += static_cast<char>((i * i) >> 3);
   EXPECT_TRUE(IsRefused(Estimate("m.csv", bytes), {"m.csv"}));
   EXPECT_TRUE(IsRefused(RunRcme({"run", folder_.Write("bytes.yaml", bytes), "--out", out_}), {"bytes.yaml"}));
   EXPECT_TRUE(
