@@ -7,7 +7,7 @@
 
 namespace rcme {
 
-// Two readings of the paper's Sampson covariance (MATH section 4).
+// Two readings of the paper's Sampson covariance; README, "Two readings".
 enum class Reading {
   kAsPrinted,  // full 4x4 inverse, chi2_3, entropy of a 4-dimensional Gaussian; each sample point tested on
                // its own

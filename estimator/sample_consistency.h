@@ -22,7 +22,7 @@ bool EverySamplePointFits(const MotionProblem& problem, const Hypothesis& hypoth
 
 // Rank-aware: the sample constrains the motion in three directions at once. With N (9x3) spanning what is
 // normal to the essential matrices at the projected E, T = (N'f)' (N' Sigma_f N)^-1 (N'f) ~ chi2_3 as sigma
-// -> 0 (MATH section 5). Infinite if N' Sigma_f N is singular.
+// -> 0. Infinite if N' Sigma_f N is singular.
 double JointSampleStatistic(const Hypothesis& hypothesis);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// The epipolar constraint of one correspondence and its Sampson correction, in pixels (MATH: Sampson vector).
+// The epipolar constraint of one correspondence and its Sampson correction, in pixels.
 #pragma once
 
 #include <Eigen/Core>

@@ -121,7 +121,8 @@ void AddEstimateCommand(CLI::App& app) {
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
-  command->add_option("--set", arguments->overrides, "option=value, repeatable; see `rcme list options`");
+  command->add_option("--set", arguments->overrides, "option=value, repeatable; see `rcme list options`")
+      ->allow_extra_args(false);
   command->add_flag("--json", arguments->as_json,
                     "one JSON object; R row-major (9), pose_cov row-major (25), rad^2");
   command->callback([arguments] { RunEstimate(*arguments); });

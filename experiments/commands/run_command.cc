@@ -63,10 +63,12 @@ void AddRunCommand(CLI::App& app) {
       ->add_option("-o,--out", arguments->out,
                    "result file (SQLite); a run that was cut off is resumed, another study is refused")
       ->required();
-  command->add_option(
-      "--set", arguments->overrides,
-      "key=value, repeatable: a data key (sigma_px=1), an option of all estimators (mu=-2) or of one "
-      "(rcme.mu=-2), or a failure bound");
+  command
+      ->add_option(
+          "--set", arguments->overrides,
+          "key=value, repeatable: a data key (sigma_px=1), an option of all estimators (mu=-2) or of one "
+          "(rcme.mu=-2), or a failure bound")
+      ->allow_extra_args(false);
   command->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{2'000'000'000}));
   command->add_option("--seed", arguments->seed, "seed of all random streams")

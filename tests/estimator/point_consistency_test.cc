@@ -54,7 +54,7 @@ double Entropy(const auto& test, const Correspondence& match) {
   return test.Entropy(residual);
 }
 
-// delta' Sigma_delta^-1 delta and log det Sigma_delta by the textbook route (equations of MATH section 4,
+// delta' Sigma_delta^-1 delta and log det Sigma_delta by the textbook route (the equations as printed,
 // written out again here) in long double, whose 4x4 inverse still has digits where g is small. Sigma_delta
 // comes along.
 using LongMatrix4 = Eigen::Matrix<long double, 4, 4>;
@@ -236,8 +236,8 @@ TEST(AsPrintedTest, ClosedFormEqualsTheFourByFourInverse) { CompareWithTextbook(
 TEST(AsPrintedTest, ClosedFormHoldsForWellKnownMotions) { CompareWithTextbook(30.0, 211); }
 
 TEST(AsPrintedTest, KnownMotionMeasuresTheDistanceFromTheEpipoles) {
-  // With Sigma_p = 0, d2 = |H^-1 j|^2 / sigma^2 times (e / (j' H^-1 j / |j| - e))^2, e = g / |j| (MATH
-  // section 4). F has rank 2, so that j' H^-1 j = 2 g and the factor is 1, and H^-1 j = [x1 - epipole1; x2 -
+  // With Sigma_p = 0, d2 = |H^-1 j|^2 / sigma^2 times (e / (j' H^-1 j / |j| - e))^2, e = g / |j| (a closed form
+  // of the 4x4 route). F has rank 2, so that j' H^-1 j = 2 g and the factor is 1, and H^-1 j = [x1 - epipole1; x2 -
   // epipole2]: the printed statistic of a known motion is the squared distance of the match from the two
   // epipoles, whatever its residual.
   RandomStream rng({.seed = 1, .purpose = 212});
@@ -263,7 +263,7 @@ TEST(AsPrintedTest, KnownMotionMeasuresTheDistanceFromTheEpipoles) {
 }
 
 TEST(AsPrintedTest, DeterminantFallsWithTheSixthPowerOfG) {
-  // MATH section 4: the printed entropy holds 3 log|g|. Along the gradient, a residual ten times smaller
+  // The printed entropy holds 3 log|g|. Along the gradient, a residual ten times smaller
   // takes 3 log 10 = 6.9 nats off; nothing of the kind happens to the rank-aware entropy.
   RandomStream rng({.seed = 1, .purpose = 205});
   for (int i = 0; i < 50; ++i) {

@@ -43,7 +43,7 @@ TEST(ExactBinomialInterval, ClosedFormsAtTheEnds) {
 
 TEST(ExactBinomialInterval, KnownAnswers) {
   // By bisection of exact sums:  python3 tests/known_answers/clopper_pearson.py
-  // The first three are rows of the paper's table (MATH section 8).
+  // The first three are rows of the paper's table, recomputed.
   const struct {
     int k, n;
     double confidence, lower, upper;

@@ -136,7 +136,7 @@ TEST(SampsonVector, PoseJacobianHasANumericTwin) {
 }
 
 TEST(SampsonVector, BothJacobiansHaveRankOneOnTheVariety) {
-  // MATH section 4: at g = 0 both are multiples of J', so Sigma_delta has rank one to first order.
+  // At g = 0 both are multiples of J', so Sigma_delta has rank one to first order.
   RandomStream rng({.seed = 1, .purpose = 87});
   for (int i = 0; i < 20; ++i) {
     const Case c = MakeCase(rng, 0.0);
