@@ -67,6 +67,13 @@ DataSources MakeDataSources(const Settings& settings) {
   return {"pair_scene", LoadMatchFolder(configured.folder)};
 }
 
+std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings) {
+  Configured configured(SceneNameIn(settings));
+  configured.Apply(settings);
+  if (!configured.simulated) throw InputError(fmt::format("scene: {} is not simulated", kMatchFilesScene));
+  return configured.simulated;
+}
+
 Settings ResolveSettings(const Settings& settings) {
   const std::string scene = SceneNameIn(settings);
   Configured configured(scene);

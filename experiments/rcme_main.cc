@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
       "  rcme run experiments/studies/failure_vs_outliers.yaml --out run.sqlite\n"
       "  rcme summarize run.sqlite                                    rates with exact intervals\n"
       "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
+      "  rcme audit --out audit                                       every claim of the paper, checked\n"
       "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
       "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
   rcme::AddRunCommand(app);
   rcme::AddSummarizeCommand(app);
   rcme::AddReplayCommand(app);
+  rcme::AddAuditCommand(app);
   rcme::AddEstimateCommand(app);
   rcme::AddMatchCommand(app);
   rcme::AddListCommand(app);

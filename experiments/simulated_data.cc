@@ -12,11 +12,14 @@ std::vector<Parameter> SimulatedData::Parameters() {
   return all;
 }
 
-TrialData SimulatedData::Make(const StreamName& trial_name) const {
+Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
   RandomStream scene_rng = StreamFor(trial_name, StreamPurpose::kScene);
+  return scene_->Generate(scene_rng);
+}
+
+TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_name) const {
   RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise);
   RandomStream outlier_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
-  const Scene scene = scene_->Generate(scene_rng);
   Observation observation = Observe(scene, noise_, outliers_, noise_rng, outlier_rng);
 
   TrialData data;

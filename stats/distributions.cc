@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 
 namespace rcme {
 
@@ -15,5 +16,8 @@ double NormalQuantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);
 }
 double NormalCdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
+double StudentQuantile(int degrees_of_freedom, double probability) {
+  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), probability);
+}
 
 }  // namespace rcme

@@ -7,5 +7,6 @@ double ChiSquareQuantile(int degrees_of_freedom, double probability);
 double ChiSquareCdf(int degrees_of_freedom, double x);
 double NormalQuantile(double probability);
 double NormalCdf(double x);
+double StudentQuantile(int degrees_of_freedom, double probability);
 
 }  // namespace rcme

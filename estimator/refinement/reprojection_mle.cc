@@ -112,7 +112,7 @@ Matrix5d MarginalInformation(const ReprojectionCost& cost, const double* pose, c
 }  // namespace
 
 RefinedMotion RefineByReprojection(const MotionProblem& problem, std::span<const int> indices,
-                                   const RelativePose& start, Loss loss) {
+                                   const RelativePose& start, Loss loss, double function_tolerance) {
   RefinedMotion refined;
   refined.cam2_from_cam1 = start;
   if (indices.size() < 5) return refined;
@@ -145,7 +145,7 @@ RefinedMotion RefineByReprojection(const MotionProblem& problem, std::span<const
   options.linear_solver_type = ceres::DENSE_SCHUR;
   options.linear_solver_ordering.reset(ordering);
   options.max_num_iterations = 100;
-  options.function_tolerance = 1e-10;
+  options.function_tolerance = function_tolerance;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

@@ -26,8 +26,8 @@ struct RefinedMotion {
 };
 
 // Ceres, points as (u, v, inverse depth) in camera 1 and eliminated by Schur complement. `indices` names the
-// matches to use, at least five.
+// matches to use, at least five. Stops when a step lowers the cost by less than `function_tolerance` of it.
 RefinedMotion RefineByReprojection(const MotionProblem& problem, std::span<const int> indices,
-                                   const RelativePose& start, Loss loss);
+                                   const RelativePose& start, Loss loss, double function_tolerance = 1e-10);
 
 }  // namespace rcme

@@ -7,6 +7,7 @@
 namespace rcme {
 
 void AddRunCommand(CLI::App& app);
+void AddAuditCommand(CLI::App& app);
 void AddSummarizeCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);

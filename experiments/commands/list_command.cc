@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/claims/claim_table.h"
 #include "experiments/commands/commands.h"
 #include "experiments/study_file.h"
 #include "experiments/summary_output.h"
@@ -55,6 +56,14 @@ Rows ListQuantities() {
   return rows;
 }
 
+Rows ListClaims() {
+  Rows rows = {{"claim", "label", "reading", "what is claimed"}};
+  for (const Claim& claim : AllClaims(EstimatorRegistry())) {
+    rows.push_back({claim.id, claim.label, claim.reading, claim.sentence});
+  }
+  return rows;
+}
+
 Rows ListStudies() {
   const std::filesystem::path folder = "experiments/studies";
   if (!std::filesystem::is_directory(folder)) {
@@ -80,11 +89,13 @@ void AddListCommand(CLI::App& app) {
   using Lister = std::function<Rows()>;
   static const std::vector<std::pair<std::string, Lister>> kLists = {
       {"estimators", ListEstimators}, {"options", ListOptions},       {"scenes", ListScenes},
-      {"settings", ListSettings},     {"quantities", ListQuantities}, {"studies", ListStudies}};
+      {"settings", ListSettings},     {"quantities", ListQuantities}, {"claims", ListClaims},
+      {"studies", ListStudies}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
   CLI::App* command = app.add_subcommand(
-      "list", "What there is: estimators and their options, scenes and their settings, quantities, studies");
+      "list",
+      "What there is: estimators and their options, scenes and their settings, quantities, claims, studies");
   auto what = std::make_shared<std::string>();
   command->add_option("what", *what, "one list; default: all but studies")->check(CLI::IsMember(names));
   command->callback([what] {

@@ -20,21 +20,23 @@ double ProbabilityOf(Verdict verdict, int n, double rate, double nominal, double
     const double log_p = std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) +
                          k * std::log(rate) + (n - k) * std::log1p(-rate);
     if (log_p < -50.0) continue;
-    if (DecideEquivalence(ExactBinomialInterval(k, n), nominal, margin) == verdict) sum += std::exp(log_p);
+    if (DecideEquivalence(ExactBinomialInterval(k, n), Around(nominal, margin)) == verdict)
+      sum += std::exp(log_p);
   }
   return sum;
 }
 
 TEST(Equivalence, ByHand) {
-  EXPECT_EQ(DecideEquivalence({0.94, 0.96}, 0.95, 0.02), Verdict::kHolds);
-  EXPECT_EQ(DecideEquivalence({0.75, 1.25}, 1.0, 0.25), Verdict::kHolds);  // the borders belong to the margin
-  EXPECT_EQ(DecideEquivalence({0.90, 0.96}, 0.95, 0.02), Verdict::kUndecided);
-  EXPECT_EQ(DecideEquivalence({0.0, 1.0}, 0.95, 0.02), Verdict::kUndecided);  // no trials: no verdict
-  EXPECT_EQ(DecideEquivalence({0.90, 0.92}, 0.95, 0.02), Verdict::kDoesNotHold);
-  EXPECT_EQ(DecideEquivalence({0.98, 0.99}, 0.95, 0.02), Verdict::kDoesNotHold);
-  EXPECT_EQ(DecideEquivalence({0.75, 0.75}, 1.0, 0.25), Verdict::kHolds);
-  EXPECT_EQ(DecideEquivalence({std::nan(""), 0.96}, 0.95, 0.02), Verdict::kUndecided);
-  EXPECT_EQ(DecideEquivalence({0.94, std::nan("")}, 0.95, 0.02), Verdict::kUndecided);
+  EXPECT_EQ(DecideEquivalence({0.94, 0.96}, Around(0.95, 0.02)), Verdict::kHolds);
+  EXPECT_EQ(DecideEquivalence({0.75, 1.25}, Around(1.0, 0.25)),
+            Verdict::kHolds);  // the borders belong to the margin
+  EXPECT_EQ(DecideEquivalence({0.90, 0.96}, Around(0.95, 0.02)), Verdict::kUndecided);
+  EXPECT_EQ(DecideEquivalence({0.0, 1.0}, Around(0.95, 0.02)), Verdict::kUndecided);  // no trials: no verdict
+  EXPECT_EQ(DecideEquivalence({0.90, 0.92}, Around(0.95, 0.02)), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideEquivalence({0.98, 0.99}, Around(0.95, 0.02)), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideEquivalence({0.75, 0.75}, Around(1.0, 0.25)), Verdict::kHolds);
+  EXPECT_EQ(DecideEquivalence({std::nan(""), 0.96}, Around(0.95, 0.02)), Verdict::kUndecided);
+  EXPECT_EQ(DecideEquivalence({0.94, std::nan("")}, Around(0.95, 0.02)), Verdict::kUndecided);
   EXPECT_STREQ(Name(Verdict::kHolds), "holds");
   EXPECT_STREQ(Name(Verdict::kDoesNotHold), "does not hold");
   EXPECT_STREQ(Name(Verdict::kUndecided), "undecided");
@@ -68,7 +70,7 @@ TEST(TrialsToDecide, DecidesWithThePowerAskedFor) {
       {0.06, 0.05, 0.03, Verdict::kHolds},
       {0.999, 0.99, 0.02, Verdict::kHolds}};  // the upper border is beyond 1: only one can be crossed
   for (const auto& each : kCases) {
-    const int n = static_cast<int>(std::ceil(TrialsToDecide(each.rate, each.nominal, each.margin)));
+    const int n = static_cast<int>(std::ceil(TrialsToDecide(each.rate, Around(each.nominal, each.margin))));
     const double power = ProbabilityOf(each.verdict, n, each.rate, each.nominal, each.margin);
     EXPECT_GT(power, 0.86) << "rate " << each.rate << ", n = " << n;
     RecordProperty("power_at_" + std::to_string(each.rate),
@@ -80,9 +82,10 @@ TEST(TrialsToDecide, DecidesWithThePowerAskedFor) {
   }
   // By hand, 1.281552 and 1.644854 the normal quantiles of 0.9 and 0.95: (1.959964 + 1.644854)^2 * 0.95 *
   // 0.05 / 0.02^2 = 1543.1, and (1.959964 + 1.281552)^2 * 0.9 * 0.1 / 0.03^2 = 1050.7.
-  EXPECT_NEAR(TrialsToDecide(0.95, 0.95, 0.02), 1543.1, 0.1);
-  EXPECT_NEAR(TrialsToDecide(0.90, 0.95, 0.02), 1050.7, 0.1);
-  EXPECT_EQ(TrialsToDecide(0.25, 0.5, 0.25), std::numeric_limits<double>::infinity());  // on the border
+  EXPECT_NEAR(TrialsToDecide(0.95, Around(0.95, 0.02)), 1543.1, 0.1);
+  EXPECT_NEAR(TrialsToDecide(0.90, Around(0.95, 0.02)), 1050.7, 0.1);
+  EXPECT_EQ(TrialsToDecide(0.25, Around(0.5, 0.25)),
+            std::numeric_limits<double>::infinity());  // on the border
 }
 
 TEST(Equivalence, StoppingAtTheFirstVerdictIsSafeOnlyWithAConfidenceSequence) {
@@ -96,10 +99,10 @@ TEST(Equivalence, StoppingAtTheFirstVerdictIsSafeOnlyWithAConfidenceSequence) {
     for (int n = 1; n <= 3000; ++n) {
       successes += rng.Uniform() < 0.90 ? 1 : 0;
       if (n % 25 != 0) continue;
-      sequence_holds = sequence_holds ||
-                       DecideEquivalence(ConfidenceSequence(successes, n), 0.95, 0.05) == Verdict::kHolds;
-      exact_holds = exact_holds ||
-                    DecideEquivalence(ExactBinomialInterval(successes, n), 0.95, 0.05) == Verdict::kHolds;
+      sequence_holds = sequence_holds || DecideEquivalence(ConfidenceSequence(successes, n),
+                                                           Around(0.95, 0.05)) == Verdict::kHolds;
+      exact_holds = exact_holds || DecideEquivalence(ExactBinomialInterval(successes, n),
+                                                     Around(0.95, 0.05)) == Verdict::kHolds;
     }
     sequence_wrong.Add(sequence_holds);
     exact_wrong.Add(exact_holds);
@@ -117,14 +120,15 @@ TEST(TrialsToDecide, AConfidenceSequenceNeedsTwoToThreeTimesAsMany) {
     std::int64_t successes = 0;
     for (int n = 1;; ++n) {
       successes += rng.Uniform() < 0.95 ? 1 : 0;
-      if (n % 25 == 0 && DecideEquivalence(ConfidenceSequence(successes, n), 0.95, 0.02) == Verdict::kHolds) {
+      if (n % 25 == 0 &&
+          DecideEquivalence(ConfidenceSequence(successes, n), Around(0.95, 0.02)) == Verdict::kHolds) {
         needed.push_back(n);
         break;
       }
     }
   }
   std::sort(needed.begin(), needed.end());
-  const double promised = TrialsToDecide(0.95, 0.95, 0.02);
+  const double promised = TrialsToDecide(0.95, Around(0.95, 0.02));
   EXPECT_GT(needed[360], 1.8 * promised);  // the 90 % quantile
   EXPECT_LT(needed[360], 3.2 * promised);
   RecordProperty("ratio_at_90_percent", std::to_string(needed[360] / promised));

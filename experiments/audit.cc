@@ -1,0 +1,116 @@
+#include "experiments/audit.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "experiments/claims/decide_check.h"
+#include "experiments/progress.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+// FNV-1a of the claim's id and the check's number: the condition that names the check's random streams.
+std::uint32_t StreamCondition(const std::string& id, size_t check) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : fmt::format("{} {}", id, check)) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  }
+  return hash;
+}
+
+int CountTargets(const std::vector<Claim>& claims) {
+  int count = 0;
+  for (const Claim& claim : claims) {
+    for (const Check& check : claim.checks) {
+      count += static_cast<int>(std::count_if(check.targets.begin(), check.targets.end(),
+                                              [](const Target& t) { return t.IsClaimed(); }));
+    }
+  }
+  return count;
+}
+
+bool IsNamed(const Claim& claim, const std::string& name) {
+  return claim.id == name || claim.id.starts_with(name + ".");
+}
+
+int NumThreads(const AuditOptions& options) {
+  return options.num_threads > 0 ? options.num_threads : tbb::info::default_concurrency();
+}
+
+// Seconds on all threads that the check takes if no verdict stops it.
+double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
+  constexpr std::uint32_t kNumTimed = 4;
+  const auto start = std::chrono::steady_clock::now();
+  std::uint32_t num_timed = 0;
+  std::chrono::duration<double> elapsed{};
+  while (num_timed < kNumTimed && elapsed.count() < 0.1) {
+    check.trial({run.seed, run.condition, num_timed++, 0});
+    elapsed = std::chrono::steady_clock::now() - start;
+  }
+  const double threads = check.is_timed ? 1.0 : num_threads;
+  return elapsed.count() / num_timed * static_cast<double>(check.limits.Max(run.budget)) / threads;
+}
+
+// Work of each check of the claims, in their order.
+std::vector<double> WorkPerCheck(const std::vector<Claim>& claims, const AuditOptions& options) {
+  std::vector<double> work;
+  for (const Claim& claim : claims) {
+    for (size_t i = 0; i < claim.checks.size(); ++i) {
+      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, 0.0};
+      work.push_back(WorkOf(claim.checks[i], run, NumThreads(options)));
+    }
+  }
+  return work;
+}
+
+}  // namespace
+
+std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector<std::string>& only) {
+  for (const std::string& name : only) {
+    if (std::none_of(all.begin(), all.end(), [&](const Claim& claim) { return IsNamed(claim, name); })) {
+      throw InputError(fmt::format("--only: '{}' is not allowed; `rcme list claims` shows the ids", name));
+    }
+  }
+  std::vector<Claim> selected;
+  for (const Claim& claim : all) {
+    const auto names_it = [&](const std::string& name) { return IsNamed(claim, name); };
+    if (only.empty() || std::any_of(only.begin(), only.end(), names_it)) selected.push_back(claim);
+  }
+  return selected;
+}
+
+Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<size_t>(NumThreads(options)));
+  tbb::task_arena arena(NumThreads(options));
+  Audit audit{options, CountTargets(all), 0.0, SelectClaims(all, options.only), {}};
+  audit.confidence = 1.0 - kAuditErrorRate / std::max(audit.num_targets, 1);
+
+  const std::vector<double> work = WorkPerCheck(audit.claims, options);
+  double total_work = 0.0;
+  for (const double seconds : work) total_work += seconds;
+  fmt::print(stderr, "audit: {} claims, {} checks; at most {}, less where a verdict falls early\n",
+             audit.claims.size(), work.size(), DurationInWords(total_work));
+  Progress progress("ms of work", static_cast<std::int64_t>(1e3 * total_work) + 1);
+  size_t next = 0;
+  for (const Claim& claim : audit.claims) {
+    ClaimResult result;
+    for (size_t i = 0; i < claim.checks.size(); ++i) {
+      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, audit.confidence};
+      arena.execute([&] { result.checks.push_back(DecideCheck(claim.checks[i], run)); });
+      progress.Advance(static_cast<std::int64_t>(1e3 * work[next++]));
+    }
+    JudgeClaim(claim, &result);
+    audit.results.push_back(std::move(result));
+  }
+  return audit;
+}
+
+}  // namespace rcme

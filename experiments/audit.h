@@ -1,0 +1,38 @@
+// The claim audit: every claim decided, with an error rate for the whole.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/claims/claim_verdict.h"
+
+namespace rcme {
+
+struct AuditOptions {
+  std::vector<std::string> only;  // ids or their beginnings ("inlier", "sigma_p.theta"); empty: all
+  Budget budget = Budget::kQuick;
+  std::uint64_t seed = 1;
+  int num_threads = 0;  // 0: one per core; the results do not depend on it
+};
+
+struct Audit {
+  AuditOptions options;
+  int num_targets = 0;      // claimed targets of all claims, whether they were run or not
+  double confidence = 0.0;  // of each target's interval
+  std::vector<Claim> claims;
+  std::vector<ClaimResult> results;  // as claims
+};
+
+// The probability of any false verdict in an audit of all claims: a claimed number outside its allowed range
+// called "holds", or one inside called "does not hold".
+inline constexpr double kAuditErrorRate = 0.05;
+
+// The claims of `all` that `only` names. Throws InputError for a name that fits none.
+std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector<std::string>& only);
+
+// Decides the selected claims of `all`, each target at confidence 1 - kAuditErrorRate / num_targets
+// (Bonferroni), and shows progress. A claim's result does not depend on which others are run: its random
+// streams are named by its id.
+Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options);
+
+}  // namespace rcme

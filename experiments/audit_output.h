@@ -1,0 +1,20 @@
+// The audit for people and for programs.
+#pragma once
+
+#include <string>
+
+#include "experiments/audit.h"
+
+namespace rcme {
+
+// One row per claim: its verdict and the number that decided it, with interval and n.
+std::string AuditAsTable(const Audit& audit);
+
+// Everything: claims, conditions, targets, intervals, verdicts. plots/audit.py draws it. Unknown or unbounded
+// numbers are null.
+std::string AuditAsJson(const Audit& audit);
+
+// The audit as a page: verdict table, and per family its figure, the sentences and every measured number.
+std::string AuditAsMarkdown(const Audit& audit);
+
+}  // namespace rcme

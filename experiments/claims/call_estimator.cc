@@ -1,0 +1,19 @@
+#include "experiments/claims/call_estimator.h"
+
+namespace rcme {
+
+TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made) {
+  RandomStream sampling_rng = StreamFor(made.name, StreamPurpose::kSampling);
+  return Score(estimator.Estimate(made.problem(), sampling_rng), made.data, 0.0);
+}
+
+bool FailsSilently(const TrialRecord& record) { return HasFailed(record, FailureBounds()); }
+
+bool FailsOrRefuses(const TrialRecord& record) { return !HasSucceeded(record, FailureBounds()); }
+
+double OnlyFirst(bool first, bool second) {
+  if (first == second) return std::numeric_limits<double>::quiet_NaN();
+  return first ? 1.0 : 0.0;
+}
+
+}  // namespace rcme

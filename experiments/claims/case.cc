@@ -1,0 +1,82 @@
+#include "experiments/claims/case.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/simulated_data.h"
+#include "stats/coverage.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+Settings WithDefaults(const Settings& settings) {
+  Settings all = {{"scene", "uniform_volume"}, {"outlier_ratio", "0"}};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return all;
+}
+
+}  // namespace
+
+CaseMaker SimulatedCases(const Settings& settings) {
+  const std::shared_ptr<const SimulatedData> simulated = MakeSimulatedData(WithDefaults(settings));
+  return [simulated](const StreamName& name) {
+    Case made{name, simulated->DrawScene(name), {}, StreamFor(name, StreamPurpose::kCheck)};
+    made.data = simulated->MakeFrom(made.scene, name);
+    return made;
+  };
+}
+
+Settings ResolveCaseSettings(const Settings& settings) { return ResolveSettings(WithDefaults(settings)); }
+
+Check MakeCheck(const Settings& settings, const Statistic& statistic, const std::vector<Target>& targets,
+                const TrialLimits& limits) {
+  Check check;
+  check.conditions = settings;
+  for (const auto& [key, value] : settings) {
+    if (key == "sigma_px") check.sigma_px = std::stod(value);
+  }
+  check.targets = targets;
+  check.limits = limits;
+  check.trial = [cases = SimulatedCases(settings), statistic](const StreamName& name) {
+    Case made = cases(name);
+    return statistic(made);
+  };
+  return check;
+}
+
+std::vector<Check> SigmaLadder(const std::vector<double>& sigmas_px, const Settings& settings,
+                               const Statistic& statistic, const std::vector<Target>& targets,
+                               const TrialLimits& limits) {
+  std::vector<Check> checks;
+  for (const double sigma_px : sigmas_px) {
+    Settings at_sigma = settings;
+    at_sigma.emplace_back("sigma_px", fmt::format("{}", sigma_px));
+    checks.push_back(MakeCheck(at_sigma, statistic, targets, limits));
+  }
+  return checks;
+}
+
+std::vector<Target> CoverageTargets(int degrees_of_freedom, size_t statistic) {
+  constexpr double kMargin = 0.01, kAlphaOfMargin = 0.05;
+  std::vector<Target> targets;
+  for (const double alpha : Coverage::kSignificanceLevels) {
+    const double margin =
+        kMargin * std::sqrt(alpha * (1.0 - alpha) / (kAlphaOfMargin * (1.0 - kAlphaOfMargin)));
+    Target target{fmt::format("coverage at alpha {}", alpha),
+                  Target::Kind::kCoverage,
+                  1.0 - alpha,
+                  Around(1.0 - alpha, margin),
+                  ChiSquareQuantile(degrees_of_freedom, 1.0 - alpha),
+                  statistic};
+    targets.insert(alpha == kAlphaOfMargin ? targets.begin() : targets.end(), std::move(target));
+  }
+  return targets;
+}
+
+Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic) {
+  return {quantity, Target::Kind::kCoverage, 1.0, {0.999, 1.0}, tolerance, statistic};
+}
+
+}  // namespace rcme

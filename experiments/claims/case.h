@@ -1,0 +1,52 @@
+// One simulated trial as a check sees it: the exact scene, the problem and the truth.
+#pragma once
+
+#include <functional>
+
+#include "experiments/claims/claim.h"
+#include "simulator/scene.h"
+
+namespace rcme {
+
+struct Case {
+  StreamName name;
+  Scene scene;       // exact
+  TrialData data;    // its noisy matches in random order, and the truth
+  RandomStream rng;  // for what the check itself draws
+
+  const MotionProblem& problem() const { return data.problem; }
+  const RelativePose& pose_true() const { return scene.cam2_from_cam1_true; }
+};
+
+using CaseMaker = std::function<Case(const StreamName&)>;
+using Statistic = std::function<Outcome(Case&)>;
+
+// Simulated cases; `settings` override the defaults of the scene uniform_volume and of noise; no outliers
+// unless outlier_ratio is given.
+CaseMaker SimulatedCases(const Settings& settings);
+
+// The settings of SimulatedCases in full.
+Settings ResolveCaseSettings(const Settings& settings);
+
+// A check of `statistic` on simulated cases.
+Check MakeCheck(const Settings& settings, const Statistic& statistic, const std::vector<Target>& targets,
+                const TrialLimits& limits);
+
+// Noise levels for claims about minimal samples: from where first order holds to beyond the paper's 0.5 px.
+inline const std::vector<double> kNoiseLadderPx = {1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0};
+
+// The same check at several noise levels.
+std::vector<Check> SigmaLadder(const std::vector<double>& sigmas_px, const Settings& settings,
+                               const Statistic& statistic, const std::vector<Target>& targets,
+                               const TrialLimits& limits);
+
+// Coverage of the 1 - alpha regions of a chi-square law at alpha = .5, .2, .1, .05, .01; alpha = .05 first.
+// What counts as nominal: +-0.01 at alpha = .05 and wider or narrower in proportion to the binomial deviation
+// there.
+std::vector<Target> CoverageTargets(int degrees_of_freedom, size_t statistic = 0);
+
+// An identity that holds in at least 999 of 1,000 trials: the statistic, a relative deviation, is within
+// `tolerance`.
+Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic = 0);
+
+}  // namespace rcme

@@ -1,0 +1,77 @@
+// A claim: one sentence about the estimator as a check that can fail.
+//
+// A claim is checked under one or more conditions. Each check repeats an independent trial; a trial yields
+// numbers, and targets say which rate or mean of them is claimed to be what, and how far off still counts.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/data_source.h"
+#include "stats/equivalence.h"
+#include "stats/random.h"
+
+namespace rcme {
+
+// What one trial yields, one number per statistic. NaN: the trial says nothing about that statistic (a rate
+// among failures, where nothing failed); it counts as a trial of the check, not in the target's n. A trial
+// that could not produce its statistic (a degenerate sample) is no such case: it yields infinity.
+using Outcome = std::vector<double>;
+
+// One measured number and what is claimed of it.
+struct Target {
+  enum class Kind {
+    kCoverage,  // share of trials with 0 <= statistic <= threshold
+    kAtMost,    // share of trials with statistic <= threshold
+    kRate,      // share of trials with statistic != 0
+    kMean,      // mean of the statistic
+  };
+  std::string quantity;
+  Kind kind = Kind::kRate;
+  double nominal = std::numeric_limits<double>::quiet_NaN();  // what is claimed
+  Interval allowed{
+      -std::numeric_limits<double>::infinity(),  // what still counts as that; unbounded: nothing is
+      std::numeric_limits<double>::infinity()};  // claimed, the number is only measured
+  double threshold = std::numeric_limits<double>::quiet_NaN();
+  size_t statistic = 0;  // index into the outcome
+
+  bool IsClaimed() const { return std::isfinite(allowed.lower) || std::isfinite(allowed.upper); }
+};
+
+enum class Budget { kQuick, kFull };
+
+// A check stops at its first verdict, not before `min` trials (so that the measured number is worth reading)
+// and not after the budget's. Means are looked at once, at the end.
+struct TrialLimits {
+  std::int64_t min = 0, quick = 0, full = 0;
+  std::int64_t Max(Budget budget) const { return budget == Budget::kQuick ? quick : full; }
+};
+
+struct Check {
+  Settings conditions;    // for people: key, value
+  double sigma_px = 0.5;  // its rung on the ladder of noise levels
+  std::vector<Target> targets;
+  TrialLimits limits;
+  std::function<Outcome(const StreamName&)> trial;  // a pure function of the name
+  bool is_timed = false;  // measures time: trials run one after the other, nothing beside them
+};
+
+struct Claim {
+  std::string id;         // "inlier.true_pose.rank_aware"; the family is the part before the first point
+  std::string label;      // of the paper's equation or section
+  std::string reading;    // "as printed", "rank-aware", ...
+  std::string sentence;   // what is claimed
+  std::string statistic;  // what is measured
+  std::string figure_x;   // the condition a figure has along x; empty: none
+  std::vector<Check> checks;
+
+  std::string family() const { return id.substr(0, id.find('.')); }
+};
+
+// The noise level at which the paper asserts its formulas, px.
+inline constexpr double kAssertedSigmaPx = 0.5;
+
+}  // namespace rcme

@@ -1,0 +1,65 @@
+#include "experiments/claims/claim_verdict.h"
+
+#include <map>
+
+namespace rcme {
+
+const char* Name(ClaimVerdict verdict) {
+  switch (verdict) {
+    case ClaimVerdict::kHolds:
+      return "holds";
+    case ClaimVerdict::kSmallNoiseOnly:
+      return "holds in the small-noise limit only";
+    case ClaimVerdict::kDoesNotHold:
+      return "does not hold";
+    case ClaimVerdict::kMeasured:
+      return "measured";
+    case ClaimVerdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdicts) {
+  std::optional<Verdict> all;
+  for (const std::optional<Verdict>& verdict : verdicts) {
+    if (!verdict) continue;
+    if (*verdict == Verdict::kDoesNotHold) return Verdict::kDoesNotHold;
+    if (!all || *verdict == Verdict::kUndecided) all = verdict;
+  }
+  return all;
+}
+
+void JudgeClaim(const Claim& claim, ClaimResult* result) {
+  std::map<double, std::vector<std::optional<Verdict>>> verdicts_by_sigma;
+  for (size_t i = 0; i < claim.checks.size(); ++i) {
+    verdicts_by_sigma[claim.checks[i].sigma_px].push_back(result->checks[i].verdict);
+  }
+  std::vector<std::pair<double, Verdict>> rungs;  // rising
+  for (const auto& [sigma_px, verdicts] : verdicts_by_sigma) {
+    if (const std::optional<Verdict> verdict = Together(verdicts)) rungs.emplace_back(sigma_px, *verdict);
+  }
+  result->holds_up_to_sigma_px.reset();
+  result->verdict = ClaimVerdict::kMeasured;
+  if (rungs.empty()) return;
+
+  for (const auto& [sigma_px, verdict] : rungs) {
+    if (verdict != Verdict::kHolds) break;
+    result->holds_up_to_sigma_px = sigma_px;
+  }
+  bool fails = false, is_undecided = false;  // on a rung up to the asserted one
+  for (const auto& [sigma_px, verdict] : rungs) {
+    if (sigma_px > kAssertedSigmaPx && sigma_px > rungs.front().first) continue;
+    fails |= verdict == Verdict::kDoesNotHold;
+    is_undecided |= verdict == Verdict::kUndecided;
+  }
+  if (rungs.front().second == Verdict::kDoesNotHold) {
+    result->verdict = ClaimVerdict::kDoesNotHold;
+  } else if (rungs.front().second == Verdict::kUndecided || (!fails && is_undecided)) {
+    result->verdict = ClaimVerdict::kUndecided;
+  } else {
+    result->verdict = fails ? ClaimVerdict::kSmallNoiseOnly : ClaimVerdict::kHolds;
+  }
+}
+
+}  // namespace rcme

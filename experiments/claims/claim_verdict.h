@@ -1,0 +1,39 @@
+// What the trials say of a claim.
+#pragma once
+
+#include "experiments/claims/claim.h"
+
+namespace rcme {
+
+struct TargetResult {
+  double measured = 0.0;
+  Interval interval;  // rates: anytime-valid; means: Student's at the one look
+  std::int64_t n = 0;
+  std::optional<Verdict> verdict;  // nothing: not claimed, only measured
+  double trials_to_decide = 0.0;   // if undecided: about how many trials of the check would decide
+};
+
+struct CheckResult {
+  std::int64_t num_trials = 0;
+  std::vector<TargetResult> targets;
+  std::optional<Verdict> verdict;  // of all targets together; nothing: none is claimed
+};
+
+enum class ClaimVerdict { kHolds, kSmallNoiseOnly, kDoesNotHold, kUndecided, kMeasured };
+const char* Name(ClaimVerdict verdict);
+
+struct ClaimResult {
+  ClaimVerdict verdict = ClaimVerdict::kUndecided;
+  std::optional<double> holds_up_to_sigma_px;  // the highest rung such that it holds there and on all below
+  std::vector<CheckResult> checks;             // as claim.checks
+};
+
+// Does not hold if one of them does not, holds if all do, else undecided; nothing claimed: nothing.
+std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdicts);
+
+// The claim's verdict from its checks', by rungs of equal sigma_px: "holds" if it holds on every rung up to
+// kAssertedSigmaPx (higher ones only inform), "small noise only" if it fails by kAssertedSigmaPx but holds on
+// the lowest rungs, "does not hold" if it fails on the lowest rung, else undecided.
+void JudgeClaim(const Claim& claim, ClaimResult* result);
+
+}  // namespace rcme

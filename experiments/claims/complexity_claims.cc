@@ -1,0 +1,126 @@
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "estimator/refinement/reprojection_mle.h"
+#include "experiments/claims/case.h"
+#include "experiments/claims/families.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr TrialLimits kRepetitions{20, 20, 60};
+
+// Slope of the least-squares line of log y over log x.
+double Exponent(const std::vector<double>& x, const std::vector<double>& y) {
+  double mean_x = 0.0, mean_y = 0.0, products = 0.0, squares = 0.0;
+  const double n = static_cast<double>(x.size());
+  for (size_t i = 0; i < x.size(); ++i) mean_x += std::log(x[i]) / n, mean_y += std::log(y[i]) / n;
+  for (size_t i = 0; i < x.size(); ++i) {
+    products += (std::log(x[i]) - mean_x) * (std::log(y[i]) - mean_y);
+    squares += (std::log(x[i]) - mean_x) * (std::log(x[i]) - mean_x);
+  }
+  return products / squares;
+}
+
+double SecondsOf(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+MotionProblem FirstMatches(const MotionProblem& problem, double count) {
+  MotionProblem part = problem;
+  part.matches.resize(static_cast<size_t>(count));
+  return part;
+}
+
+double SecondsOfLoop(const MotionProblem& problem, double num_iterations, const StreamName& name) {
+  RansacOptions options;
+  options.num_iterations = static_cast<int>(num_iterations);
+  options.refinement = Refinement::kNone;
+  const std::unique_ptr<MotionEstimator> rcme = FindEstimator("rcme").make(options);
+  RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
+  return SecondsOf([&] { rcme->Estimate(problem, rng); });
+}
+
+// Exponents of the loop's time in n (at N = 100) and in N (at n = 1,000).
+Outcome LoopStatistic(Case& made) {
+  const std::vector<double> ns = {1000, 2000, 4000, 8000}, Ns = {100, 200, 400, 800};
+  std::vector<double> times_n, times_N;
+  for (const double n : ns) times_n.push_back(SecondsOfLoop(FirstMatches(made.problem(), n), 100, made.name));
+  const MotionProblem thousand = FirstMatches(made.problem(), 1000);
+  for (const double N : Ns) times_N.push_back(SecondsOfLoop(thousand, N, made.name));
+  return {Exponent(ns, times_n), Exponent(Ns, times_N)};
+}
+
+RefinedMotion Refine(const MotionProblem& problem, const RelativePose& start, double function_tolerance) {
+  std::vector<int> indices(problem.matches.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return RefineByReprojection(problem, indices, start, Loss::kSquared, function_tolerance);
+}
+
+// Exponent of the refinement's time in n, from a start 2 deg off.
+Outcome RefinementStatistic(Case& made) {
+  const std::vector<double> ns = {100, 200, 400, 800, 1600};
+  const RelativePose start = Retract(made.pose_true(), Vector5d::Constant(0.035 / std::sqrt(5.0)));
+  std::vector<double> times;
+  for (const double n : ns) {
+    const MotionProblem part = FirstMatches(made.problem(), n);
+    times.push_back(SecondsOf([&] { Refine(part, start, 1e-10); }));
+  }
+  return {Exponent(ns, times)};
+}
+
+// Exponent of the refinement's iterations in 1 / eps, eps the relative decrease of the cost at which it
+// stops.
+Outcome IterationsStatistic(Case& made) {
+  const std::vector<double> inverse_tolerances = {1e2, 1e4, 1e6, 1e8, 1e10};
+  const RelativePose start = Retract(made.pose_true(), Vector5d::Constant(0.035 / std::sqrt(5.0)));
+  std::vector<double> counts;
+  for (const double inverse : inverse_tolerances) {
+    counts.push_back(Refine(made.problem(), start, 1.0 / inverse).num_iterations);
+  }
+  return {Exponent(inverse_tolerances, counts)};
+}
+
+Check TimedCheck(const char* num_matches, const Statistic& statistic, const std::vector<Target>& targets) {
+  Check check = MakeCheck({{"num_matches", num_matches}}, statistic, targets, kRepetitions);
+  check.is_timed = true;
+  return check;
+}
+
+}  // namespace
+
+std::vector<Claim> ComplexityClaims() {
+  const char* kLabel = "Thm. complexity";
+  return {{"complexity.loop",
+           kLabel,
+           "as printed",
+           "The loop takes O(N n): exponents 1 and 1 (within 0.15)",
+           "slope of log time over log n (N = 100) and over log N (n = 1,000)",
+           "",
+           {TimedCheck("8000", LoopStatistic,
+                       {{"exponent in n", Target::Kind::kMean, 1.0, Around(1.0, 0.15), kNaN, 0},
+                        {"exponent in N", Target::Kind::kMean, 1.0, Around(1.0, 0.15), kNaN, 1}})}},
+          {"complexity.refinement",
+           kLabel,
+           "bundle adjustment, Schur complement",
+           "The refinement takes O(n^3): exponent 3 (within 0.3)",
+           "slope of log time over log n",
+           "",
+           {TimedCheck("1600", RefinementStatistic,
+                       {{"exponent in n", Target::Kind::kMean, 3.0, Around(3.0, 0.3), kNaN, 0}})}},
+          {"complexity.iterations",
+           kLabel,
+           "Levenberg-Marquardt",
+           "The refinement needs at most O(1 / eps^2) iterations: an exponent of at most 2",
+           "slope of log iterations over log 1 / eps, eps = 1e-2 to 1e-10",
+           "",
+           {MakeCheck({{"num_matches", "200"}}, IterationsStatistic,
+                      {{"exponent in 1 / eps", Target::Kind::kMean, 2.0, {-2.0, 2.0}, kNaN, 0}},
+                      {100, 500, 5'000})}}};
+}
+
+}  // namespace rcme

@@ -1,0 +1,45 @@
+#include "experiments/claims/call_estimator.h"
+#include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Claim EarlyStopClaim(const std::string& id, const std::string& name, Reading reading) {
+  RansacOptions options;
+  options.reading = reading;
+  std::shared_ptr<const MotionEstimator> all = FindEstimator("rcme").make(options);
+  options.early_stop_entropy = options.MuOrDefault();
+  std::shared_ptr<const MotionEstimator> early = FindEstimator("rcme").make(options);
+  const double num_iterations = options.num_iterations;
+  const auto statistic = [all, early, num_iterations](Case& made) -> Outcome {
+    const TrialRecord of_all = CallEstimator(*all, made), of_early = CallEstimator(*early, made);
+    const bool all_fails = FailsOrRefuses(of_all), early_fails = FailsOrRefuses(of_early);
+    return {early_fails && !all_fails ? 1.0 : 0.0, 1.0 - of_early.counts.num_hypotheses / num_iterations,
+            1.0 * all_fails, 1.0 * early_fails};
+  };
+  return {"early_stop." + id,
+          "Sec. early-terminate",
+          name,
+          "Stopping at psi <= mu saves at least a tenth of the hypotheses and costs at most one trial in a "
+          "hundred",
+          "hypotheses not drawn; trials in which only the early one fails or refuses",
+          "outlier_ratio",
+          {MakeCheck({{"outlier_ratio", "0.3"}}, statistic,
+                     {{"only the early one fails", Target::Kind::kRate, 0.0, {0.0, 0.01}, kNaN, 0},
+                      {"share of hypotheses saved", Target::Kind::kMean, 1.0, {0.1, 1.0}, kNaN, 1},
+                      {"all hypotheses: fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 2},
+                      {"early stop: fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 3}},
+                     kEstimatorCalls)}};
+}
+
+}  // namespace
+
+std::vector<Claim> EarlyStopClaims() {
+  return {EarlyStopClaim("as_printed", "as printed, at -3.53", Reading::kAsPrinted),
+          EarlyStopClaim("rank_aware", "rank-aware, at 6 nats", Reading::kRankAware)};
+}
+
+}  // namespace rcme

@@ -1,0 +1,224 @@
+#include <cmath>
+
+#include "estimator/run_pipeline.h"
+#include "estimator/sample_consistency.h"
+#include "experiments/claims/call_estimator.h"
+#include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+#include "experiments/claims/model_entropy.h"
+#include "stats/moments.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const Sample kFirstEight = {0, 1, 2, 3, 4, 5, 6, 7};
+
+// The same problem with pixels half as large: every coordinate and sigma twice as large.
+MotionProblem InHalfPixels(MotionProblem problem) {
+  for (Camera* camera : {&problem.camera1, &problem.camera2}) {
+    camera->fx *= 2.0, camera->fy *= 2.0, camera->cx *= 2.0, camera->cy *= 2.0;
+    camera->width *= 2, camera->height *= 2;
+  }
+  for (Correspondence& match : problem.matches) match.x1_px *= 2.0, match.x2_px *= 2.0;
+  problem.sigma_px *= 2.0;
+  return problem;
+}
+
+// Whether psi stays the same in half pixels, by how many log 2 it shifts, and whether the quality test's
+// verdict stays.
+template <typename PointTest>
+Statistic UnitStatistic(Reading reading) {
+  RansacOptions options;
+  options.reading = reading;
+  return [options](Case& made) -> Outcome {
+    const InlierScore score = ScoreSample<PointTest>(made.problem(), kFirstEight);
+    const InlierScore scaled = ScoreSample<PointTest>(InHalfPixels(made.problem()), kFirstEight);
+    const double shift = scaled.mean_entropy - score.mean_entropy;
+    const Thresholds thresholds = Thresholds::For(made.problem(), options, PointTest::kDegreesOfFreedom);
+    const auto passes = [&](const InlierScore& each) {
+      return PassesQualityTest(ZStatistic(each, options.MuOrDefault()), thresholds.normal,
+                               options.quality_test);
+    };
+    return {std::abs(shift) <= 1e-6 ? 1.0 : 0.0, shift / std::log(2.0),
+            passes(score) == passes(scaled) ? 1.0 : 0.0};
+  };
+}
+
+std::vector<Target> UnitTargets() {
+  return {{"share of models with the same psi", Target::Kind::kRate, 1.0, {0.999, 1.0}, kNaN, 0},
+          {"shift of psi over log 2", Target::Kind::kMean, kNaN, {}, kNaN, 1},
+          {"share of models with the same verdict", Target::Kind::kRate, 1.0, {0.999, 1.0}, kNaN, 2}};
+}
+
+// The printed entropy h of a match is 3 log|e| plus a rest, e the signed Sampson distance (px).
+struct EntropyParts {
+  Moments whole, residual;
+  double sum_products = 0.0;  // of whole and residual
+  void Add(double h, double log_residual) {
+    whole.Add(h), residual.Add(log_residual);
+    sum_products += h * log_residual;
+  }
+  // Share of the variance of the whole that the residual part carries: Cov(whole, residual) / Var(whole).
+  double ResidualShare() const {
+    const double n = static_cast<double>(whole.n());
+    return (sum_products - n * whole.mean() * residual.mean()) / ((n - 1.0) * whole.variance());
+  }
+};
+
+// Share of the residual part in the variance of h among the inliers of a model (mean of the models), and of
+// psi among twenty models of one scene.
+Outcome ResidualShareStatistic(Case& made) {
+  constexpr int kNumModels = 20;
+  const MotionProblem& problem = made.problem();
+  const double threshold = Thresholds::For(problem, RansacOptions(), 3).point;
+  EntropyParts among_models;
+  Moments within_models;
+  for (int i = 0; i < kNumModels; ++i) {
+    const std::optional<UncertainFundamental> model = ModelOf(problem, DrawSampleOf(SampleKind::kGood, made));
+    if (!model) continue;
+    const AsPrintedTest test(*model, problem.sigma_px);
+    EntropyParts within;
+    for (const Correspondence& match : problem.matches) {
+      PointResidual residual;
+      if (!(test.Distance(match, &residual) <= threshold)) continue;
+      within.Add(test.Entropy(residual), 1.5 * std::log(SquaredSampsonDistance(model->F, match)));
+    }
+    if (within.whole.n() < 3) continue;
+    within_models.Add(within.ResidualShare());
+    among_models.Add(within.whole.mean(), within.residual.mean());
+  }
+  if (among_models.whole.n() < 3) return {kNaN, kNaN};
+  return {within_models.mean(), among_models.ResidualShare()};
+}
+
+// Rank-aware inliers whose score is the printed entropy, or one of its two parts.
+enum class Part { kWhole, kResidual, kRest };
+template <Part part>
+class PrintedEntropyTest {
+ public:
+  static constexpr bool kNeedsCovariance = true;
+  static constexpr int kDegreesOfFreedom = 1;
+  PrintedEntropyTest(const UncertainFundamental& model, double sigma_px)
+      : rank_aware_(model, sigma_px), as_printed_(model, sigma_px) {}
+
+  double Distance(const Correspondence& match, PointResidual* residual) const {
+    const double d2 = rank_aware_.Distance(match, residual);
+    const double log_residual = 1.5 * (std::log(d2) + residual->log_det_cov);  // 3 log|e|, e^2 = d2 s2
+    PointResidual printed;
+    as_printed_.Distance(match, &printed);
+    const double whole = as_printed_.Entropy(printed);
+    residual->log_det_cov = part == Part::kWhole      ? whole
+                            : part == Part::kResidual ? log_residual
+                                                      : whole - log_residual;
+    return d2;
+  }
+  double Entropy(const PointResidual& residual) const { return residual.log_det_cov; }
+  double NegativeLogLikelihood(const PointResidual&) const { return 0.0; }
+
+ private:
+  RankAwareTest rank_aware_;
+  AsPrintedTest as_printed_;
+};
+
+// RCME with the joint sample test and no quality test: all but the score that selects is the same.
+template <typename PointTestT>
+struct SelectionPipeline {
+  using PointTest = PointTestT;
+  static bool SampleIsConsistent(const MotionProblem&, const Hypothesis& hypothesis, const PointTest&,
+                                 const Thresholds& thresholds) {
+    return JointSampleStatistic(hypothesis) <= thresholds.sample;
+  }
+  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
+  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions& options) {
+    return options.selection == Selection::kMeanEntropy
+               ? a.mean_entropy < b.mean_entropy
+               : a.negative_log_likelihood < b.negative_log_likelihood;
+  }
+};
+
+template <typename PointTest>
+bool SelectionFails(const Case& made, Selection selection) {
+  RansacOptions options;
+  options.selection = selection;
+  RandomStream sampling_rng = StreamFor(made.name, StreamPurpose::kSampling);
+  return FailsOrRefuses(Score(
+      RunPipeline<SelectionPipeline<PointTest>>(made.problem(), options, sampling_rng), made.data, 0.0));
+}
+
+Outcome SelectionStatistic(Case& made) {
+  const bool whole = SelectionFails<PrintedEntropyTest<Part::kWhole>>(made, Selection::kMeanEntropy);
+  const bool residual = SelectionFails<PrintedEntropyTest<Part::kResidual>>(made, Selection::kMeanEntropy);
+  const bool rest = SelectionFails<PrintedEntropyTest<Part::kRest>>(made, Selection::kMeanEntropy);
+  const bool excess = SelectionFails<RankAwareTest>(made, Selection::kMeanEntropy);
+  const bool predictive = SelectionFails<RankAwareTest>(made, Selection::kPredictiveLikelihood);
+  return {OnlyFirst(rest, whole), OnlyFirst(excess, whole), 1.0 * whole, 1.0 * residual, 1.0 * rest,
+          1.0 * excess,           1.0 * predictive};
+}
+
+std::vector<Target> SelectionTargets() {
+  const Interval at_most_even{0.0, 0.5};
+  std::vector<Target> targets = {{"only the uncertainty part fails, among discordant trials",
+                                  Target::Kind::kRate, 0.5, at_most_even, kNaN, 0},
+                                 {"only excess entropy fails, among discordant trials", Target::Kind::kRate,
+                                  0.5, at_most_even, kNaN, 1}};
+  size_t statistic = 2;
+  for (const char* name :
+       {"fails by printed psi", "fails by its residual part", "fails by its uncertainty part",
+        "fails by excess entropy", "fails by predictive likelihood"}) {
+    targets.push_back({name, Target::Kind::kRate, kNaN, {}, kNaN, statistic++});
+  }
+  return targets;
+}
+
+}  // namespace
+
+std::vector<Claim> EntropyClaims() {
+  const char* kLabel = "eq::score-inliers";
+  const Settings pair = {{"num_matches", "100"}};
+  return {
+      {"entropy.unit.as_printed",
+       kLabel,
+       "as printed",
+       "psi and the quality test do not depend on the unit of length in the image",
+       "psi of all-inlier models in pixels and in half pixels, mu = -3.53",
+       "",
+       {MakeCheck(pair, UnitStatistic<AsPrintedTest>(Reading::kAsPrinted), UnitTargets(), kMilliseconds)}},
+      {"entropy.unit.rank_aware",
+       kLabel,
+       "rank-aware, excess",
+       "psi and the quality test do not depend on the unit of length in the image",
+       "mean excess entropy of all-inlier models in pixels and in half pixels, mu = 6",
+       "",
+       {MakeCheck(pair, UnitStatistic<RankAwareTest>(Reading::kRankAware), UnitTargets(), kMilliseconds)}},
+      {"entropy.residual_share",
+       kLabel,
+       "as printed",
+       "The printed entropy scores the model's uncertainty, not the residuals (their share is 0 within 0.1)",
+       "Cov(h, 3 log|e|) / Var(h)",
+       "",
+       {MakeCheck(pair, ResidualShareStatistic,
+                  {{"share of the residuals in Var h within a model",
+                    Target::Kind::kMean,
+                    0.0,
+                    {-0.1, 0.1},
+                    kNaN,
+                    0},
+                   {"share of the residuals in Var psi among models",
+                    Target::Kind::kMean,
+                    0.0,
+                    {-0.1, 0.1},
+                    kNaN,
+                    1}},
+                  {500, 2'000, 20'000})}},
+      {"entropy.selection",
+       "eq::model_select_entropy",
+       "printed psi against its parts",
+       "The model's uncertainty alone selects as well as the printed entropy",
+       "failures of RCME (joint sample test, no quality test) that differ in the selecting score alone",
+       "",
+       {MakeCheck({{"outlier_ratio", "0.2"}}, SelectionStatistic, SelectionTargets(), kEstimatorCalls)}},
+  };
+}
+
+}  // namespace rcme

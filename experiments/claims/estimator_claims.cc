@@ -1,0 +1,43 @@
+#include "experiments/claims/call_estimator.h"
+#include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// NEES of the returned motion under its own covariance; whether one was returned; whether it failed.
+Outcome ReportStatistic(const MotionEstimator& estimator, const Case& made) {
+  const TrialRecord record = CallEstimator(estimator, made);
+  const bool is_returned = record.status == MotionStatus::kOk;
+  return {is_returned ? record.nees : kNaN, is_returned ? 1.0 : 0.0, 1.0 * FailsSilently(record)};
+}
+
+}  // namespace
+
+std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators) {
+  std::vector<Target> targets = CoverageTargets(5);
+  targets.push_back({"returns a motion", Target::Kind::kRate, kNaN, {}, kNaN, 1});
+  targets.push_back({"fails", Target::Kind::kRate, kNaN, {}, kNaN, 2});
+  std::vector<Claim> claims;
+  for (const EstimatorEntry& entry : estimators) {
+    std::shared_ptr<const MotionEstimator> estimator = entry.make(RansacOptions());
+    Claim claim{"estimator.coverage." + entry.name,
+                "Sec. model selection, MLE",
+                entry.name + ", defaults",
+                "The covariance that comes with a returned motion is that of its error",
+                "NEES of the returned motion, chi2_5",
+                "outlier_ratio",
+                {}};
+    for (const char* outlier_ratio : {"0", "0.2"}) {
+      claim.checks.push_back(MakeCheck({{"num_matches", "100"}, {"outlier_ratio", outlier_ratio}},
+                                       [estimator](Case& made) { return ReportStatistic(*estimator, made); },
+                                       targets, {1'000, 12'000, 60'000}));
+    }
+    claims.push_back(std::move(claim));
+  }
+  return claims;
+}
+
+}  // namespace rcme

@@ -1,0 +1,25 @@
+// The claims, one function per family.
+#pragma once
+
+#include "estimator/estimator_registry.h"
+#include "experiments/claims/claim.h"
+
+namespace rcme {
+
+std::vector<Claim> SigmaFClaims();      // covariance of f
+std::vector<Claim> SigmaPClaims();      // covariance of the motion
+std::vector<Claim> MleClaims();         // covariance of the refined motion
+std::vector<Claim> SampsonClaims();     // covariance of the Sampson vector
+std::vector<Claim> InlierClaims();      // test of a point against a motion
+std::vector<Claim> SampleTestClaims();  // test of a motion against its own sample
+std::vector<Claim> EntropyClaims();     // what the entropy of an inlier set measures
+std::vector<Claim> ZTestClaims();       // the test of the mean entropy
+std::vector<Claim> MuClaims();          // its threshold
+std::vector<Claim> FlagClaims();        // the failure flag
+std::vector<Claim> ComplexityClaims();
+std::vector<Claim> FailureClaims();    // failure rates of the estimators, compared
+std::vector<Claim> EarlyStopClaims();  // early termination
+std::vector<Claim> EstimatorClaims(
+    const std::vector<EstimatorEntry>& estimators);  // any estimator, as a black box
+
+}  // namespace rcme

@@ -1,0 +1,41 @@
+#include "experiments/claims/call_estimator.h"
+#include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+#include "simulator/scene_registry.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// Of a returned motion: flagged, if it failed; not flagged, if it did not.
+Outcome FlagStatistic(const MotionEstimator& estimator, const Case& made) {
+  const TrialRecord record = CallEstimator(estimator, made);
+  if (record.status != MotionStatus::kOk) return {kNaN, kNaN, kNaN};
+  const bool has_failed = FailsSilently(record);
+  return {has_failed ? 1.0 * record.failed_by_kappa : kNaN, has_failed ? kNaN : 1.0 * !record.failed_by_kappa,
+          1.0 * has_failed};
+}
+
+}  // namespace
+
+std::vector<Claim> FlagClaims() {
+  const std::vector<Target> targets = {
+      {"sensitivity: failures that are flagged", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 0},
+      {"specificity: good motions that are not", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 1},
+      {"failures of the estimator", Target::Kind::kRate, kNaN, {}, kNaN, 2}};
+  std::shared_ptr<const MotionEstimator> standard = FindEstimator("standard").make(RansacOptions());
+  std::vector<Check> checks;
+  for (const SceneEntry& scene : SceneRegistry()) {
+    for (const char* outlier_ratio : {"0.4", "0.5"}) {
+      checks.push_back(MakeCheck(
+          {{"scene", scene.name}, {"outlier_ratio", outlier_ratio}},
+          [standard](Case& made) { return FlagStatistic(*standard, made); }, targets, kEstimatorCalls));
+    }
+  }
+  return {{"flag.kappa", "eq::metric", "standard, kappa = 0.5",
+           "n*_I / n_I <= kappa tells the failed motions from the good ones (9 of 10 of either)",
+           "the flag against rotation error > 3 deg or direction error > 15 deg", "outlier_ratio", checks}};
+}
+
+}  // namespace rcme

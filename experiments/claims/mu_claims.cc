@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+#include "experiments/claims/model_entropy.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const Settings kPair = {{"num_matches", "200"}, {"outlier_ratio", "0.2"}};
+
+// The inlier set of a good or a contaminated model of one scene.
+template <typename PointTest>
+InlierScore ScoreOf(SampleKind kind, Case& made) {
+  const Sample sample = DrawSampleOf(kind, made);
+  return ScoreSample<PointTest>(made.problem(), sample);
+}
+
+// A good model of one scene and a contaminated one of another: whether psi puts them in order, and which of
+// them pass the quality test.
+template <typename PointTest>
+Check SeparationCheck(Reading reading) {
+  RansacOptions options;
+  options.reading = reading;
+  Check check =
+      MakeCheck(kPair, nullptr,
+                {{"AUC: a good model has the lower psi", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 0},
+                 {"good models that pass", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 1},
+                 {"contaminated models that pass", Target::Kind::kRate, 0.0, {0.0, 0.1}, kNaN, 2}},
+                kMicroseconds);
+  check.trial = [cases = SimulatedCases(kPair), options](StreamName name) -> Outcome {
+    name.trial *= 2;
+    Case first = cases(name);
+    ++name.trial;
+    Case second = cases(name);
+    const InlierScore good = ScoreOf<PointTest>(SampleKind::kGood, first);
+    const InlierScore contaminated = ScoreOf<PointTest>(SampleKind::kContaminated, second);
+    const auto passes = [&](const InlierScore& score) {
+      return PassesQualityTest(ZStatistic(score, options.MuOrDefault()),
+                               NormalQuantile(1.0 - options.significance_level), options.quality_test);
+    };
+    return {MeanEntropyOrInfinity(good) < MeanEntropyOrInfinity(contaminated) ? 1.0 : 0.0,
+            passes(good) ? 1.0 : 0.0, passes(contaminated) ? 1.0 : 0.0};
+  };
+  return check;
+}
+
+// Share of the models with psi at most mu, for many mu.
+template <typename PointTest>
+Check RocCheck(SampleKind kind, const std::vector<double>& thresholds) {
+  std::vector<Target> targets;
+  for (const double mu : thresholds) {
+    targets.push_back({fmt::format("psi at most {}", mu), Target::Kind::kAtMost, kNaN, {}, mu});
+  }
+  Check check = MakeCheck(
+      kPair,
+      [kind](Case& made) -> Outcome { return {MeanEntropyOrInfinity(ScoreOf<PointTest>(kind, made))}; },
+      targets, {0, 4'000, 40'000});
+  check.conditions.emplace_back("models", kind == SampleKind::kGood ? "good" : "contaminated");
+  return check;
+}
+
+template <typename PointTest>
+std::vector<Claim> ClaimsOf(Reading reading, const std::string& id, const std::string& name,
+                            const std::string& mu, const std::vector<double>& thresholds) {
+  return {{"mu." + id + ".separation",
+           "Sec. inlier_qual_test, mu",
+           name,
+           "psi separates good models from contaminated ones, and mu = " + mu + " is the place to cut",
+           "psi of the models of 8-point samples without and with mismatches, 20 % mismatches",
+           "",
+           {SeparationCheck<PointTest>(reading)}},
+          {"mu." + id + ".roc",
+           "Sec. inlier_qual_test, mu",
+           name,
+           "Receiver operating characteristic over mu",
+           "share of models with psi at most mu",
+           "",
+           {RocCheck<PointTest>(SampleKind::kGood, thresholds),
+            RocCheck<PointTest>(SampleKind::kContaminated, thresholds)}}};
+}
+
+}  // namespace
+
+std::vector<Claim> MuClaims() {
+  std::vector<Claim> claims =
+      ClaimsOf<AsPrintedTest>(Reading::kAsPrinted, "as_printed", "as printed", "-3.53",
+                              {-20, -15, -12, -10, -9, -8, -7, -6, -5, -4, -3.53, -3, -2,
+                               -1,  0,   1,   2,   3,  4,  5,  6,  8,  10, 12,    15, 20});
+  for (Claim& claim :
+       ClaimsOf<RankAwareTest>(Reading::kRankAware, "rank_aware", "rank-aware, excess", "6",
+                               {0.25, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 10, 12, 15})) {
+    claims.push_back(std::move(claim));
+  }
+  return claims;
+}
+
+}  // namespace rcme

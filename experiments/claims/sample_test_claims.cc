@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include "estimator/sample_consistency.h"
+#include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+#include "experiments/claims/sample_statistics.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSignificanceLevel = 0.05;
+
+Outcome JointStatistic(Case& made) {
+  const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
+  return {hypothesis ? JointSampleStatistic(*hypothesis) : kInfinity};
+}
+
+// Whether every point of the sample passes on its own.
+bool PassesPerPoint(const MotionProblem& problem) {
+  const std::optional<Hypothesis> hypothesis = FitSample(problem);
+  if (!hypothesis) return false;
+  const std::optional<UncertainFundamental> model =
+      UncertainFundamental::From(hypothesis->pose, hypothesis->pose_cov, problem.camera1, problem.camera2);
+  return model && EverySamplePointFits(problem, *hypothesis, AsPrintedTest(*model, problem.sigma_px),
+                                       ChiSquareQuantile(3, 1.0 - kSignificanceLevel));
+}
+
+Outcome PassesPerPointStatistic(Case& made) { return {PassesPerPoint(made.problem()) ? 1.0 : 0.0}; }
+
+Outcome RejectedPerPointStatistic(Case& made) { return {PassesPerPoint(made.problem()) ? 0.0 : 1.0}; }
+
+Outcome RejectedJointlyStatistic(Case& made) {
+  return {JointStatistic(made)[0] <= ChiSquareQuantile(3, 1.0 - kSignificanceLevel) ? 0.0 : 1.0};
+}
+
+// One check per number of outliers in the sample, 1 to 8.
+std::vector<Check> PowerChecks(const Statistic& is_rejected) {
+  std::vector<Check> checks;
+  for (int num_outliers = 1; num_outliers <= 8; ++num_outliers) {
+    Check check =
+        MakeCheck({{"num_matches", "8"}, {"outlier_ratio", fmt::format("{}", num_outliers / 8.0)}},
+                  is_rejected, {{"share rejected", Target::Kind::kRate, 1.0, {0.9, 1.0}}}, kMicroseconds);
+    check.conditions.emplace_back("num_outliers", fmt::format("{}", num_outliers));
+    checks.push_back(std::move(check));
+  }
+  return checks;
+}
+
+}  // namespace
+
+std::vector<Claim> SampleTestClaims() {
+  const char* kLabel = "eq::sample-p-test";
+  const char* kPower = "At least 90 % of the samples with 1 to 8 mismatches are rejected";
+  const Settings sample = {{"num_matches", "8"}};
+  return {
+      {"sample_test.size.as_printed", kLabel, "per point",
+       "A sample without outliers passes with probability 1 - alpha, alpha = 0.05",
+       "all eight points pass delta' Sigma_delta^-1 delta <= chi2_3", "sigma_px",
+       SigmaLadder(kNoiseLadderPx, sample, PassesPerPointStatistic,
+                   {{"share passed", Target::Kind::kRate, 0.95, Around(0.95, 0.01)}}, kMicroseconds)},
+      {"sample_test.size.joint", kLabel, "joint, 3 dof",
+       "A sample without outliers passes with probability 1 - alpha",
+       "T = (N'f)' (N' Sigma_f N)^-1 (N'f), chi2_3", "sigma_px",
+       SigmaLadder(kNoiseLadderPx, sample, JointStatistic, CoverageTargets(3), kMicroseconds)},
+      {"sample_test.power.as_printed", kLabel, "per point", kPower, "a point exceeds chi2_3 at alpha = 0.05",
+       "num_outliers", PowerChecks(RejectedPerPointStatistic)},
+      {"sample_test.power.joint", kLabel, "joint, 3 dof", kPower, "T exceeds chi2_3 at alpha = 0.05",
+       "num_outliers", PowerChecks(RejectedJointlyStatistic)},
+  };
+}
+
+}  // namespace rcme

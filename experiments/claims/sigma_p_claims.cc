@@ -1,0 +1,52 @@
+#include <Eigen/Eigenvalues>
+
+#include "estimator/uncertainty/motion_covariance.h"
+#include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+#include "experiments/claims/sample_statistics.h"
+#include "stats/consistency.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const Settings kSample = {{"num_matches", "8"}};
+
+Outcome NeesStatistic(Case& made) {
+  const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
+  if (!hypothesis) return {kInfinity};
+  return {NormalizedErrorSquared(LocalCoordinates(hypothesis->pose, made.pose_true()), hypothesis->pose_cov)};
+}
+
+// Whether the 7x7 covariance of p = [q; t] has five eigenvalues above rounding, and whether it has seven.
+Outcome RankStatistic(Case& made) {
+  const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
+  if (!hypothesis) return {0.0, 0.0};
+  const Eigen::Matrix<double, 7, 7> covariance =
+      CovarianceOfQuaternionAndTranslation(hypothesis->pose, hypothesis->pose_cov);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 7, 7>> eigen(covariance);
+  const auto rank = (eigen.eigenvalues().array() > 1e-13 * eigen.eigenvalues()(6)).count();
+  return {rank == 5 ? 1.0 : 0.0, rank == 7 ? 1.0 : 0.0};
+}
+
+}  // namespace
+
+std::vector<Claim> SigmaPClaims() {
+  return {
+      {"sigma_p.theta", "eq::cov_p", "pseudo-inverse of dTheta/dp",
+       "Sigma_p = J_p Sigma_f J_p' is the covariance of the motion", "NEES of the motion, chi2_5", "sigma_px",
+       SigmaLadder(kNoiseLadderPx, kSample, NeesStatistic, CoverageTargets(5), kMicroseconds)},
+      {"sigma_p.rank",
+       "eq::cov_p",
+       "7x7, p = (q, t)",
+       "The 7x7 covariance of p has full rank",
+       "eigenvalues above 1e-13 of the largest",
+       "",
+       {MakeCheck(kSample, RankStatistic,
+                  {{"share of rank 7", Target::Kind::kRate, 1.0, {0.999, 1.0}, 0.0, 1},
+                   {"share of rank 5", Target::Kind::kRate}},
+                  kMicroseconds)}},
+  };
+}
+
+}  // namespace rcme

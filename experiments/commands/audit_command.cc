@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "estimator/estimator_registry.h"
+#include "experiments/audit_output.h"
+#include "experiments/claims/claim_table.h"
+#include "experiments/commands/commands.h"
+#include "experiments/draw_figures.h"
+#include "experiments/file_output.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct AuditArguments {
+  std::vector<std::string> only;
+  std::string budget = "quick", out;
+  std::int64_t seed = 1;
+  int threads = 0;
+};
+
+void MakeFolder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (!std::filesystem::is_directory(path)) {
+    throw InputError(fmt::format("--out: '{}' cannot be made a folder: {}", path, error.message()));
+  }
+}
+
+void RunAuditCommand(const AuditArguments& arguments) {
+  AuditOptions options;
+  options.only = arguments.only;
+  options.budget = arguments.budget == "full" ? Budget::kFull : Budget::kQuick;
+  options.seed = static_cast<std::uint64_t>(arguments.seed);
+  options.num_threads = arguments.threads;
+  const std::vector<Claim> all = AllClaims(EstimatorRegistry());
+  SelectClaims(all, options.only);
+  MakeFolder(arguments.out);
+  const Audit audit = RunAudit(all, options);
+  fmt::print("{}", AuditAsTable(audit));
+  WriteFileWhole(arguments.out + "/audit.json", AuditAsJson(audit));
+  WriteFileWhole(arguments.out + "/audit.md", AuditAsMarkdown(audit));
+  DrawFigures("audit.py", arguments.out);
+}
+
+}  // namespace
+
+void AddAuditCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "audit",
+      "Check every claim of the paper, and say of each: holds, holds in the small-noise limit only, does not "
+      "hold, "
+      "or undecided\n"
+      "\n"
+      "Every claim is a rate or a mean with the range that counts as nominal. Its trials stop when the "
+      "verdict is\n"
+      "decided; the intervals hold however often they are looked at. Writes DIR/audit.md (to read), "
+      "DIR/audit.json\n"
+      "(everything) and one figure per family of claims.\n"
+      "\n"
+      "  rcme audit --out audit                                   all claims, at most a few minutes\n"
+      "  rcme audit --only inlier,sigma_p.theta --out audit       a family and one claim\n"
+      "  rcme audit --budget full --seed 2 --out audit            narrow intervals, other random streams");
+  auto arguments = std::make_shared<AuditArguments>();
+  command
+      ->add_option("--only", arguments->only,
+                   "ids of claims or of families, comma-separated; `rcme list claims`")
+      ->delimiter(',');
+  command
+      ->add_option("--budget", arguments->budget, "quick (minutes) or full (up to hours; says so beforehand)")
+      ->check(CLI::IsMember({"quick", "full"}))
+      ->capture_default_str();
+  command->add_option("-o,--out", arguments->out, "folder for the results; made if missing")->required();
+  command->add_option("--seed", arguments->seed, "seed of all random streams")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str();
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The results do not depend on it, measured times excepted")
+      ->check(CLI::Range(0, 1024));
+  command->callback([arguments] { RunAuditCommand(*arguments); });
+}
+
+}  // namespace rcme
