@@ -7,10 +7,11 @@
 #include "parameters/input_error.h"
 
 namespace rcme {
+namespace {
 
-const std::vector<EstimatorEntry>& EstimatorRegistry() {
+std::vector<EstimatorEntry>& Table() {
   using SampleTest = RcmeEstimator::SampleTest;
-  static const std::vector<EstimatorEntry> registry = {
+  static std::vector<EstimatorEntry> registry = {
       {"standard", "RANSAC by inlier count, then Gold Standard refinement",
        [](const RansacOptions& o) { return std::make_unique<StandardEstimator>(o); }},
       {"prcme", "RCME without the test of the model against its sample",
@@ -19,6 +20,19 @@ const std::vector<EstimatorEntry>& EstimatorRegistry() {
        [](const RansacOptions& o) { return std::make_unique<RcmeEstimator>(o, SampleTest::kOn); }},
   };
   return registry;
+}
+
+}  // namespace
+
+const std::vector<EstimatorEntry>& EstimatorRegistry() { return Table(); }
+
+void AddEstimator(EstimatorEntry entry) {
+  for (const EstimatorEntry& known : Table()) {
+    if (entry.name.empty() || known.name == entry.name) {
+      throw InputError(fmt::format("estimator name '{}' is taken or empty", entry.name));
+    }
+  }
+  Table().push_back(std::move(entry));
 }
 
 const EstimatorEntry& FindEstimator(const std::string& name) {

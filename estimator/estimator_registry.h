@@ -19,6 +19,10 @@ struct EstimatorEntry {
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 
+// Adds an estimator of one's own to the table; to be called before anything reads it, from one thread. Throws
+// InputError if the name is taken or empty.
+void AddEstimator(EstimatorEntry entry);
+
 // The entry called `name`; throws InputError that lists the known names.
 const EstimatorEntry& FindEstimator(const std::string& name);
 

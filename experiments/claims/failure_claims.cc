@@ -71,15 +71,47 @@ Claim OrderClaim(const std::string& id, const std::string& reading, const Ransac
   return claim;
 }
 
+Claim AgainstStandardClaim(const EstimatorEntry& entry) {
+  Claim claim{"failure." + entry.name,
+              "",
+              entry.name + ", defaults",
+              entry.name + " fails or refuses no more often than standard",
+              "rotation error > 3 deg or direction error > 15 deg, in pairs, by the trials in which only one fails",
+              "outlier_ratio",
+              {}};
+  std::shared_ptr<const MotionEstimator> standard = FindEstimator("standard").make(RansacOptions());
+  std::shared_ptr<const MotionEstimator> other = entry.make(RansacOptions());
+  const auto statistic = [standard, other](Case& made) -> Outcome {
+    const bool standard_fails = FailsOrRefuses(CallEstimator(*standard, made));
+    const bool other_fails = FailsOrRefuses(CallEstimator(*other, made));
+    return {OnlyFirst(other_fails, standard_fails), 1.0 * other_fails, 1.0 * standard_fails};
+  };
+  for (const char* outlier_ratio : {"0.2", "0.3", "0.4"}) {
+    claim.checks.push_back(
+        MakeCheck({{"outlier_ratio", outlier_ratio}}, statistic,
+                  {{"of trials that tell them apart, fails " + entry.name, Target::Kind::kRate, 0.5, {0.0, 0.5}, kNaN, 0},
+                   {entry.name + " fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 1},
+                   {"standard fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 2}},
+                  kEstimatorCalls));
+  }
+  return claim;
+}
+
 }  // namespace
 
-std::vector<Claim> FailureClaims() {
+std::vector<Claim> FailureClaims(const std::vector<EstimatorEntry>& estimators) {
   RansacOptions rank_aware, predictive;
   rank_aware.reading = predictive.reading = Reading::kRankAware;
   predictive.selection = Selection::kPredictiveLikelihood;
-  return {OrderClaim("as_printed", "as printed", RansacOptions()),
-          OrderClaim("rank_aware", "rank-aware, least entropy", rank_aware),
-          OrderClaim("predictive", "rank-aware, predictive likelihood", predictive)};
+  std::vector<Claim> claims = {OrderClaim("as_printed", "as printed", RansacOptions()),
+                               OrderClaim("rank_aware", "rank-aware, least entropy", rank_aware),
+                               OrderClaim("predictive", "rank-aware, predictive likelihood", predictive)};
+  for (const EstimatorEntry& entry : estimators) {
+    if (entry.name != "standard" && entry.name != "prcme" && entry.name != "rcme") {
+      claims.push_back(AgainstStandardClaim(entry));
+    }
+  }
+  return claims;
 }
 
 }  // namespace rcme

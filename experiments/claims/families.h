@@ -17,8 +17,9 @@ std::vector<Claim> ZTestClaims();       // the test of the mean entropy
 std::vector<Claim> MuClaims();          // its threshold
 std::vector<Claim> FlagClaims();        // the failure flag
 std::vector<Claim> ComplexityClaims();
-std::vector<Claim> FailureClaims();    // failure rates of the estimators, compared
-std::vector<Claim> EarlyStopClaims();  // early termination
+// Failure rates, compared: the paper's three, and every other estimator against standard.
+std::vector<Claim> FailureClaims(const std::vector<EstimatorEntry>& estimators);
+std::vector<Claim> EarlyStopClaims();
 std::vector<Claim> EstimatorClaims(
     const std::vector<EstimatorEntry>& estimators);  // any estimator, as a black box
 

@@ -1,0 +1,60 @@
+// An estimator of one's own in the whole framework: OpenCV's five-point RANSAC, with the first-order covariance of its
+// inliers. Everything else is the program `rcme`.
+
+#include <opencv2/calib3d.hpp>
+
+#include "estimator/estimator_registry.h"
+#include "estimator/uncertainty/motion_covariance.h"
+#include "experiments/program.h"
+
+namespace {
+
+class OpenCvEstimator : public rcme::MotionEstimator {
+ public:
+  rcme::MotionEstimate Estimate(const rcme::MotionProblem& problem, rcme::RandomStream&) const override {
+    rcme::MotionEstimate estimate;
+    if (problem.matches.size() < 5) {
+      estimate.status = rcme::MotionStatus::kTooFewMatches;
+      return estimate;
+    }
+    // Rays, so that both cameras may differ; the threshold in units of the mean focal length.
+    std::vector<cv::Point2d> rays1, rays2;
+    for (const rcme::Correspondence& match : problem.matches) {
+      const Eigen::Vector3d ray1 = problem.camera1.Ray(match.x1_px), ray2 = problem.camera2.Ray(match.x2_px);
+      rays1.emplace_back(ray1.x(), ray1.y());
+      rays2.emplace_back(ray2.x(), ray2.y());
+    }
+    const double focal_px = 0.5 * (problem.camera1.fx + problem.camera2.fx);
+    const double threshold = 1.96 * problem.sigma_px / focal_px;
+    cv::Mat mask, R, t;
+    const cv::Mat K = cv::Mat::eye(3, 3, CV_64F);
+    const cv::Mat E = cv::findEssentialMat(rays1, rays2, K, cv::RANSAC, 0.999, threshold, mask);
+    if (E.rows != 3 || cv::recoverPose(E, rays1, rays2, K, R, t, mask) < 5) {
+      estimate.status = rcme::MotionStatus::kNoCandidate;
+      return estimate;
+    }
+    std::vector<rcme::Correspondence> inliers;
+    for (int i = 0; i < mask.rows; ++i) {
+      if (!mask.at<unsigned char>(i)) continue;
+      estimate.inliers.push_back(i);
+      inliers.push_back(problem.matches[static_cast<size_t>(i)]);
+    }
+    for (int row = 0; row < 3; ++row) {
+      estimate.cam2_from_cam1.t(row) = t.at<double>(row);
+      for (int col = 0; col < 3; ++col) estimate.cam2_from_cam1.R(row, col) = R.at<double>(row, col);
+    }
+    const auto covariance = rcme::FirstOrderMotionCovariance(estimate.cam2_from_cam1, problem.camera1,
+                                                             problem.camera2, inliers, problem.sigma_px);
+    estimate.status = covariance ? rcme::MotionStatus::kOk : rcme::MotionStatus::kDegenerateMatches;
+    if (covariance) estimate.pose_cov = *covariance;
+    return estimate;
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  rcme::AddEstimator({"opencv", "OpenCV's findEssentialMat (RANSAC) and recoverPose",
+                      [](const rcme::RansacOptions&) { return std::make_unique<OpenCvEstimator>(); }});
+  return rcme::RunProgram(argc, argv);
+}

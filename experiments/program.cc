@@ -1,0 +1,63 @@
+#include "experiments/program.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include "experiments/commands/commands.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+
+int RunProgram(int argc, const char* const* argv) {
+  std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
+  CLI::App app{
+      "Validates robust two-view camera-motion estimators (RCME and peers) by simulation, and runs them on "
+      "real matches.\n"
+      "\n"
+      "A first session:\n"
+      "  rcme list studies                                            what there is to run\n"
+      "  rcme run experiments/studies/failure_vs_outliers.yaml --out run.sqlite\n"
+      "  rcme summarize run.sqlite                                    rates with exact intervals\n"
+      "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
+      "  rcme audit --out audit                                       every claim of the paper, checked\n"
+      "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
+      "rcme"};
+  app.set_version_flag("--version", "rcme " RCME_VERSION);
+  app.get_formatter()->column_width(34);
+  AddRunCommand(app);
+  AddSummarizeCommand(app);
+  AddReplayCommand(app);
+  AddAuditCommand(app);
+  AddEstimateCommand(app);
+  AddMatchCommand(app);
+  AddListCommand(app);
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
+    if (std::fflush(stdout) != 0) throw InputError("standard output cannot be written");
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "rcme: {}\n", error.what());
+    return 2;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "rcme: {}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout)) {
+      fmt::print(stderr, "rcme: standard output cannot be written ({})\n", error.what());
+      return 2;
+    }
+    fmt::print(stderr, "rcme: internal error: {}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace rcme
