@@ -102,8 +102,8 @@ class Node:
         return self.get(key, lambda value: isinstance(value, str) and value in allowed,
                         "one of " + ", ".join(f"'{name}'" for name in allowed))
 
-    def number(self, key):
-        return float(self.get(key, is_finite, "a finite number"))
+    def fraction(self, key):
+        return float(self.get(key, lambda value: is_finite(value) and 0 <= value <= 1, "a number in 0..1"))
 
     def number_or(self, key, if_null):
         value = self.get(key, lambda value: value is None or is_finite(value), "a finite number or null")
@@ -132,7 +132,8 @@ def is_finite(value):
 
 
 def read_target(node):
-    lower, upper = node.get("interval", is_interval, "null or [lower, upper], each a finite number or null") or (None,) * 2
+    interval = node.get("interval", is_interval, "null or [lower, upper], each a finite number or null")
+    lower, upper = interval or (None, None)
     target = Target(
         quantity=node.text("quantity"), kind=node.one_of("kind", KINDS), nominal=node.number_or("nominal", math.nan),
         low=node.number_or("low", -math.inf), high=node.number_or("high", math.inf),
@@ -189,8 +190,8 @@ def read_audit(path):
         raise PlotError(f"{path}: is not a whole JSON file ({error}); is it cut off?")
     node = Node(path, "the file", value)
     node.one_of("format", (FORMAT,))
-    audit = Audit(path, seed=node.get("seed", lambda seed: type(seed) is int, "a whole number"), budget=node.text("budget"),
-                  confidence_per_target=node.number("confidence_per_target"),
+    audit = Audit(path, seed=node.get("seed", lambda seed: type(seed) is int, "a whole number"),
+                  budget=node.text("budget"), confidence_per_target=node.fraction("confidence_per_target"),
                   claims=tuple(map(read_claim, node.nodes("claims", "claim"))))
     if not audit.claims:
         raise PlotError(f"{path}: has no claims ('claims' is empty), so there is nothing to draw.")
