@@ -14,7 +14,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 import style
-from summary_csv import PlotError, numbers, read_summary, where
+from command_line import Parser, PlotError
+from summary_csv import numbers, read_summary, where
 
 MAX_PANEL_ROWS = 6
 
@@ -162,11 +163,6 @@ def draw(summary, x, quantities, log_y=False):
     style.add_legend_and_caption(figure, panels[0, 0].get_legend_handles_labels()[0],
                                  caption_of(rows, other_factors, log_y))
     return figure
-
-
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise PlotError(f"{message}; see --help.")
 
 
 def parse(arguments):

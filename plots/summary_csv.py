@@ -9,11 +9,9 @@ import math
 
 import pandas
 
+from command_line import PlotError
+
 COLUMNS = ("study", "condition", "estimator", "quantity", "kind", "value", "lower", "upper", "standard_error", "n")
-
-
-class PlotError(Exception):
-    """Something the user can put right; its text is one sentence that names the file, the thing and what is allowed."""
 
 
 class Summary:

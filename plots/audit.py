@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""Draws the audit of the paper's claims: one figure per family of claims, one panel per claim.
+
+It draws what audit.json says and computes nothing: values, intervals, allowed ranges and verdicts are those of
+`rcme audit`.
+"""
+
+import argparse
+import math
+import os
+import sys
+
+import audit_groups as groups
+import audit_look as look
+import style
+from audit_curve import panels_of
+from audit_forest import ForestPanel
+from audit_json import read_audit
+from audit_page import Titled, draw_page
+from audit_panel import EmptyPanel
+from audit_roc import DEFAULT_MU, RocPanel, is_roc
+from command_line import Parser, PlotError
+
+EXAMPLE = """
+example:
+  rcme audit --out audit
+  plots/audit.py audit
+draws audit/audit_<family>.png and .pdf for every family of claims in audit/audit.json.
+
+A claim with a condition along x is drawn over that condition, any other as a list of its targets; the acceptance of models
+by mu as a ROC curve.
+"""
+
+
+def panels_of_claim(claim, path):
+    """The panels of one claim: curves if its x has at least two levels, else one forest."""
+    rows = groups.rows_of(claim)
+    if not rows:
+        return [Titled(claim, "", EmptyPanel())]
+    if is_roc(claim):
+        return [Titled(claim, ", ".join(groups.fixed(rows)), RocPanel(claim, rows, path))]
+    if claim.figure_x and len({row.conditions[claim.figure_x] for row in rows}) > 1:
+        shared = groups.fixed(rows, but=(claim.figure_x,))
+        return [Titled(claim, ", ".join(filter(None, (words, *shared))), body)
+                for words, body in panels_of(claim, rows, path)]
+    return [Titled(claim, ", ".join(groups.fixed(rows)), ForestPanel(rows))]
+
+
+def confidence_text(confidence):
+    """'1 − 8·10⁻⁵', or '0.95'."""
+    return f"{confidence:g}" if confidence <= 0.99 else f"1 \u2212 {look.power_text(1 - confidence)}"
+
+
+def caption_of(audit, family, claims, panels):
+    """What a reader needs beyond the marks: seed, budget, n, what the intervals promise."""
+    rows = [row for claim in claims for row in groups.rows_of(claim)]
+    counts = [row.target.n for row in rows]
+    parts = [f"Audit of family {family}", f"seed {audit.seed}", f"budget {audit.budget}"]
+    if counts:
+        low, high = min(counts), max(counts)
+        parts.append(f"n = {low} per target" if low == high else f"n = {low}\u2013{high} per target")
+    parts.append("intervals hold at all sample sizes at once, confidence "
+                 f"{confidence_text(audit.confidence_per_target)} each")
+    if any(panel.body.has_pale_series() for panel in panels):
+        parts.append("pale: the other significance levels, each around its own nominal value")
+    if any(panel.body.cuts_intervals() for panel in panels):
+        parts.append("arrow at a frame: the interval goes on")
+    if any(panel.body.shows_limit() for panel in panels):
+        parts.append("dashed upright line: the noise up to which the claim holds")
+    if any(map(is_roc, claims)):
+        parts.append(f"ring: the mu nearest to the default {look.number_text(DEFAULT_MU)}")
+    if any(math.isnan(row.target.measured) for row in rows):
+        parts.append("cross at a frame or 'no value': no finite value measured")
+    return "; ".join(parts) + "."
+
+
+def draw_family(audit, family, claims):
+    """The figure of one family."""
+    panels = [panel for claim in claims for panel in panels_of_claim(claim, audit.path)]
+    marked = [row.target for claim in claims if not is_roc(claim) for row in groups.rows_of(claim)]
+    handles = look.legend_handles({target.verdict for target in marked}, any(target.is_claim for target in marked),
+                                  any(not math.isnan(target.nominal) for target in marked))
+    return draw_page(panels, handles, caption_of(audit, family, claims, panels))
+
+
+def parse(arguments):
+    parser = Parser(prog="audit.py", description=__doc__, epilog=EXAMPLE,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", metavar="DIR", help="the folder that 'rcme audit --out DIR' wrote; it holds audit.json")
+    parser.add_argument("--out", metavar="OUTDIR", help="the folder to write to (default: DIR)")
+    options = parser.parse_args(arguments)
+    options.out = options.folder if options.out is None else options.out
+    return options
+
+
+def main(arguments=None):
+    try:
+        options = parse(arguments)
+        audit = read_audit(os.path.join(options.folder, "audit.json"))
+        if not os.path.isdir(options.out):
+            raise PlotError(f"--out {options.out}: there is no such folder.")
+        figures = {family: draw_family(audit, family, claims) for family, claims in audit.families().items()}
+        written = [path for family, figure in figures.items()
+                   for path in style.save(figure, os.path.join(options.out, f"audit_{family}"))]
+    except PlotError as error:
+        print(f"audit.py: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"audit.py: cannot write to {options.out}: {error.strerror}.", file=sys.stderr)
+        return 2
+    print("\n".join(written))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
