@@ -2,8 +2,9 @@
 
 namespace rcme {
 
-// The program `rcme` on a command line. Exit codes: 0 done, 2 usage or bad input, 1 else. A program of one's own that
-// first calls AddEstimator (estimator_registry.h) has its estimator in every command; examples/own_estimator.
+// The program `rcme` on a command line. Exit codes: 0 done, 2 usage or bad input, 1 else. A program of one's
+// own that first calls AddEstimator (estimator_registry.h) has its estimator in every command;
+// examples/own_estimator.
 int RunProgram(int argc, const char* const* argv);
 
 }  // namespace rcme

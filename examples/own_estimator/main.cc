@@ -1,5 +1,5 @@
-// An estimator of one's own in the whole framework: OpenCV's five-point RANSAC, with the first-order covariance of its
-// inliers. Everything else is the program `rcme`.
+// An estimator of one's own in the whole framework: OpenCV's five-point RANSAC, with the first-order
+// covariance of its inliers. Everything else is the program `rcme`.
 
 #include <opencv2/calib3d.hpp>
 

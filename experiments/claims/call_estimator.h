@@ -10,6 +10,10 @@ namespace rcme {
 // of samples.
 TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made);
 
+// What a call says of the covariance it returns: NEES of the motion (NaN if none is returned), whether one is
+// returned, whether it failed.
+Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made);
+
 // Whether the call failed where a refusal ("Detect-fail") counts as no failure, and where it counts as one.
 bool FailsSilently(const TrialRecord& record);
 bool FailsOrRefuses(const TrialRecord& record);

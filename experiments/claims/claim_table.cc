@@ -8,8 +8,8 @@ std::vector<Claim> AllClaims(const std::vector<EstimatorEntry>& estimators) {
   std::vector<Claim> all;
   for (const std::vector<Claim>& family :
        {SigmaFClaims(), SigmaPClaims(), MleClaims(), SampsonClaims(), InlierClaims(), SampleTestClaims(),
-        EntropyClaims(), ZTestClaims(), MuClaims(), FlagClaims(), FailureClaims(estimators), EarlyStopClaims(),
-        ComplexityClaims(), EstimatorClaims(estimators)}) {
+        EntropyClaims(), ZTestClaims(), MuClaims(), FlagClaims(), FailureClaims(estimators),
+        EarlyStopClaims(), ComplexityClaims(), EstimatorClaims(estimators)}) {
     all.insert(all.end(), family.begin(), family.end());
   }
   return all;

@@ -27,7 +27,7 @@ Claim EarlyStopClaim(const std::string& id, const std::string& name, Reading rea
           "hundred",
           "hypotheses not drawn; trials in which only the early one fails or refuses",
           "outlier_ratio",
-          {MakeCheck({{"outlier_ratio", "0.3"}}, statistic,
+          {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.3"}}, statistic,
                      {{"only the early one fails", Target::Kind::kRate, 0.0, {0.0, 0.01}, kNaN, 0},
                       {"share of hypotheses saved", Target::Kind::kMean, 1.0, {0.1, 1.0}, kNaN, 1},
                       {"all hypotheses: fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 2},

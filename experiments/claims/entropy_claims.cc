@@ -217,7 +217,8 @@ std::vector<Claim> EntropyClaims() {
        "The model's uncertainty alone selects as well as the printed entropy",
        "failures of RCME (joint sample test, no quality test) that differ in the selecting score alone",
        "",
-       {MakeCheck({{"outlier_ratio", "0.2"}}, SelectionStatistic, SelectionTargets(), kEstimatorCalls)}},
+       {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.2"}}, SelectionStatistic, SelectionTargets(),
+                  kEstimatorCalls)}},
   };
 }
 

@@ -62,9 +62,9 @@ Claim OrderClaim(const std::string& id, const std::string& reading, const Ransac
       "rotation error > 3 deg or direction error > 15 deg, in pairs, by the trials in which only one fails",
       "outlier_ratio",
       {}};
-  for (const char* outlier_ratio : {"0.3", "0.4"}) {
+  for (const char* outlier_ratio : {"0.4"}) {
     claim.checks.push_back(MakeCheck(
-        {{"outlier_ratio", outlier_ratio}},
+        {{"num_matches", "200"}, {"outlier_ratio", outlier_ratio}},
         [rivals = MakeRivals(options)](Case& made) { return OrderStatistic(rivals, made); }, OrderTargets(),
         kEstimatorCalls));
   }
@@ -72,13 +72,14 @@ Claim OrderClaim(const std::string& id, const std::string& reading, const Ransac
 }
 
 Claim AgainstStandardClaim(const EstimatorEntry& entry) {
-  Claim claim{"failure." + entry.name,
-              "",
-              entry.name + ", defaults",
-              entry.name + " fails or refuses no more often than standard",
-              "rotation error > 3 deg or direction error > 15 deg, in pairs, by the trials in which only one fails",
-              "outlier_ratio",
-              {}};
+  Claim claim{
+      "failure." + entry.name,
+      "",
+      entry.name + ", defaults",
+      entry.name + " fails or refuses no more often than standard",
+      "rotation error > 3 deg or direction error > 15 deg, in pairs, by the trials in which only one fails",
+      "outlier_ratio",
+      {}};
   std::shared_ptr<const MotionEstimator> standard = FindEstimator("standard").make(RansacOptions());
   std::shared_ptr<const MotionEstimator> other = entry.make(RansacOptions());
   const auto statistic = [standard, other](Case& made) -> Outcome {
@@ -88,8 +89,13 @@ Claim AgainstStandardClaim(const EstimatorEntry& entry) {
   };
   for (const char* outlier_ratio : {"0.2", "0.3", "0.4"}) {
     claim.checks.push_back(
-        MakeCheck({{"outlier_ratio", outlier_ratio}}, statistic,
-                  {{"of trials that tell them apart, fails " + entry.name, Target::Kind::kRate, 0.5, {0.0, 0.5}, kNaN, 0},
+        MakeCheck({{"num_matches", "200"}, {"outlier_ratio", outlier_ratio}}, statistic,
+                  {{"of trials that tell them apart, fails " + entry.name,
+                    Target::Kind::kRate,
+                    0.5,
+                    {0.0, 0.5},
+                    kNaN,
+                    0},
                    {entry.name + " fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 1},
                    {"standard fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 2}},
                   kEstimatorCalls));

@@ -29,7 +29,7 @@ std::vector<Claim> FlagClaims() {
   for (const SceneEntry& scene : SceneRegistry()) {
     for (const char* outlier_ratio : {"0.4", "0.5"}) {
       checks.push_back(MakeCheck(
-          {{"scene", scene.name}, {"outlier_ratio", outlier_ratio}},
+          {{"scene", scene.name}, {"num_matches", "200"}, {"outlier_ratio", outlier_ratio}},
           [standard](Case& made) { return FlagStatistic(*standard, made); }, targets, kEstimatorCalls));
     }
   }

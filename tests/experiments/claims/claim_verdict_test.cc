@@ -1,0 +1,69 @@
+#include "experiments/claims/claim_verdict.h"
+
+#include <gtest/gtest.h>
+
+namespace rcme {
+namespace {
+
+constexpr Verdict kYes = Verdict::kHolds, kNo = Verdict::kDoesNotHold, kOpen = Verdict::kUndecided;
+
+TEST(Together, OneFailureDecidesAndOneOpenQuestionLeavesOpen) {
+  EXPECT_EQ(Together({}), std::nullopt);
+  EXPECT_EQ(Together({std::nullopt, std::nullopt}), std::nullopt);
+  EXPECT_EQ(Together({kYes, std::nullopt, kYes}), kYes);
+  EXPECT_EQ(Together({kYes, kOpen, kYes}), kOpen);
+  EXPECT_EQ(Together({kOpen, kYes}), kOpen);
+  EXPECT_EQ(Together({kOpen, kNo, kYes}), kNo);
+}
+
+struct Rung {
+  double sigma_px;
+  std::optional<Verdict> verdict;
+};
+
+ClaimResult Judge(const std::vector<Rung>& rungs) {
+  Claim claim;
+  ClaimResult result;
+  for (const Rung& rung : rungs) {
+    claim.checks.emplace_back().sigma_px = rung.sigma_px;
+    result.checks.emplace_back().verdict = rung.verdict;
+  }
+  JudgeClaim(claim, &result);
+  return result;
+}
+
+TEST(JudgeClaim, HoldsIfItHoldsUpToTheAssertedNoise) {
+  const ClaimResult result = Judge({{0.01, kYes}, {0.5, kYes}, {1.0, kNo}});
+  EXPECT_EQ(result.verdict, ClaimVerdict::kHolds);
+  EXPECT_EQ(result.holds_up_to_sigma_px, 0.5);
+}
+
+TEST(JudgeClaim, HoldsInTheLimitOnlyIfItFailsByThen) {
+  const ClaimResult result = Judge({{0.5, kNo}, {1e-4, kYes}, {1e-3, kYes}, {0.1, kOpen}});  // in any order
+  EXPECT_EQ(result.verdict, ClaimVerdict::kSmallNoiseOnly);
+  EXPECT_EQ(result.holds_up_to_sigma_px, 1e-3);
+}
+
+TEST(JudgeClaim, FailsIfItFailsInTheLimit) {
+  EXPECT_EQ(Judge({{1e-4, kNo}, {0.5, kYes}}).verdict, ClaimVerdict::kDoesNotHold);
+  EXPECT_EQ(Judge({{0.5, kNo}}).verdict, ClaimVerdict::kDoesNotHold);
+  EXPECT_EQ(Judge({{1.0, kNo}}).verdict,
+            ClaimVerdict::kDoesNotHold);  // checked only above the asserted noise
+  EXPECT_FALSE(Judge({{0.5, kNo}}).holds_up_to_sigma_px);
+}
+
+TEST(JudgeClaim, IsUndecidedWithoutEvidence) {
+  EXPECT_EQ(Judge({{0.5, kOpen}}).verdict, ClaimVerdict::kUndecided);
+  EXPECT_EQ(Judge({{1e-4, kOpen}, {0.5, kNo}}).verdict, ClaimVerdict::kUndecided);  // limit or nowhere?
+  EXPECT_EQ(Judge({{1e-4, kYes}, {0.5, kOpen}}).verdict, ClaimVerdict::kUndecided);
+  EXPECT_EQ(Judge({{0.5, std::nullopt}}).verdict, ClaimVerdict::kMeasured);
+}
+
+TEST(JudgeClaim, ChecksOfOneRungStandTogether) {
+  EXPECT_EQ(Judge({{0.5, kYes}, {0.5, kNo}, {0.5, std::nullopt}}).verdict, ClaimVerdict::kDoesNotHold);
+  EXPECT_EQ(Judge({{0.5, kYes}, {0.5, kYes}}).verdict, ClaimVerdict::kHolds);
+  EXPECT_EQ(Judge({{0.1, kYes}, {0.1, kOpen}, {0.5, kYes}}).verdict, ClaimVerdict::kUndecided);
+}
+
+}  // namespace
+}  // namespace rcme

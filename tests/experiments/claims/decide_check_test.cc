@@ -1,0 +1,144 @@
+#include "experiments/claims/decide_check.h"
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cmath>
+
+#include "stats/confidence_sequence.h"
+#include "stats/intervals.h"
+#include "tests/test_support/coverage_count.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Target RateWithin(double low, double high) {
+  return {"rate", Target::Kind::kRate, 0.5 * (low + high), {low, high}};
+}
+
+// A check whose trials succeed with the given probability.
+Check BernoulliCheck(double probability, const Target& target, const TrialLimits& limits) {
+  Check check;
+  check.targets = {target};
+  check.limits = limits;
+  check.trial = [probability](const StreamName& name) -> Outcome {
+    return {RandomStream(name).Uniform() < probability ? 1.0 : 0.0};
+  };
+  return check;
+}
+
+// A check that yields the trial's number.
+Check CountingCheck(const std::vector<Target>& targets, const TrialLimits& limits) {
+  Check check;
+  check.targets = targets;
+  check.limits = limits;
+  check.trial = [](const StreamName& name) -> Outcome { return {static_cast<double>(name.trial)}; };
+  return check;
+}
+
+TEST(DecideCheck, StopsAtTheVerdictAndNotBeforeTheLeastNumber) {
+  const Check sure = BernoulliCheck(1.0, RateWithin(0.9, 1.0), {0, 100'000, 100'000});
+  const CheckResult result = DecideCheck(sure, {});
+  EXPECT_EQ(result.verdict, Verdict::kHolds);
+  EXPECT_LT(result.num_trials, 1'000);
+  EXPECT_EQ(result.targets[0].measured, 1.0);
+  EXPECT_EQ(result.targets[0].n, result.num_trials);
+
+  Check longer = sure;
+  longer.limits.min = 5'000;
+  EXPECT_GE(DecideCheck(longer, {}).num_trials, 5'000);
+}
+
+TEST(DecideCheck, EndsUndecidedAtTheBudgetAndSaysHowManyWouldDo) {
+  const Check check = BernoulliCheck(0.945, RateWithin(0.94, 0.96), {0, 2'000, 1'000'000});
+  const CheckResult quick = DecideCheck(check, {});
+  EXPECT_EQ(quick.verdict, Verdict::kUndecided);
+  EXPECT_EQ(quick.num_trials, 2'000);
+  EXPECT_GT(quick.targets[0].trials_to_decide, 2'000.0);
+  CheckRun full;
+  full.budget = Budget::kFull;
+  const CheckResult decided = DecideCheck(check, full);
+  EXPECT_EQ(decided.verdict, Verdict::kHolds);
+}
+
+TEST(DecideCheck, EveryTrialIsCountedOnceWhateverTheThreads) {
+  const Target first_half{"first", Target::Kind::kAtMost, kNaN, {}, 499.0};
+  const Target mean{"mean", Target::Kind::kMean};
+  const Check check = CountingCheck({first_half, mean}, {0, 1'000, 1'000});
+  for (const int threads : {1, 2, 5}) {
+    tbb::task_arena arena(threads);
+    const CheckResult result = arena.execute([&] { return DecideCheck(check, {}); });
+    EXPECT_EQ(result.num_trials, 1'000);
+    EXPECT_EQ(result.targets[0].measured, 0.5);
+    EXPECT_DOUBLE_EQ(result.targets[1].measured, 499.5);
+    EXPECT_FALSE(result.verdict);  // nothing is claimed
+  }
+}
+
+TEST(DecideCheck, KindsCountWhatTheySay) {
+  Check check;
+  check.limits = {0, 64, 64};
+  check.trial = [](const StreamName& name) -> Outcome {
+    const double values[] = {-1.0, 0.0, 2.0, std::numeric_limits<double>::infinity()};
+    return {values[name.trial % 4], name.trial % 4 == 0 ? kNaN : 1.0};
+  };
+  check.targets = {{"coverage", Target::Kind::kCoverage, kNaN, {}, 2.0, 0},
+                   {"at most", Target::Kind::kAtMost, kNaN, {}, 2.0, 0},
+                   {"rate", Target::Kind::kRate, kNaN, {}, kNaN, 0},
+                   {"conditional rate", Target::Kind::kRate, kNaN, {}, kNaN, 1}};
+  const CheckResult result = DecideCheck(check, {});
+  EXPECT_EQ(result.targets[0].measured, 0.5);  // a negative value is no chi-square value
+  EXPECT_EQ(result.targets[1].measured, 0.75);
+  EXPECT_EQ(result.targets[2].measured, 0.75);
+  EXPECT_EQ(result.targets[3].measured, 1.0);
+  EXPECT_EQ(result.targets[3].n, 48);  // NaN is no trial of this target
+  EXPECT_EQ(result.num_trials, 64);
+}
+
+TEST(DecideCheck, MeansAreLookedAtOnceAtTheEnd) {
+  Check check;
+  check.limits = {0, 1'000, 1'000};
+  check.trial = [](const StreamName& name) -> Outcome { return {RandomStream(name).Normal()}; };
+  check.targets = {{"mean", Target::Kind::kMean, 0.0, {-0.5, 0.5}}};
+  const CheckResult result = DecideCheck(check, {});
+  EXPECT_EQ(result.num_trials, 1'000);
+  EXPECT_EQ(result.verdict, Verdict::kHolds);
+  EXPECT_NEAR(result.targets[0].interval.upper - result.targets[0].measured, 1.96 / std::sqrt(1'000.0), 0.01);
+
+  CoverageCount covered;  // a mean whose interval is Student's covers at its confidence
+  check.limits = {0, 5, 5};
+  for (std::uint32_t repetition = 0; repetition < 4'000; ++repetition) {
+    CheckRun run;
+    run.condition = repetition;
+    covered.Add(DecideCheck(check, run).targets[0].interval.Contains(0.0));
+  }
+  EXPECT_TRUE(covered.Admits(0.95)) << covered;
+}
+
+// The truth lies on the border of what is allowed: "does not hold" is a false alarm, and an interval of fixed
+// n that is looked at again and again raises it far too often.
+TEST(DecideCheck, LookingOftenDoesNotInflateErrors) {
+  constexpr double kBorder = 0.9;
+  const Check check = BernoulliCheck(kBorder, RateWithin(kBorder, 1.0), {0, 4'000, 4'000});
+  CoverageCount alarms, naive_alarms;
+  for (std::uint32_t repetition = 0; repetition < 2'000; ++repetition) {
+    CheckRun run;
+    run.condition = repetition;
+    alarms.Add(DecideCheck(check, run).verdict == Verdict::kDoesNotHold);
+    bool naive_alarm = false;
+    std::int64_t successes = 0;
+    for (std::uint32_t trial = 0; trial < 4'000 && !naive_alarm; ++trial) {
+      successes += check.trial({run.seed, run.condition, trial, 0})[0] != 0.0;
+      const std::int64_t n = trial + 1;
+      if (n % 50 == 0) naive_alarm = ExactBinomialInterval(successes, n, 0.95).upper < kBorder;
+    }
+    naive_alarms.Add(naive_alarm);
+  }
+  EXPECT_LE(alarms.interval().upper, 0.05) << alarms;
+  EXPECT_GT(naive_alarms.interval().lower, 0.07) << naive_alarms;
+}
+
+}  // namespace
+}  // namespace rcme
