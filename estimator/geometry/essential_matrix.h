@@ -27,11 +27,12 @@ std::array<Eigen::Matrix3d, 5> EssentialTangent(const RelativePose& pose);
 Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E, const Camera& camera1,
                                          const Camera& camera2);
 
-// A 3x3 matrix and the nearest essential matrix U diag(1, 1, 0) V' in Frobenius norm (both up to scale). This
-// is the step from the linear 8-point solution to E: a projection in ray coordinates, not in Hartley's.
+// A 3x3 matrix U diag(s) V' and the nearest essential matrix U diag(1, 1, 0) V' in Frobenius norm (both up to
+// scale). This is the step from the linear 8-point solution to E: a projection in ray coordinates, not in
+// Hartley's.
 struct EssentialProjection {
   Eigen::Matrix3d U, V;             // proper rotations
-  Eigen::Vector3d singular_values;  // descending
+  Eigen::Vector3d singular_values;  // descending; the last has the sign of the matrix's determinant
 };
 EssentialProjection ProjectToEssential(const Eigen::Matrix3d& matrix);
 

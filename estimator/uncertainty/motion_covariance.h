@@ -5,8 +5,10 @@
 // (experiments/RESULTS.md).
 #pragma once
 
+#include <optional>
 #include <span>
 
+#include "estimator/geometry/camera.h"
 #include "estimator/geometry/correspondence.h"
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/solvers/eight_point.h"
@@ -29,6 +31,18 @@ Eigen::Matrix<double, 5, 9> MotionJacobian(const RelativePose& pose);
 
 // Sigma_p = J_p Sigma_f J_p' (eq::cov_p), 5x5, [rotation, direction], rad^2.
 Matrix5d CovarianceOfMotion(const RelativePose& pose, const Matrix9d& f_cov);
+
+// Sigma_p = (sum_k g_p' g_p / var g_k)^-1 over m matches (5x5, [rotation, direction], rad^2): g_p = dg_k/dp
+// (1x5) at `pose`, var g_k = sigma^2 |J_k|^2 at the matches as given. It is
+//   m = 5: H^-1 D H^-T, H = dg/dp (5x5), D = diag(var g_k): the exact case, delta p = -H^-1 n, whose f has
+//          Sigma_f = (J_Omega' Sigma_X^-1 J_Omega)^-1 on the five tangent directions;
+//   m > 5: the covariance of the maximum-likelihood estimate (its point coordinates eliminated) at `pose`;
+//   at the true pose and the true points: the Cramer-Rao bound.
+// Nothing if fewer than five matches, if they do not determine the motion (smallest pivot of the whitened
+// dg/dp, mx5, below 1e-9 of the largest), or if sigma_px is 0 or a number is not finite.
+std::optional<Matrix5d> FirstOrderMotionCovariance(const RelativePose& pose, const Camera& camera1,
+                                                   const Camera& camera2,
+                                                   std::span<const Correspondence> matches, double sigma_px);
 
 // The paper's 7x7 covariance of p = [q; t], rank 5.
 Eigen::Matrix<double, 7, 7> CovarianceOfQuaternionAndTranslation(const RelativePose& pose,

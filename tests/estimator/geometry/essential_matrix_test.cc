@@ -103,13 +103,9 @@ TEST(ProjectToEssential, FactorsAreRotationsAndRebuildTheMatrix) {
     EXPECT_NEAR(p.U.determinant(), 1.0, 1e-13);
     EXPECT_NEAR(p.V.determinant(), 1.0, 1e-13);
     EXPECT_GE(p.singular_values(0), p.singular_values(1));
-    EXPECT_GE(p.singular_values(1), p.singular_values(2));
-    // Up to the sign of the third term, which the projection drops.
-    const Eigen::Vector3d s = p.singular_values;
-    const double plus = (p.U * s.asDiagonal() * p.V.transpose() - matrix).norm();
-    const double minus =
-        (p.U * Eigen::Vector3d(s(0), s(1), -s(2)).asDiagonal() * p.V.transpose() - matrix).norm();
-    EXPECT_LT(std::min(plus, minus), 1e-13);
+    EXPECT_GE(p.singular_values(1), std::abs(p.singular_values(2)));
+    EXPECT_LT((p.U * p.singular_values.asDiagonal() * p.V.transpose() - matrix).norm(), 1e-13);
+    EXPECT_GT(p.singular_values(2) * matrix.determinant(), 0.0);
   }
 }
 

@@ -5,11 +5,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/hypothesis.h"
+#include "estimator/solvers/five_point.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/numeric_jacobian.h"
@@ -218,6 +221,174 @@ TEST(MotionCovariance, CoversInTheLimitOfSmallNoise) {
     EXPECT_FALSE(Coverage(errors.pose, 5, scale).Admits(0.95)) << "no power against Sigma_p times " << scale;
     EXPECT_FALSE(Coverage(errors.f, 8, scale).Admits(0.95)) << "no power against Sigma_f times " << scale;
   }
+}
+
+std::optional<Matrix5d> FirstOrder(const RelativePose& pose, const MotionProblem& problem) {
+  return FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, problem.matches,
+                                    problem.sigma_px);
+}
+
+// The motion nearest to `reference` among all solutions of the problem's first five matches.
+std::optional<RelativePose> FivePointNearestTo(const RelativePose& reference, const MotionProblem& problem) {
+  FivePoint::Rays rays1, rays2;
+  for (size_t k = 0; k < 5; ++k) {
+    rays1[k] = problem.camera1.Ray(problem.matches[k].x1_px);
+    rays2[k] = problem.camera2.Ray(problem.matches[k].x2_px);
+  }
+  const FivePoint::Solutions solutions = FivePoint::Solve(rays1, rays2);
+  std::optional<RelativePose> nearest;
+  for (size_t k = 0; k < static_cast<size_t>(solutions.count); ++k) {
+    const RelativePose pose = NearestTo(reference, PosesFromEssential(ProjectToEssential(solutions.E[k])));
+    if (!nearest || LocalCoordinates(reference, pose).norm() < LocalCoordinates(reference, *nearest).norm()) {
+      nearest = pose;
+    }
+  }
+  return nearest;
+}
+
+TEST(FirstOrderMotionCovariance, ExactCaseIsTheTextbookForm) {
+  // H^-1 D H^-T with H = dg/dp and dg/dX by numeric differentiation of the five epipolar equations.
+  RandomStream rng({.seed = 1, .purpose = 161});
+  int num_compared = 0;
+  for (int i = 0; i < 100; ++i) {
+    RandomProblem random = MakeRandomProblem(rng, {.num_matches = 5});
+    AddNoise(0.5, rng, &random.problem);
+    const MotionProblem& problem = random.problem;
+    const std::optional<RelativePose> pose = FivePointNearestTo(random.pose_true, problem);
+    if (!pose) continue;  // the noise has left no real solution
+    const auto g = [&](const RelativePose& at, const Correspondence& match) {
+      const Eigen::Vector3d in_cam1 = problem.camera1.Ray(match.x1_px);
+      return problem.camera2.Ray(match.x2_px).dot(at.t.cross(at.R * in_cam1));
+    };
+    const auto g_of_pose = [&](const Eigen::VectorXd& tangent) {
+      Eigen::VectorXd values(5);
+      for (int k = 0; k < 5; ++k) {
+        values(k) = g(Retract(*pose, tangent), problem.matches[static_cast<size_t>(k)]);
+      }
+      return values;
+    };
+    const Matrix5d H = NumericJacobian(g_of_pose, Eigen::VectorXd::Zero(5), 1e-3);
+    Vector5d D;
+    for (int k = 0; k < 5; ++k) {
+      const Correspondence& match = problem.matches[static_cast<size_t>(k)];
+      const auto g_of_X = [&](const Eigen::VectorXd& X) {
+        return Eigen::VectorXd::Constant(1, g(*pose, {X.head<2>(), X.tail<2>()}));
+      };
+      Eigen::Vector4d X;
+      X << match.x1_px, match.x2_px;
+      D(k) = 0.25 * NumericJacobian(g_of_X, X, 1.0).squaredNorm();
+    }
+    const Matrix5d H_inverse = H.fullPivLu().inverse();
+    const double condition = H.norm() * H_inverse.norm();
+    if (condition > 1e5) continue;  // no digits to compare
+    ++num_compared;
+    const std::optional<Matrix5d> pose_cov = FirstOrder(*pose, problem);
+    ASSERT_TRUE(pose_cov);
+    EXPECT_JACOBIAN_NEAR(*pose_cov, H_inverse * D.asDiagonal() * H_inverse.transpose(), 1e-11 * condition);
+  }
+  EXPECT_GT(num_compared, 90);
+}
+
+TEST(FirstOrderMotionCovariance, AtTheTruthIsTheCramerRaoBound) {
+  // The block of the motion in the inverse Fisher information of all 4 m coordinates about the motion and the
+  // m scene points (5 + 3 m parameters), by numeric differentiation of the two projections: no epipolar
+  // constraint.
+  RandomStream rng({.seed = 1, .purpose = 162});
+  for (const int m : {5, 6, 20}) {
+    for (int i = 0; i < 20; ++i) {
+      RandomProblem random = MakeRandomProblem(rng, {.num_matches = m});
+      random.problem.sigma_px = 0.7;
+      const auto projections = [&](const Eigen::VectorXd& parameters) {
+        const RelativePose pose = Retract(random.pose_true, parameters.head<5>());
+        Eigen::VectorXd coordinates(4 * m);
+        for (int k = 0; k < m; ++k) {
+          const Correspondence match = ProjectToBoth(parameters.segment<3>(5 + 3 * k), pose,
+                                                     random.problem.camera1, random.problem.camera2);
+          coordinates.segment<4>(4 * k) << match.x1_px, match.x2_px;
+        }
+        return coordinates;
+      };
+      Eigen::VectorXd parameters = Eigen::VectorXd::Zero(5 + 3 * m);
+      for (int k = 0; k < m; ++k) {
+        parameters.segment<3>(5 + 3 * k) = random.points_in_cam1[static_cast<size_t>(k)];
+      }
+      const Eigen::MatrixXd jacobian = NumericJacobian(projections, parameters, 1e-3) / 0.7;
+      const Eigen::MatrixXd inverse_root = jacobian.completeOrthogonalDecomposition().pseudoInverse();
+      const Matrix5d bound = inverse_root.topRows<5>() * inverse_root.topRows<5>().transpose();
+      const std::optional<Matrix5d> pose_cov = FirstOrder(random.pose_true, random.problem);
+      ASSERT_TRUE(pose_cov);
+      EXPECT_JACOBIAN_NEAR(*pose_cov, bound, 1e-12 * jacobian.norm() * inverse_root.norm());
+    }
+  }
+}
+
+TEST(FirstOrderMotionCovariance, IsNothingWithoutFiveMatchesThatDetermineTheMotion) {
+  RandomStream rng({.seed = 1, .purpose = 163});
+  for (int i = 0; i < 50; ++i) {
+    RandomProblem random = MakeRandomProblem(rng, {.num_matches = 5});
+    AddNoise(0.5, rng, &random.problem);
+    ASSERT_TRUE(FirstOrder(random.pose_true, random.problem));
+    MotionProblem bad = random.problem;
+    bad.matches.pop_back();
+    EXPECT_FALSE(FirstOrder(random.pose_true, bad));
+    bad.matches.push_back(bad.matches[2]);
+    bad.matches.push_back(bad.matches[1]);
+    EXPECT_FALSE(FirstOrder(random.pose_true, bad));
+    for (const double sigma_px : {0.0, std::numeric_limits<double>::quiet_NaN()}) {
+      bad = random.problem;
+      bad.sigma_px = sigma_px;
+      EXPECT_FALSE(FirstOrder(random.pose_true, bad));
+    }
+    bad = random.problem;
+    bad.matches[3].x1_px.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(FirstOrder(random.pose_true, bad));
+  }
+}
+
+TEST(FirstOrderMotionCovariance, CoversTheExactCaseInTheLimitOfSmallNoise) {
+  // NEES (5 dof) of the five-point solution nearest to the truth. Over 20 000 samples of this family the 95 %
+  // region covered 0.513 at 0.5 px, 0.719 at 0.1, 0.868 at 0.01, 0.925 at 0.001, 0.944 at 1e-4, 0.949 at
+  // 1e-5: five points near a double root are worse conditioned than eight. So 1e-5 it is, as for eight. False
+  // alarm 1e-4; at n = 4000 the interval is 0.028 wide, a covariance times 0.8 covers 0.885, times 1.25
+  // 0.983, and one that leaves out the noise of the second image 0.76: power 1 to three digits.
+  constexpr double kSigmaPx = 1e-5;
+  const double limit = ChiSquareQuantile(5, 0.95);
+  RandomStream rng({.seed = 1, .purpose = 164});
+  CoverageCount covers, covers_if_smaller, covers_if_larger, covers_if_dropped;
+  for (int trial = 0; trial < 4000; ++trial) {
+    RandomProblem random = MakeRandomProblem(rng, {.num_matches = 5});
+    AddNoise(kSigmaPx, rng, &random.problem);
+    const std::optional<RelativePose> estimate = FivePointNearestTo(random.pose_true, random.problem);
+    ASSERT_TRUE(estimate);
+    const Matrix5d pose_cov = FirstOrder(*estimate, random.problem).value();
+    const Vector5d error = LocalCoordinates(*estimate, random.pose_true);
+    const double nees = error.dot(pose_cov.llt().solve(error));
+    covers.Add(nees <= limit);
+    covers_if_smaller.Add(nees / 0.8 <= limit);
+    covers_if_larger.Add(nees / 1.25 <= limit);
+
+    // The dropped term: var g of the first image's noise alone, D^-1/2 H error to whiten.
+    const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(*estimate), random.problem.camera1,
+                                                       random.problem.camera2);
+    const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(*estimate);
+    double nees_dropped = 0.0;
+    for (const Correspondence& match : random.problem.matches) {
+      const Eigen::Vector4d gradient = EvaluateConstraint(F, match).gradient;
+      double g = 0.0;
+      for (int k = 0; k < 5; ++k) {
+        g += error(k) * random.problem.camera2.Ray(match.x2_px)
+                            .dot(dE_dp[static_cast<size_t>(k)] * random.problem.camera1.Ray(match.x1_px));
+      }
+      nees_dropped += g * g / (kSigmaPx * kSigmaPx * gradient.head<2>().squaredNorm());
+    }
+    covers_if_dropped.Add(nees_dropped <= limit);
+  }
+  EXPECT_TRUE(covers.Admits(0.95)) << covers;
+  EXPECT_FALSE(covers_if_smaller.Admits(0.95)) << covers_if_smaller;
+  EXPECT_FALSE(covers_if_larger.Admits(0.95)) << covers_if_larger;
+  EXPECT_FALSE(covers_if_dropped.Admits(0.95)) << covers_if_dropped;
+  RecordProperty("covers", testing::PrintToString(covers));
+  RecordProperty("covers_if_dropped", testing::PrintToString(covers_if_dropped));
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace rcme {
+
+// All essential matrices through five correspondences of calibrated rays, the exact case: five equations for
+// the five degrees of freedom of the motion, and up to ten real solutions (Nister 2004; the action matrix of
+// Stewenius, Engels & Nister 2006).
+//
+// The four-dimensional null space of M (5x9, rows kron(x2, x1)) holds E = x E_1 + y E_2 + z E_3 + w E_4; the
+// ten cubics det E = 0 and 2 E E' E - tr(E E') E = 0 leave finitely many (x : y : z : w). Every one is then
+// polished by Newton's method on the five epipolar equations over the motions, so that E is an essential
+// matrix whatever the rounding of the elimination.
+class FivePoint {
+ public:
+  static constexpr int kSampleSize = 5;
+  static constexpr int kMaxSolutions = 10;
+  using Rays = std::array<Eigen::Vector3d, kSampleSize>;
+
+  // E[0] ... E[count - 1], x2' E x1 = 0 in rays, Frobenius norm sqrt(2) as [t]x R has with |t| = 1; the sign
+  // and the order are arbitrary.
+  struct Solutions {
+    std::array<Eigen::Matrix3d, kMaxSolutions> E;
+    int count = 0;
+  };
+
+  // Only isolated solutions count: none if the points are fewer than five different ones or not finite, and
+  // none of a family such as that of a pure rotation (smallest pivot of M, or of the 5x5 Jacobian of the
+  // equations at the solution, below 1e-9 of the largest). Allocates nothing.
+  static Solutions Solve(const Rays& rays1, const Rays& rays2);
+};
+
+}  // namespace rcme
