@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   rcme::AddReplayCommand(app);
   rcme::AddEstimateCommand(app);
   rcme::AddMatchCommand(app);
+  rcme::AddMapCommand(app);
   rcme::AddListCommand(app);
   try {
     app.parse(argc, argv);
