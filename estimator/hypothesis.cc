@@ -18,9 +18,7 @@ std::optional<Hypothesis> InstantiateModel(const MotionProblem& problem, const S
   hypothesis.sample = sample;
   hypothesis.linear = *linear;
   hypothesis.projection = ProjectToEssential(Matricize(linear->f));
-  // A second singular value near zero: no translation direction can be told from the sample.
-  const Eigen::Vector3d& s = hypothesis.projection.singular_values;
-  if (!(s(1) > 1e-9 * s(0))) return std::nullopt;
+  if (!hypothesis.projection.DeterminesDirection()) return std::nullopt;
   hypothesis.pose = PosesFromEssential(hypothesis.projection)[0];
   hypothesis.F =
       FundamentalFromEssential(EssentialFromPose(hypothesis.pose), problem.camera1, problem.camera2);

@@ -13,7 +13,14 @@
 namespace rcme {
 
 // The random streams of a trial: one purpose each, so that none shares a number with another.
-enum class StreamPurpose : std::uint32_t { kScene = 1, kNoise = 2, kOutliers = 3, kSampling = 4, kCheck = 5 };
+enum class StreamPurpose : std::uint32_t {
+  kScene = 1,
+  kNoise = 2,
+  kOutliers = 3,
+  kSampling = 4,
+  kMonteCarlo = 5,
+  kCheck = 6
+};
 
 // The stream of a trial for a purpose.
 RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose);

@@ -34,6 +34,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddSummarizeCommand(app);
   AddReplayCommand(app);
   AddAuditCommand(app);
+  AddMapCommand(app);
   AddEstimateCommand(app);
   AddMatchCommand(app);
   AddListCommand(app);

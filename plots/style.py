@@ -160,7 +160,7 @@ def add_legend_and_caption(figure, handles, caption):
     figure.get_layout_engine().set(rect=(0, bottom, 1, top - bottom), w_pad=0.05, h_pad=0.04, wspace=0.03)
 
 
-def save(figure, path_without_suffix):
+def save(figure, path_without_suffix, dpi=RC["savefig.dpi"]):
     """Writes PATH.png and PATH.pdf and returns the two paths.
 
     Both are written beside their place under a temporary name and then moved, so a reader never meets half a file and
@@ -171,7 +171,7 @@ def save(figure, path_without_suffix):
     temporary = {kind: os.path.join(folder, f".{name}.{os.getpid()}.{kind}.tmp") for kind in no_stamp}
     try:
         for kind, path in temporary.items():
-            figure.savefig(path, format=kind, metadata=no_stamp[kind])
+            figure.savefig(path, format=kind, dpi=dpi, metadata=no_stamp[kind])
         written = []
         for kind, path in temporary.items():
             written.append(f"{path_without_suffix}.{kind}")

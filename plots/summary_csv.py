@@ -1,4 +1,5 @@
-"""Reads the table that `rcme summarize RUN.sqlite --format csv` prints. It checks and selects; it computes nothing.
+"""Reads the program's tables, above all what `rcme summarize RUN.sqlite --format csv` prints. It checks and selects;
+it computes nothing.
 
 One row per (condition, estimator, quantity):
     study,condition,<one column per factor>,estimator,quantity,kind,value,lower,upper,standard_error,n
@@ -14,18 +15,27 @@ from command_line import PlotError
 COLUMNS = ("study", "condition", "estimator", "quantity", "kind", "value", "lower", "upper", "standard_error", "n")
 
 
-class Summary:
-    """The rows of one CSV file as text, the names of its factors, and each row's line in the file (column `line`)."""
+class Table:
+    """The rows of one CSV file as text, and each row's line in the file (column `line`)."""
+
+    def __init__(self, path, rows):
+        self.path, self.rows = path, rows
+
+
+class Summary(Table):
+    """A table of rates and means with the names of its factors."""
 
     def __init__(self, path, rows, factors):
-        self.path, self.rows, self.factors = path, rows, factors
+        super().__init__(path, rows)
+        self.factors = factors
 
     def with_rows(self, rows):
         return Summary(self.path, rows, self.factors)
 
 
-def read_summary(path):
-    """The Summary in the file `path`; a cut-off or foreign file is an error, never a shorter table."""
+def read_table(path, columns, origin):
+    """The Table in the file `path`, which the command `origin` wrote and which has at least these columns; a cut-off or
+    foreign file is an error, never a shorter table."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             reader = csv.reader(file, strict=True)
@@ -35,10 +45,9 @@ def read_summary(path):
         raise PlotError(f"{path}: cannot be read ({error.strerror}).")
     except (csv.Error, UnicodeDecodeError) as error:
         raise PlotError(f"{path}: is not a CSV file ({error}).")
-    missing = [column for column in COLUMNS if column not in header]
+    missing = [column for column in columns if column not in header]
     if missing:
-        raise PlotError(f"{path}: has no column {', '.join(missing)}; "
-                        "expected the output of 'rcme summarize RUN.sqlite --format csv'.")
+        raise PlotError(f"{path}: has no column {', '.join(missing)}; expected the output of '{origin}'.")
     repeated = sorted({column for column in header if header.count(column) > 1})
     if repeated:
         raise PlotError(f"{path}: has more than one column {', '.join(repeated)}.")
@@ -50,6 +59,13 @@ def read_summary(path):
         raise PlotError(f"{path}: has a header but no rows.")
     rows = pandas.DataFrame([row for row, _ in lines], columns=header, dtype=str)
     rows["line"] = [line for _, line in lines]
+    return Table(path, rows)
+
+
+def read_summary(path):
+    """The Summary in the file `path`; errors as read_table."""
+    rows = read_table(path, COLUMNS, "rcme summarize RUN.sqlite --format csv").rows
+    header = list(rows.columns)
     return Summary(path, rows, header[header.index("condition") + 1:header.index("estimator")])
 
 
@@ -81,8 +97,8 @@ def where(summary, conditions):
     return summary.with_rows(rows)
 
 
-def numbers(summary, column, may_be_empty=False):
-    """One column of the rows as floats; NaN where the file has nothing and may."""
+def numbers(table, column, may_be_empty=False):
+    """One column of a table's rows as floats; NaN where the file has nothing and may."""
     def number(text, line):
         if may_be_empty and text == "":
             return math.nan
@@ -91,6 +107,6 @@ def numbers(summary, column, may_be_empty=False):
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
-            raise PlotError(f"{summary.path}: line {line}: column {column} must be a number, not '{text}'.")
+            raise PlotError(f"{table.path}: line {line}: column {column} must be a number, not '{text}'.")
         return value
-    return [number(text, line) for text, line in zip(summary.rows[column], summary.rows["line"])]
+    return [number(text, line) for text, line in zip(table.rows[column], table.rows["line"])]

@@ -15,7 +15,10 @@
 
 namespace rcme {
 
-// Variances of the constraints g_k = x2' F x1 of a sample: D_kk = sigma^2 |J_k|^2, F in pixels.
+// Variance of the constraint g = x2' F x1 of a match: sigma^2 |J|^2, F in pixels.
+double ConstraintVariance(const Eigen::Matrix3d& F, const Correspondence& match, double sigma_px);
+
+// Those of a minimal sample, D_kk.
 Eigen::Matrix<double, 8, 1> ConstraintVariances(const Eigen::Matrix3d& F,
                                                 std::span<const Correspondence, 8> sample, double sigma_px);
 
@@ -23,6 +26,10 @@ Eigen::Matrix<double, 8, 1> ConstraintVariances(const Eigen::Matrix3d& F,
 // paper's overdetermined case A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' with dOmega/df the minimum-norm
 // implicit derivative.
 Matrix9d CovarianceOfF(const LinearModel& model, const Eigen::Matrix<double, 8, 1>& constraint_variances);
+
+// The same for a sample of m >= 8 matches, G (9 x m) of its linear least-squares fit.
+Matrix9d CovarianceOfF(const Eigen::Matrix<double, 9, Eigen::Dynamic>& G,
+                       const Eigen::VectorXd& constraint_variances);
 
 // J_p = dp/df (5x9) of the step from the unit vector f to the nearest essential matrix and its motion: the
 // pseudo-inverse of the unit-norm tangent dE/dp / sqrt(2), which is the paper's -(dTheta/dp)^+ dTheta/df on

@@ -1,7 +1,86 @@
+#include <numeric>
+
+#include "estimator/geometry/triangulation.h"
+#include "estimator/linear_motion.h"
+#include "estimator/refinement/sampson_mle.h"
+#include "experiments/claims/case.h"
 #include "experiments/claims/families.h"
+#include "experiments/claims/limits.h"
+#include "experiments/covariance_score.h"
 
 namespace rcme {
+namespace {
 
-std::vector<Claim> MleClaims() { return {}; }
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr TrialLimits kRefinements{1'000, 8'000, 60'000};
+
+using Refine = RefinedMotion (*)(const MotionProblem& problem, const RelativePose& start);
+
+RefinedMotion RefineReprojection(const MotionProblem& problem, const RelativePose& start) {
+  std::vector<int> indices(problem.matches.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return RefineByReprojection(problem, indices, start, Loss::kSquared);
+}
+
+// The optimum over all matches, from their linear motion; nothing if there is none.
+std::optional<RefinedMotion> FitAll(const MotionProblem& problem, Refine refine) {
+  const std::optional<LinearMotion> linear = EstimateLinearMotion(problem);
+  if (!linear) return std::nullopt;
+  const RelativePose start =
+      SelectPoseByCheirality(linear->poses, problem.matches, problem.camera1, problem.camera2);
+  const RefinedMotion refined = refine(problem, start);
+  return refined.converged ? std::optional(refined) : std::nullopt;
+}
+
+// NEES of the optimum under the covariance it reports.
+Statistic NeesStatistic(Refine refine) {
+  return [refine](Case& made) -> Outcome {
+    const std::optional<RefinedMotion> refined = FitAll(made.problem(), refine);
+    if (!refined) return {kInfinity};
+    return {NormalizedErrorOfPose(refined->cam2_from_cam1, refined->pose_cov, made.pose_true())};
+  };
+}
+
+// NEES of the optimum under the Cramer-Rao bound: the inverse information at the true motion and the exact
+// points.
+Statistic CramerRaoStatistic(Refine refine) {
+  return [refine](Case& made) -> Outcome {
+    const MotionProblem& problem = made.problem();
+    std::vector<Correspondence> exact;
+    for (const Eigen::Vector3d& point : made.scene.points_in_cam1) {
+      exact.push_back({problem.camera1.Project(point), problem.camera2.Project(made.scene.InCamera2(point))});
+    }
+    const std::optional<Matrix5d> bound = FirstOrderMotionCovariance(
+        made.pose_true(), problem.camera1, problem.camera2, exact, problem.sigma_px);
+    const std::optional<RefinedMotion> refined = FitAll(problem, refine);
+    if (!refined || !bound) return {kInfinity};
+    return {NormalizedErrorOfPose(refined->cam2_from_cam1, *bound, made.pose_true())};
+  };
+}
+
+Claim MakeClaim(const std::string& id, const std::string& reading, const std::string& sentence,
+                const Statistic& statistic, const TrialLimits& limits) {
+  Claim claim{"mle." + id, "Alg. RCME, MLE", reading, sentence, "NEES of the motion, chi2_5", "sigma_px", {}};
+  for (const char* num_matches : {"20", "100"}) {
+    for (Check& check : SigmaLadder({0.1, 0.5, 1.0}, {{"num_matches", num_matches}}, statistic,
+                                    CoverageTargets(5), limits)) {
+      claim.checks.push_back(std::move(check));
+    }
+  }
+  return claim;
+}
+
+}  // namespace
+
+std::vector<Claim> MleClaims() {
+  const std::string reported = "The covariance that maximum likelihood reports is that of its error";
+  const std::string efficient = "Maximum likelihood reaches the Cramer-Rao bound";
+  return {MakeClaim("reprojection", "reprojection error, motion and points", reported,
+                    NeesStatistic(RefineReprojection), kRefinements),
+          MakeClaim("sampson", "Sampson error, motion alone", reported, NeesStatistic(RefineBySampson),
+                    kMicroseconds),
+          MakeClaim("cramer_rao", "Sampson error, motion alone", efficient,
+                    CramerRaoStatistic(RefineBySampson), kMicroseconds)};
+}
 
 }  // namespace rcme

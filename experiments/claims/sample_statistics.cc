@@ -26,7 +26,6 @@ std::optional<Hypothesis> FitSample(const MotionProblem& problem) {
   std::optional<Hypothesis> hypothesis = InstantiateModel(problem, sample);
   if (!hypothesis) return std::nullopt;
   PropagateCovariance(problem, &*hypothesis);
-  ResolveCheirality(problem, std::span(problem.matches).first(sample.size()), &*hypothesis);
   return hypothesis;
 }
 

@@ -8,8 +8,8 @@
 
 namespace rcme {
 
-// The model of the first eight matches (they are in random order) with its covariances; its motion is the one
-// of the four that sees the sample in front of both cameras.
+// The model of the first eight matches (they are in random order) with its covariances. Its motion is any of
+// the four of its essential matrix: no point test depends on which.
 std::optional<Hypothesis> FitSample(const MotionProblem& problem);
 
 // NEES of f in the complement of f, 8 dof.

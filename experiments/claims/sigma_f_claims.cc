@@ -1,7 +1,11 @@
+#include <Eigen/Eigenvalues>
+
+#include "estimator/solvers/five_point.h"
 #include "estimator/uncertainty/as_printed.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
+#include "experiments/covariance_score.h"
 
 namespace rcme {
 namespace {
@@ -34,6 +38,40 @@ Statistic NormalBasisStatistic(int onto) {
     const Vector9d& f = hypothesis->linear.f;
     return {(HouseholderColumns(f, onto).transpose() * f).cwiseAbs().maxCoeff()};
   };
+}
+
+// NEES of the exact case with H^-1 D H^-T, for the five-point solution nearest to the truth.
+Outcome ExactNeesStatistic(Case& made) {
+  const MotionProblem& problem = made.problem();
+  FivePoint::Rays rays1, rays2;
+  for (size_t k = 0; k < rays1.size(); ++k) {
+    rays1[k] = problem.camera1.Ray(problem.matches[k].x1_px);
+    rays2[k] = problem.camera2.Ray(problem.matches[k].x2_px);
+  }
+  const FivePoint::Solutions solutions = FivePoint::Solve(rays1, rays2);
+  double nearest = kInfinity;  // squared length of the error
+  Outcome nees = {kInfinity};
+  for (int i = 0; i < solutions.count; ++i) {
+    const RelativePose pose = NearestPose(
+        PosesFromEssential(ProjectToEssential(solutions.E[static_cast<size_t>(i)])), made.pose_true());
+    const double squared_error = LocalCoordinates(pose, made.pose_true()).squaredNorm();
+    if (squared_error >= nearest) continue;
+    nearest = squared_error;
+    const std::optional<Matrix5d> pose_cov =
+        FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, problem.matches, problem.sigma_px);
+    nees[0] = pose_cov ? NormalizedErrorOfPose(pose, *pose_cov, made.pose_true()) : kInfinity;
+  }
+  return nees;
+}
+
+// Whether the printed J_Omega' Sigma_X^-1 J_Omega (9x9) of five matches has an inverse.
+Outcome ExactInverseStatistic(Case& made) {
+  const MotionProblem& problem = made.problem();
+  const Vector9d f = Vectorize(EssentialFromPose(made.pose_true())).normalized();
+  const Matrix9d information =
+      SampleInformation(f, problem.camera1, problem.camera2, problem.matches, problem.sigma_px);
+  const Vector9d eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix9d>(information).eigenvalues();
+  return {eigenvalues(0) > 1e-12 * eigenvalues(8) ? 1.0 : 0.0};
 }
 
 }  // namespace
@@ -69,6 +107,19 @@ std::vector<Claim> SigmaFClaims() {
        "",
        {MakeCheck(kSample, NormalBasisStatistic(8), {IdentityTarget("share within 1e-12", 1e-12)},
                   kMicroseconds)}},
+      {"sigma_f.exact", kLabel, "exact, 5-point, in the motion's five coordinates",
+       "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T is the covariance of the exact case",
+       "NEES of the motion, chi2_5", "sigma_px",
+       SigmaLadder(kNoiseLadderPx, {{"num_matches", "5"}}, ExactNeesStatistic, CoverageTargets(5),
+                   kMicroseconds)},
+      {"sigma_f.exact_inverse",
+       kLabel,
+       "exact, 5-point, in f as printed",
+       "J_Omega' Sigma_X^-1 J_Omega of the exact case, with J_Omega = dOmega/df, has an inverse",
+       "eigenvalues of the 9x9 matrix above 1e-12 of the largest",
+       "",
+       {MakeCheck({{"num_matches", "5"}}, ExactInverseStatistic,
+                  {{"share that has an inverse", Target::Kind::kRate, 1.0, {0.999, 1.0}}}, kMicroseconds)}},
   };
 }
 

@@ -108,12 +108,12 @@ TEST(RunTrial, TheEstimatorsOfAStudyDoNotDisturbEachOther) {
 
 TEST(StreamFor, PurposesShareNoNumbers) {
   std::set<std::uint64_t> words;
-  for (const StreamPurpose purpose :
-       {StreamPurpose::kScene, StreamPurpose::kNoise, StreamPurpose::kOutliers, StreamPurpose::kSampling}) {
+  for (const StreamPurpose purpose : {StreamPurpose::kScene, StreamPurpose::kNoise, StreamPurpose::kOutliers,
+                                      StreamPurpose::kSampling, StreamPurpose::kMonteCarlo, StreamPurpose::kCheck}) {
     RandomStream rng = StreamFor({1, 2, 3, 99}, purpose);
     for (int i = 0; i < 100; ++i) words.insert(rng.Next64());
   }
-  EXPECT_EQ(words.size(), 400u);
+  EXPECT_EQ(words.size(), 600u);
 }
 
 // Six matches, the first four true; the true motion is R = I, t = x.

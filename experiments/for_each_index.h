@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "experiments/progress.h"
+
+namespace rcme {
+
+// Calls work(0), ..., work(n - 1), each once, on `num_threads` threads (0: one per core) and advances the
+// progress by one for each. Results do not depend on the number of threads if a call writes only what
+// belongs to its index. The first exception ends it and is thrown on.
+void ForEachIndex(std::int64_t n, int num_threads, Progress* progress,
+                  const std::function<void(std::int64_t)>& work);
+
+}  // namespace rcme
