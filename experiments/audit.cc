@@ -46,11 +46,12 @@ int NumThreads(const AuditOptions& options) {
 
 // Seconds on all threads that the check takes if no verdict stops it.
 double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
-  constexpr std::uint32_t kNumTimed = 4;
+  constexpr std::uint32_t kLeastTimed = 4;
+  constexpr double kLeastSeconds = 0.01, kMostSeconds = 0.1;
   const auto start = std::chrono::steady_clock::now();
   std::uint32_t num_timed = 0;
   std::chrono::duration<double> elapsed{};
-  while (num_timed < kNumTimed && elapsed.count() < 0.1) {
+  while ((num_timed < kLeastTimed || elapsed.count() < kLeastSeconds) && elapsed.count() < kMostSeconds) {
     check.trial({run.seed, run.condition, num_timed++, 0});
     elapsed = std::chrono::steady_clock::now() - start;
   }
@@ -98,14 +99,17 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   for (const double seconds : work) total_work += seconds;
   fmt::print(stderr, "audit: {} claims, {} checks; at most {}, less where a verdict falls early\n",
              audit.claims.size(), work.size(), DurationInWords(total_work));
-  Progress progress("ms of work", static_cast<std::int64_t>(1e3 * total_work) + 1);
+  Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
+  double done_work = 0.0;
   size_t next = 0;
   for (const Claim& claim : audit.claims) {
     ClaimResult result;
     for (size_t i = 0; i < claim.checks.size(); ++i) {
       const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, audit.confidence};
       arena.execute([&] { result.checks.push_back(DecideCheck(claim.checks[i], run)); });
-      progress.Advance(static_cast<std::int64_t>(1e3 * work[next++]));
+      const auto seconds_before = static_cast<std::int64_t>(done_work);
+      done_work += work[next++];
+      progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
     }
     JudgeClaim(claim, &result);
     audit.results.push_back(std::move(result));

@@ -1,8 +1,10 @@
 #include "experiments/draw_figures.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <filesystem>
@@ -22,8 +24,13 @@ std::filesystem::path ScriptPath(const std::string& script) {
 bool RunsWell(const char* python, std::string script, std::string folder) {
   std::string name = python;
   std::array<char*, 4> arguments = {name.data(), script.data(), folder.data(), nullptr};
+  posix_spawn_file_actions_t to_nowhere;  // what the script prints are the names of its figures
+  posix_spawn_file_actions_init(&to_nowhere);
+  posix_spawn_file_actions_addopen(&to_nowhere, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
-  if (posix_spawnp(&child, python, nullptr, nullptr, arguments.data(), environ) != 0) return false;
+  const int error = posix_spawnp(&child, python, &to_nowhere, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&to_nowhere);
+  if (error != 0) return false;
   int status = 0;
   return waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }

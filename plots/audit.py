@@ -18,7 +18,7 @@ from audit_forest import ForestPanel
 from audit_json import read_audit
 from audit_page import Titled, draw_page
 from audit_panel import EmptyPanel
-from audit_roc import DEFAULT_MU, RocPanel, is_roc
+from audit_roc import RocPanel, is_roc
 from command_line import Parser, PlotError
 
 EXAMPLE = """
@@ -68,7 +68,7 @@ def caption_of(audit, family, claims, panels):
     if any(panel.body.shows_limit() for panel in panels):
         parts.append("dashed upright line: the noise up to which the claim holds")
     if any(map(is_roc, claims)):
-        parts.append(f"ring: the mu nearest to the default {look.number_text(DEFAULT_MU)}")
+        parts.append("ring: the mu nearest to the default of its reading")
     if any(math.isnan(row.target.measured) for row in rows):
         parts.append("cross at a frame or 'no value': no finite value measured")
     return "; ".join(parts) + "."

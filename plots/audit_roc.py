@@ -8,7 +8,7 @@ from audit_panel import Panel
 from audit_paper import add_axes, keep_right_of
 from command_line import PlotError
 
-DEFAULT_MU = -3.53
+DEFAULT_MUS = (-3.53, 6.0)  # of the reading as printed, and of the rank-aware one
 GOOD, CONTAMINATED = "good", "contaminated"
 AXES_HEIGHT, AXES_BELOW, LEFT_MARGIN, RIGHT_MARGIN = 2.5, 0.48, 0.62, 0.1  # inches
 LEGEND_LINE = 0.15
@@ -77,7 +77,8 @@ def draw_curve(axes, points, label, position):
               linewidth=1.3, marker=".", markersize=3.5, zorder=3, label=label or "_roc", clip_on=False)
     known = [point for point in points if not (math.isnan(point[1].measured) or math.isnan(point[2].measured))]
     if known:
-        mu, x, y = min(known, key=lambda point: abs(point[0] - DEFAULT_MU))
+        default = next((mu for mu in DEFAULT_MUS if any(mu == point[0] for point in known)), DEFAULT_MUS[0])
+        mu, x, y = min(known, key=lambda point: abs(point[0] - default))
         axes.plot([x.measured], [y.measured], marker="o", markersize=8, markerfacecolor="none", markeredgecolor=color,
                   markeredgewidth=1.5, linestyle="none", zorder=5, clip_on=False, label="_default mu")
         to_left = x.measured > 0.7

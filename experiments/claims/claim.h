@@ -41,6 +41,30 @@ struct Target {
   bool IsClaimed() const { return std::isfinite(allowed.lower) || std::isfinite(allowed.upper); }
 };
 
+// A rate or mean with what is claimed of it, or only measured.
+inline Target ClaimedRate(const std::string& quantity, double nominal, const Interval& allowed,
+                          size_t statistic = 0) {
+  Target target{quantity, Target::Kind::kRate, nominal, allowed};
+  target.statistic = statistic;
+  return target;
+}
+inline Target ClaimedMean(const std::string& quantity, double nominal, const Interval& allowed,
+                          size_t statistic = 0) {
+  Target target = ClaimedRate(quantity, nominal, allowed, statistic);
+  target.kind = Target::Kind::kMean;
+  return target;
+}
+inline Target MeasuredRate(const std::string& quantity, size_t statistic = 0) {
+  Target target{quantity};
+  target.statistic = statistic;
+  return target;
+}
+inline Target MeasuredMean(const std::string& quantity, size_t statistic = 0) {
+  Target target{quantity, Target::Kind::kMean};
+  target.statistic = statistic;
+  return target;
+}
+
 enum class Budget { kQuick, kFull };
 
 // A check stops at its first verdict, not before `min` trials (so that the measured number is worth reading)

@@ -50,7 +50,8 @@ TargetResult Look(const Target& target, const Tally& tally, std::int64_t num_tri
   const bool is_mean = target.kind == Target::Kind::kMean;
   TargetResult result;
   result.n = tally.moments.n();
-  result.measured = tally.moments.mean();
+  result.measured = is_mean ? tally.moments.mean()
+                            : static_cast<double>(tally.num_successes) / static_cast<double>(result.n);
   result.interval = is_mean ? StudentInterval(tally.moments, confidence)
                             : ConfidenceSequence(tally.num_successes, result.n, confidence);
   if (!target.IsClaimed()) return result;

@@ -5,8 +5,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 Claim EarlyStopClaim(const std::string& id, const std::string& name, Reading reading) {
   RansacOptions options;
   options.reading = reading;
@@ -28,11 +26,11 @@ Claim EarlyStopClaim(const std::string& id, const std::string& name, Reading rea
           "hypotheses not drawn; trials in which only the early one fails or refuses",
           "outlier_ratio",
           {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.3"}}, statistic,
-                     {{"only the early one fails", Target::Kind::kRate, 0.0, {0.0, 0.01}, kNaN, 0},
-                      {"share of hypotheses saved", Target::Kind::kMean, 1.0, {0.1, 1.0}, kNaN, 1},
-                      {"all hypotheses: fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 2},
-                      {"early stop: fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 3}},
-                     kEstimatorCalls)}};
+                     {ClaimedRate("only the early one fails", 0.0, {0.0, 0.01}, 0),
+                      ClaimedMean("share of hypotheses saved", 1.0, {0.1, 1.0}, 1),
+                      MeasuredRate("all hypotheses: fails or is refused", 2),
+                      MeasuredRate("early stop: fails or is refused", 3)},
+                     kManyEstimatorCalls)}};
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 // Standard, pRCME and RCME on the same matches with the same stream of samples.
 struct Rivals {
   std::shared_ptr<const MotionEstimator> standard, prcme, rcme;
@@ -17,58 +15,48 @@ Rivals MakeRivals(const RansacOptions& options) {
           FindEstimator("rcme").make(options)};
 }
 
-Outcome OrderStatistic(const Rivals& rivals, const Case& made) {
+// What counts as a failure: a wrong motion, or also a refusal ("Detect-fail").
+struct FailureRule {
+  std::string id, words;
+  bool (*fails)(const TrialRecord& record);
+};
+
+Outcome OrderStatistic(const Rivals& rivals, const FailureRule& rule, const Case& made) {
   const TrialRecord standard = CallEstimator(*rivals.standard, made);
   const TrialRecord prcme = CallEstimator(*rivals.prcme, made);
   const TrialRecord rcme = CallEstimator(*rivals.rcme, made);
-  Outcome outcome;
-  for (const auto fails : {FailsSilently, FailsOrRefuses}) {
-    outcome.push_back(OnlyFirst(fails(prcme), fails(rcme)));
-    outcome.push_back(OnlyFirst(fails(standard), fails(prcme)));
-    outcome.push_back(OnlyFirst(fails(standard), fails(rcme)));
-  }
-  for (const auto fails : {FailsSilently, FailsOrRefuses}) {
-    for (const TrialRecord* record : {&standard, &prcme, &rcme}) outcome.push_back(fails(*record));
+  const bool standard_fails = rule.fails(standard), prcme_fails = rule.fails(prcme),
+             rcme_fails = rule.fails(rcme);
+  Outcome outcome = {OnlyFirst(prcme_fails, rcme_fails), OnlyFirst(standard_fails, prcme_fails),
+                     OnlyFirst(standard_fails, rcme_fails)};
+  for (const TrialRecord* record : {&standard, &prcme, &rcme}) {
+    outcome.push_back(FailsSilently(*record) ? 1.0 : 0.0);
+    outcome.push_back(record->status != MotionStatus::kOk ? 1.0 : 0.0);
   }
   return outcome;
 }
 
-std::vector<Target> OrderTargets() {
-  std::vector<Target> targets;
-  for (const std::string refusals : {" (refusals are no failures)", " (refusals are failures)"}) {
-    for (const std::string pair : {"pRCME, not RCME", "standard, not pRCME", "standard, not RCME"}) {
-      targets.push_back({"of trials that tell them apart, fails " + pair + refusals,
-                         Target::Kind::kRate,
-                         1.0,
-                         {0.5, 1.0},
-                         kNaN,
-                         targets.size()});
-    }
+Claim OrderClaim(const std::string& id, const std::string& reading, const RansacOptions& options,
+                 const FailureRule& rule) {
+  const std::string discordant = "of trials that tell them apart, fails ";
+  std::vector<Target> targets = {ClaimedRate(discordant + "pRCME, not RCME", 1.0, {0.5, 1.0}, 0),
+                                 ClaimedRate(discordant + "standard, not pRCME", 1.0, {0.5, 1.0}, 1),
+                                 MeasuredRate(discordant + "standard, not RCME", 2)};
+  for (const std::string name : {"standard", "pRCME", "RCME"}) {
+    targets.push_back(MeasuredRate(name + " fails", targets.size()));
+    targets.push_back(MeasuredRate(name + " is refused", targets.size()));
   }
-  for (const std::string refusals : {"", " or is refused"}) {
-    for (const std::string name : {"standard", "pRCME", "RCME"}) {
-      targets.push_back({name + " fails" + refusals, Target::Kind::kRate, kNaN, {}, kNaN, targets.size()});
-    }
-  }
-  return targets;
-}
-
-Claim OrderClaim(const std::string& id, const std::string& reading, const RansacOptions& options) {
-  Claim claim{
-      "failure.order." + id,
+  const auto statistic = [rivals = MakeRivals(options), rule](Case& made) {
+    return OrderStatistic(rivals, rule, made);
+  };
+  return {
+      "failure.order." + id + rule.id,
       "Tab. real-data-test",
-      reading,
+      reading + ", " + rule.words,
       "RCME fails less often than pRCME, and pRCME less often than standard",
       "rotation error > 3 deg or direction error > 15 deg, in pairs, by the trials in which only one fails",
-      "outlier_ratio",
-      {}};
-  for (const char* outlier_ratio : {"0.4"}) {
-    claim.checks.push_back(MakeCheck(
-        {{"num_matches", "200"}, {"outlier_ratio", outlier_ratio}},
-        [rivals = MakeRivals(options)](Case& made) { return OrderStatistic(rivals, made); }, OrderTargets(),
-        kEstimatorCalls));
-  }
-  return claim;
+      "",
+      {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.4"}}, statistic, targets, kEstimatorCalls)}};
 }
 
 Claim AgainstStandardClaim(const EstimatorEntry& entry) {
@@ -90,14 +78,9 @@ Claim AgainstStandardClaim(const EstimatorEntry& entry) {
   for (const char* outlier_ratio : {"0.2", "0.3", "0.4"}) {
     claim.checks.push_back(
         MakeCheck({{"num_matches", "200"}, {"outlier_ratio", outlier_ratio}}, statistic,
-                  {{"of trials that tell them apart, fails " + entry.name,
-                    Target::Kind::kRate,
-                    0.5,
-                    {0.0, 0.5},
-                    kNaN,
-                    0},
-                   {entry.name + " fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 1},
-                   {"standard fails or is refused", Target::Kind::kRate, kNaN, {}, kNaN, 2}},
+                  {ClaimedRate("of trials that tell them apart, fails " + entry.name, 0.5, {0.0, 0.5}, 0),
+                   MeasuredRate(entry.name + " fails or is refused", 1),
+                   MeasuredRate("standard fails or is refused", 2)},
                   kEstimatorCalls));
   }
   return claim;
@@ -109,9 +92,13 @@ std::vector<Claim> FailureClaims(const std::vector<EstimatorEntry>& estimators) 
   RansacOptions rank_aware, predictive;
   rank_aware.reading = predictive.reading = Reading::kRankAware;
   predictive.selection = Selection::kPredictiveLikelihood;
-  std::vector<Claim> claims = {OrderClaim("as_printed", "as printed", RansacOptions()),
-                               OrderClaim("rank_aware", "rank-aware, least entropy", rank_aware),
-                               OrderClaim("predictive", "rank-aware, predictive likelihood", predictive)};
+  const FailureRule silent{"", "refusals are no failures", FailsSilently};
+  const FailureRule any{"_or_refusal", "refusals are failures", FailsOrRefuses};
+  std::vector<Claim> claims = {
+      OrderClaim("as_printed", "as printed", RansacOptions(), silent),
+      OrderClaim("as_printed", "as printed", RansacOptions(), any),
+      OrderClaim("rank_aware", "rank-aware, least entropy", rank_aware, silent),
+      OrderClaim("predictive", "rank-aware, predictive likelihood", predictive, silent)};
   for (const EstimatorEntry& entry : estimators) {
     if (entry.name != "standard" && entry.name != "prcme" && entry.name != "rcme") {
       claims.push_back(AgainstStandardClaim(entry));

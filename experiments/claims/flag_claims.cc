@@ -21,9 +21,9 @@ Outcome FlagStatistic(const MotionEstimator& estimator, const Case& made) {
 
 std::vector<Claim> FlagClaims() {
   const std::vector<Target> targets = {
-      {"sensitivity: failures that are flagged", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 0},
-      {"specificity: good motions that are not", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 1},
-      {"failures of the estimator", Target::Kind::kRate, kNaN, {}, kNaN, 2}};
+      ClaimedRate("sensitivity: failures that are flagged", 1.0, {0.9, 1.0}, 0),
+      ClaimedRate("specificity: good motions that are not", 1.0, {0.9, 1.0}, 1),
+      MeasuredRate("failures of the estimator", 2)};
   std::shared_ptr<const MotionEstimator> standard = FindEstimator("standard").make(RansacOptions());
   std::vector<Check> checks;
   for (const SceneEntry& scene : SceneRegistry()) {

@@ -6,7 +6,8 @@
 namespace rcme {
 
 inline constexpr TrialLimits kMicroseconds{4'000, 60'000, 400'000};  // one sample and its statistic
-inline constexpr TrialLimits kMilliseconds{1'000, 8'000, 60'000};    // a hundred points, a refinement
-inline constexpr TrialLimits kEstimatorCalls{300, 1'000, 10'000};    // several calls on 200 matches
+inline constexpr TrialLimits kMilliseconds{1'000, 4'000, 60'000};    // two hundred matches scored
+inline constexpr TrialLimits kEstimatorCalls{800, 800, 10'000};      // one to three calls on 200 matches
+inline constexpr TrialLimits kManyEstimatorCalls{400, 400, 10'000};  // more of them
 
 }  // namespace rcme

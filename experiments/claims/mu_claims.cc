@@ -24,12 +24,11 @@ template <typename PointTest>
 Check SeparationCheck(Reading reading) {
   RansacOptions options;
   options.reading = reading;
-  Check check =
-      MakeCheck(kPair, nullptr,
-                {{"AUC: a good model has the lower psi", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 0},
-                 {"good models that pass", Target::Kind::kRate, 1.0, {0.9, 1.0}, kNaN, 1},
-                 {"contaminated models that pass", Target::Kind::kRate, 0.0, {0.0, 0.1}, kNaN, 2}},
-                kMicroseconds);
+  Check check = MakeCheck(kPair, nullptr,
+                          {ClaimedRate("AUC: a good model has the lower psi", 1.0, {0.9, 1.0}, 0),
+                           ClaimedRate("good models that pass", 1.0, {0.9, 1.0}, 1),
+                           ClaimedRate("contaminated models that pass", 0.0, {0.0, 0.1}, 2)},
+                          kMicroseconds);
   check.trial = [cases = SimulatedCases(kPair), options](StreamName name) -> Outcome {
     name.trial *= 2;
     Case first = cases(name);
@@ -52,7 +51,10 @@ template <typename PointTest>
 Check RocCheck(SampleKind kind, const std::vector<double>& thresholds) {
   std::vector<Target> targets;
   for (const double mu : thresholds) {
-    targets.push_back({fmt::format("psi at most {}", mu), Target::Kind::kAtMost, kNaN, {}, mu});
+    Target target = MeasuredRate(fmt::format("psi at most {}", mu));
+    target.kind = Target::Kind::kAtMost;
+    target.threshold = mu;
+    targets.push_back(std::move(target));
   }
   Check check = MakeCheck(
       kPair,

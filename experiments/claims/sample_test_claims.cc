@@ -39,9 +39,8 @@ Outcome RejectedJointlyStatistic(Case& made) {
 std::vector<Check> PowerChecks(const Statistic& is_rejected) {
   std::vector<Check> checks;
   for (int num_outliers = 1; num_outliers <= 8; ++num_outliers) {
-    Check check =
-        MakeCheck({{"num_matches", "8"}, {"outlier_ratio", fmt::format("{}", num_outliers / 8.0)}},
-                  is_rejected, {{"share rejected", Target::Kind::kRate, 1.0, {0.9, 1.0}}}, kMicroseconds);
+    Check check = MakeCheck({{"num_matches", "8"}, {"outlier_ratio", fmt::format("{}", num_outliers / 8.0)}},
+                            is_rejected, {ClaimedRate("share rejected", 1.0, {0.9, 1.0})}, kMicroseconds);
     check.conditions.emplace_back("num_outliers", fmt::format("{}", num_outliers));
     checks.push_back(std::move(check));
   }
@@ -59,7 +58,7 @@ std::vector<Claim> SampleTestClaims() {
        "A sample without outliers passes with probability 1 - alpha, alpha = 0.05",
        "all eight points pass delta' Sigma_delta^-1 delta <= chi2_3", "sigma_px",
        SigmaLadder(kNoiseLadderPx, sample, PassesPerPointStatistic,
-                   {{"share passed", Target::Kind::kRate, 0.95, Around(0.95, 0.01)}}, kMicroseconds)},
+                   {ClaimedRate("share passed", 0.95, Around(0.95, 0.01))}, kMicroseconds)},
       {"sample_test.size.joint", kLabel, "joint, 3 dof",
        "A sample without outliers passes with probability 1 - alpha",
        "T = (N'f)' (N' Sigma_f N)^-1 (N'f), chi2_3", "sigma_px",

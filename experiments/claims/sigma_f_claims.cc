@@ -119,7 +119,7 @@ std::vector<Claim> SigmaFClaims() {
        "eigenvalues of the 9x9 matrix above 1e-12 of the largest",
        "",
        {MakeCheck({{"num_matches", "5"}}, ExactInverseStatistic,
-                  {{"share that has an inverse", Target::Kind::kRate, 1.0, {0.999, 1.0}}}, kMicroseconds)}},
+                  {ClaimedRate("share that has an inverse", 1.0, {0.999, 1.0})}, kMicroseconds)}},
   };
 }
 

@@ -59,8 +59,7 @@ std::vector<Claim> SigmaPClaims() {
        "eigenvalues above 1e-13 of the largest",
        "",
        {MakeCheck(kSample, RankStatistic,
-                  {{"share of rank 7", Target::Kind::kRate, 1.0, {0.999, 1.0}, 0.0, 1},
-                   {"share of rank 5", Target::Kind::kRate}},
+                  {ClaimedRate("share of rank 7", 1.0, {0.999, 1.0}, 1), MeasuredRate("share of rank 5")},
                   kMicroseconds)}},
   };
 }

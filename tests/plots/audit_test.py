@@ -310,7 +310,7 @@ class Roc(unittest.TestCase):
         self.assertEqual(axes.texts[0].get_text(), "mu = \u22123.5")
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()),
                          ("Contaminated models accepted (%)", "Good models accepted (%)"))
-        self.assertIn("nearest to the default \u22123.53", caption_of(figure))
+        self.assertIn("nearest to the default of its reading", caption_of(figure))
 
     def test_further_conditions_give_several_curves(self):
         labels = [line.get_label() for line in fake_figure("mu").axes[1].lines]

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace rcme {
 namespace {
@@ -68,6 +69,16 @@ TEST(Normal, SquareIsChiSquareWithOneDegreeOfFreedom) {
   for (const double z : {0.1, 1.0, 1.96, 3.5}) {
     ExpectRelative(ChiSquareCdf(1, z * z), 1.0 - 2.0 * NormalCdf(-z), 1e-13);
   }
+}
+
+// One and two degrees of freedom in closed form; ten: scipy 1.10, t.ppf(0.975, 10).
+TEST(Student, QuantilesAreTheKnownOnes) {
+  EXPECT_NEAR(StudentQuantile(1, 0.975), std::tan(0.475 * std::numbers::pi), 1e-9);  // Cauchy
+  const double p = 0.95;  // two degrees of freedom: (2 p - 1) / sqrt(2 p (1 - p))
+  EXPECT_NEAR(StudentQuantile(2, p), (2.0 * p - 1.0) / std::sqrt(2.0 * p * (1.0 - p)), 1e-12);
+  EXPECT_NEAR(StudentQuantile(10, 0.975), 2.2281388519649385, 1e-9);
+  EXPECT_NEAR(StudentQuantile(1'000'000, 0.975), NormalQuantile(0.975), 1e-5);
+  EXPECT_EQ(StudentQuantile(7, 0.5), 0.0);
 }
 
 }  // namespace

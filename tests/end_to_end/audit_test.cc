@@ -1,0 +1,72 @@
+// `rcme audit` as a user runs it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/test_support/run_program.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+
+std::string Contents(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(Audit, PrintsTheTableAndWritesPageDataAndFigures) {
+  const TempFolder folder;
+  const std::string out = folder.Path("a/b");  // made, with its parents
+  const ProgramResult result =
+      RunRcme({"audit", "--only", "sampson.dof_1,sampson.dof_3,sampson.full_rank", "--out", out});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("sampson.dof_1 "));
+  EXPECT_THAT(result.err, HasSubstr("at most"));
+  const auto json = nlohmann::json::parse(Contents(out + "/audit.json"));
+  ASSERT_EQ(json["claims"].size(), 3);
+  for (const auto& claim : json["claims"]) {
+    EXPECT_EQ(claim["verdict"], claim["id"] == "sampson.dof_1" ? "holds" : "does not hold") << claim["id"];
+  }
+  EXPECT_THAT(Contents(out + "/audit.md"), HasSubstr("![sampson](audit_sampson.png)"));
+  EXPECT_GT(std::filesystem::file_size(out + "/audit_sampson.png"), 10'000);
+}
+
+TEST(Audit, GivesTheSameBytesForAnyNumberOfThreads) {
+  const TempFolder folder;
+  std::string first;
+  for (const char* threads : {"1", "2"}) {
+    const std::string out = folder.Path(threads);
+    RunRcme({"audit", "--only", "sigma_p,mu.rank_aware.separation", "--threads", threads, "--out", out});
+    const std::string json = Contents(out + "/audit.json");
+    ASSERT_FALSE(json.empty());
+    if (first.empty()) first = json;
+    EXPECT_EQ(json, first);
+  }
+}
+
+TEST(Audit, WrongArgumentsAreNamed) {
+  const TempFolder folder;
+  const ProgramResult unknown = RunRcme({"audit", "--only", "sigma_q", "--out", folder.Path("x")});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("'sigma_q' is not allowed"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("x")));
+
+  std::ofstream(folder.Path("file")) << "not a folder";
+  const ProgramResult file = RunRcme({"audit", "--only", "sigma_p.rank", "--out", folder.Path("file")});
+  EXPECT_EQ(file.exit_code, 2);
+  EXPECT_THAT(file.err, HasSubstr("cannot be made a folder"));
+
+  EXPECT_EQ(RunRcme({"audit", "--budget", "huge", "--out", folder.Path("x")}).exit_code, 2);
+  EXPECT_EQ(RunRcme({"audit"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace rcme
