@@ -32,9 +32,8 @@ struct Target {
   std::string quantity;
   Kind kind = Kind::kRate;
   double nominal = std::numeric_limits<double>::quiet_NaN();  // what is claimed
-  Interval allowed{
-      -std::numeric_limits<double>::infinity(),  // what still counts as that; unbounded: nothing is
-      std::numeric_limits<double>::infinity()};  // claimed, the number is only measured
+  // What still counts as nominal. Unbounded: nothing is claimed, the number is only measured.
+  Interval allowed{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   double threshold = std::numeric_limits<double>::quiet_NaN();
   size_t statistic = 0;  // index into the outcome
 

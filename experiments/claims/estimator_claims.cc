@@ -22,7 +22,7 @@ std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators
       claim.checks.push_back(
           MakeCheck({{"num_matches", "100"}, {"outlier_ratio", outlier_ratio}},
                     [estimator](Case& made) { return ReportedCovarianceStatistic(*estimator, made); },
-                    targets, {1'000, 1'200, 60'000}));
+                    targets, {800, 800, 60'000}));
     }
     claims.push_back(std::move(claim));
   }

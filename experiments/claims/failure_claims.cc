@@ -62,7 +62,7 @@ Claim OrderClaim(const std::string& id, const std::string& reading, const Ransac
 Claim AgainstStandardClaim(const EstimatorEntry& entry) {
   Claim claim{
       "failure." + entry.name,
-      "",
+      "of one's own",
       entry.name + ", defaults",
       entry.name + " fails or refuses no more often than standard",
       "rotation error > 3 deg or direction error > 15 deg, in pairs, by the trials in which only one fails",

@@ -48,7 +48,7 @@ Claim SizeClaim(const char* id, const char* reading, QualityTest quality_test, c
           {MakeCheck({{"num_matches", std::to_string(kSampleSize + kNumTested + kNumForMean)}},
                      SizeStatistic<PointTest>(quality_test),
                      {ClaimedRate("share of models that pass", 0.05, Around(0.05, 0.03))},
-                     {1'000, 3'000, 40'000})}};
+                     {1'000, 6'000, 40'000})}};
 }
 
 // (psi_j - psi_k)^2 over the sum of their squared standard errors s^2 / n, for the models of two samples of

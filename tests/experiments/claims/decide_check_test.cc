@@ -14,9 +14,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-Target RateWithin(double low, double high) {
-  return {"rate", Target::Kind::kRate, 0.5 * (low + high), {low, high}};
-}
+Target RateWithin(double low, double high) { return ClaimedRate("rate", 0.5 * (low + high), {low, high}); }
 
 // A check whose trials succeed with the given probability.
 Check BernoulliCheck(double probability, const Target& target, const TrialLimits& limits) {
@@ -64,8 +62,10 @@ TEST(DecideCheck, EndsUndecidedAtTheBudgetAndSaysHowManyWouldDo) {
 }
 
 TEST(DecideCheck, EveryTrialIsCountedOnceWhateverTheThreads) {
-  const Target first_half{"first", Target::Kind::kAtMost, kNaN, {}, 499.0};
-  const Target mean{"mean", Target::Kind::kMean};
+  Target first_half = MeasuredRate("first");
+  first_half.kind = Target::Kind::kAtMost;
+  first_half.threshold = 499.0;
+  const Target mean = MeasuredMean("mean");
   const Check check = CountingCheck({first_half, mean}, {0, 1'000, 1'000});
   for (const int threads : {1, 2, 5}) {
     tbb::task_arena arena(threads);
@@ -84,10 +84,11 @@ TEST(DecideCheck, KindsCountWhatTheySay) {
     const double values[] = {-1.0, 0.0, 2.0, std::numeric_limits<double>::infinity()};
     return {values[name.trial % 4], name.trial % 4 == 0 ? kNaN : 1.0};
   };
-  check.targets = {{"coverage", Target::Kind::kCoverage, kNaN, {}, 2.0, 0},
-                   {"at most", Target::Kind::kAtMost, kNaN, {}, 2.0, 0},
-                   {"rate", Target::Kind::kRate, kNaN, {}, kNaN, 0},
-                   {"conditional rate", Target::Kind::kRate, kNaN, {}, kNaN, 1}};
+  check.targets = {MeasuredRate("coverage"), MeasuredRate("at most"), MeasuredRate("rate"),
+                   MeasuredRate("conditional rate", 1)};
+  check.targets[0].kind = Target::Kind::kCoverage;
+  check.targets[1].kind = Target::Kind::kAtMost;
+  check.targets[0].threshold = check.targets[1].threshold = 2.0;
   const CheckResult result = DecideCheck(check, {});
   EXPECT_EQ(result.targets[0].measured, 0.5);  // a negative value is no chi-square value
   EXPECT_EQ(result.targets[1].measured, 0.75);
@@ -101,7 +102,7 @@ TEST(DecideCheck, MeansAreLookedAtOnceAtTheEnd) {
   Check check;
   check.limits = {0, 1'000, 1'000};
   check.trial = [](const StreamName& name) -> Outcome { return {RandomStream(name).Normal()}; };
-  check.targets = {{"mean", Target::Kind::kMean, 0.0, {-0.5, 0.5}}};
+  check.targets = {ClaimedMean("mean", 0.0, {-0.5, 0.5})};
   const CheckResult result = DecideCheck(check, {});
   EXPECT_EQ(result.num_trials, 1'000);
   EXPECT_EQ(result.verdict, Verdict::kHolds);
@@ -138,6 +139,7 @@ TEST(DecideCheck, LookingOftenDoesNotInflateErrors) {
   }
   EXPECT_LE(alarms.interval().upper, 0.05) << alarms;
   EXPECT_GT(naive_alarms.interval().lower, 0.07) << naive_alarms;
+  std::cout << "sequential: " << alarms << "\nfixed-n interval, looked at every 50: " << naive_alarms << "\n";
 }
 
 }  // namespace
