@@ -37,4 +37,15 @@ void WriteFileWhole(const std::string& path, const std::string& text) {
   throw InputError(fmt::format("{}: cannot be written: {}", path, reason));
 }
 
+void MakeResultFolder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (!std::filesystem::is_directory(path)) {
+    throw InputError(fmt::format("{}: cannot be made a folder: {}", path, error.message()));
+  }
+  if (access(path.c_str(), W_OK) != 0) {
+    throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  }
+}
+
 }  // namespace rcme

@@ -208,7 +208,7 @@ std::vector<Claim> EntropyClaims() {
        "failures of RCME (joint sample test, no quality test) that differ in the selecting score alone",
        "",
        {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.2"}}, SelectionStatistic, SelectionTargets(),
-                  kEstimatorCalls)}},
+                  {1'000, 1'000, 10'000})}},
   };
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "estimator/estimator_registry.h"
@@ -9,7 +8,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -21,14 +19,6 @@ struct AuditArguments {
   int threads = 0;
 };
 
-void MakeFolder(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (!std::filesystem::is_directory(path)) {
-    throw InputError(fmt::format("--out: '{}' cannot be made a folder: {}", path, error.message()));
-  }
-}
-
 void RunAuditCommand(const AuditArguments& arguments) {
   AuditOptions options;
   options.only = arguments.only;
@@ -37,7 +27,7 @@ void RunAuditCommand(const AuditArguments& arguments) {
   options.num_threads = arguments.threads;
   const std::vector<Claim> all = AllClaims(EstimatorRegistry());
   SelectClaims(all, options.only);
-  MakeFolder(arguments.out);
+  MakeResultFolder(arguments.out);
   const Audit audit = RunAudit(all, options);
   fmt::print("{}", AuditAsTable(audit));
   WriteFileWhole(arguments.out + "/audit.json", AuditAsJson(audit));

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 
@@ -11,7 +8,6 @@
 #include "experiments/file_output.h"
 #include "experiments/validity_map.h"
 #include "experiments/validity_reference.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -26,10 +22,7 @@ struct MapArguments {
 };
 
 void Map(const MapArguments& arguments) {
-  std::filesystem::create_directories(arguments.out);
-  if (access(arguments.out.c_str(), W_OK) != 0) {  // minutes before the first table is written
-    throw InputError(fmt::format("{}: cannot be written: {}", arguments.out, std::strerror(errno)));
-  }
+  MakeResultFolder(arguments.out);  // minutes before the first table is written
   const std::string map_path = (std::filesystem::path(arguments.out) / "validity_map.csv").string();
   const std::string reference_path =
       (std::filesystem::path(arguments.out) / "validity_reference.csv").string();
