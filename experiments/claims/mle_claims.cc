@@ -22,8 +22,6 @@ RefinedMotion RefineReprojection(const MotionProblem& problem, const RelativePos
   return RefineByReprojection(problem, indices, start, Loss::kSquared);
 }
 
-// Maximum likelihood on a hundred matches: on twenty, the validity map shows where first order breaks.
-
 // The optimum over all matches, from their linear motion; nothing if there is none.
 std::optional<RefinedMotion> FitAll(const MotionProblem& problem, Refine refine) {
   const std::optional<LinearMotion> linear = EstimateLinearMotion(problem);
@@ -60,6 +58,7 @@ Statistic CramerRaoStatistic(Refine refine) {
   };
 }
 
+// On a hundred matches: the validity map shows where first order breaks with fewer.
 Claim MakeClaim(const std::string& id, const std::string& reading, const std::string& sentence,
                 const Statistic& statistic, const TrialLimits& limits) {
   return {"mle." + id,

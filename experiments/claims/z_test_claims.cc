@@ -51,8 +51,9 @@ Claim SizeClaim(const char* id, const char* reading, QualityTest quality_test, c
                      {1'000, 6'000, 40'000})}};
 }
 
-// (psi_j - psi_k)^2 over the sum of their squared standard errors s^2 / n, for the models of two samples of
-// one scene: 1 in the mean if the entropies of a model were independent draws around one mean.
+// Whether the psi of two good models of one scene differ by less than 1.96 of their standard errors
+// sqrt(s_j^2 / n_j + s_k^2 / n_k): 95 % if the entropies of a model were independent draws around one mean.
+// NaN where one of them has fewer than two inliers, and so no standard error.
 template <typename PointTest>
 Outcome SpreadStatistic(Case& made) {
   const InlierScore a = ScoreSample<PointTest>(made.problem(), DrawSampleOf(SampleKind::kGood, made));
