@@ -2,6 +2,7 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4)
 find_dependency(Boost 1.74)
+find_dependency(hwy 1.0)
 find_dependency(Ceres 2.1)
 find_dependency(OpenCV 4.6 COMPONENTS core features2d imgcodecs)
 find_dependency(yaml-cpp 0.7)

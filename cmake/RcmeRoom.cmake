@@ -19,3 +19,11 @@ function(rcme_add_room name)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rcme
           FILES_MATCHING PATTERN "*.h")
 endfunction()
+
+# rcme_uses_simd(ROOM): the room has kernels in Highway, compiled for three instruction sets and chosen at run time: the
+# baseline, AVX2 with fused multiply-add, AVX-512.
+function(rcme_uses_simd name)
+  target_link_libraries(rcme_${name} PRIVATE hwy::hwy)
+  target_compile_definitions(rcme_${name} PRIVATE
+    "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL|HWY_AVX3_ZEN4)")
+endfunction()
