@@ -46,9 +46,7 @@ Eigen::Matrix<double, 4, 3> ComplementOf(const Eigen::Vector4d& u) {
 
 }  // namespace
 
-std::optional<UncertainFundamental> UncertainFundamental::From(const RelativePose& pose,
-                                                               const Matrix5d& pose_cov,
-                                                               const Camera& camera1, const Camera& camera2) {
+std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose& pose, const Matrix5d& pose_cov) {
   if (!pose_cov.allFinite()) return std::nullopt;
   // Eigenvectors also take a covariance that is singular to within rounding, such as zero for a known motion.
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(pose_cov);
@@ -56,13 +54,25 @@ std::optional<UncertainFundamental> UncertainFundamental::From(const RelativePos
   if (eigen.info() != Eigen::Success || variances(0) < -1e-12 * std::abs(variances(4))) return std::nullopt;
   const Matrix5d L = eigen.eigenvectors() * variances.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 
+  const std::array<Eigen::Matrix3d, 5> dE = EssentialTangent(pose);
+  std::array<Eigen::Matrix3d, 5> whitened;
+  for (int k = 0; k < 5; ++k) {
+    Eigen::Matrix3d& sum = whitened[static_cast<size_t>(k)];
+    sum = Eigen::Matrix3d::Zero();
+    for (int l = 0; l < 5; ++l) sum += L(l, k) * dE[static_cast<size_t>(l)];
+  }
+  return whitened;
+}
+
+std::optional<UncertainFundamental> UncertainFundamental::From(const RelativePose& pose,
+                                                               const Matrix5d& pose_cov,
+                                                               const Camera& camera1, const Camera& camera2) {
+  const std::optional<std::array<Eigen::Matrix3d, 5>> dE = WhitenedTangent(pose, pose_cov);
+  if (!dE) return std::nullopt;
   UncertainFundamental model;
   model.F = FundamentalFromEssential(EssentialFromPose(pose), camera1, camera2);
-  const std::array<Eigen::Matrix3d, 5> dE = EssentialTangent(pose);
-  for (int k = 0; k < 5; ++k) {
-    Eigen::Matrix3d whitened = Eigen::Matrix3d::Zero();
-    for (int l = 0; l < 5; ++l) whitened += L(l, k) * dE[static_cast<size_t>(l)];
-    model.dF_whitened[static_cast<size_t>(k)] = FundamentalFromEssential(whitened, camera1, camera2);
+  for (size_t k = 0; k < 5; ++k) {
+    model.dF_whitened[k] = FundamentalFromEssential((*dE)[k], camera1, camera2);
   }
   return model;
 }
@@ -110,15 +120,14 @@ double AsPrintedTest::Distance(const Correspondence& match, PointResidual* resid
     return residual->d2;
   }
   residual->d2 = c.g * c.g * n2 / schur;
-  const double abs_g =
-      std::max(std::abs(c.g), std::numeric_limits<double>::min());  // g = 0 exactly: keep h finite
-  residual->log_det_cov = 6.0 * std::log(abs_g) + 2.0 * std::log(llt.matrixLLT().diagonal().prod()) +
+  const double g2 = std::max(c.g * c.g, kLeastSquaredDistance * sigma2_ * n2);
+  residual->log_det_cov = 3.0 * std::log(g2) + 2.0 * std::log(llt.matrixLLT().diagonal().prod()) +
                           std::log(schur) - 8.0 * std::log(n2);
   return residual->d2;
 }
 
-double AsPrintedTest::Entropy(const PointResidual& residual) const {
-  return 0.5 * (4.0 * (kLogTwoPi + 1.0) + residual.log_det_cov);
+double AsPrintedTest::EntropyOfLogDeterminant(double log_det_cov) {
+  return 0.5 * (4.0 * (kLogTwoPi + 1.0) + log_det_cov);
 }
 
 MatchResidual EvaluateResidual(const UncertainFundamental& model, const Correspondence& match) {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace rcme {
@@ -17,13 +16,17 @@ MotionEstimate Refusal(MotionStatus status, std::string message) {
   return estimate;
 }
 
-int CountDistinct(const std::vector<Correspondence>& matches) {
-  std::vector<std::array<double, 4>> keys;
-  keys.reserve(matches.size());
-  for (const Correspondence& m : matches)
-    keys.push_back({m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()});
-  std::sort(keys.begin(), keys.end());
-  return static_cast<int>(std::unique(keys.begin(), keys.end()) - keys.begin());
+// Distinct matches, counted up to `enough`.
+int CountDistinct(const std::vector<Correspondence>& matches, int enough) {
+  std::vector<const Correspondence*> distinct;
+  for (const Correspondence& match : matches) {
+    if (static_cast<int>(distinct.size()) == enough) break;
+    const bool is_new = std::none_of(distinct.begin(), distinct.end(), [&](const Correspondence* other) {
+      return other->x1_px == match.x1_px && other->x2_px == match.x2_px;
+    });
+    if (is_new) distinct.push_back(&match);
+  }
+  return static_cast<int>(distinct.size());
 }
 
 // Root mean square distance (px) of the points of one image from their best line.
@@ -31,12 +34,14 @@ double RmsDistanceFromLine(const std::vector<Correspondence>& matches,
                            Eigen::Vector2d Correspondence::*point) {
   const double n = static_cast<double>(matches.size());
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Correspondence& match : matches) mean += match.*point / n;
+  for (const Correspondence& match : matches) mean += match.*point;
+  mean /= n;
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const Correspondence& match : matches) {
     const Eigen::Vector2d offset = match.*point - mean;
-    scatter += offset * offset.transpose() / n;
+    scatter += offset * offset.transpose();
   }
+  scatter /= n;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(scatter, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(eigen.eigenvalues()(0), 0.0));
 }
@@ -60,7 +65,7 @@ std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int
                      fmt::format("match {} has a coordinate that is not a finite pixel position", i));
     }
   }
-  const int num_distinct = CountDistinct(problem.matches);
+  const int num_distinct = CountDistinct(problem.matches, min_matches);
   if (num_distinct < min_matches) {
     return Refusal(MotionStatus::kTooFewMatches,
                    fmt::format("{} distinct matches of {}; at least {} are needed", num_distinct,

@@ -1,22 +1,30 @@
 // The hypothesis loop of the paper's Algorithm 1, one template for standard, pRCME and RCME.
 //
-// A pipeline names its parts:
+// A pipeline names the decisions (estimators/standard.cc and estimators/rcme.cc are the worked examples):
 //
 //   struct Pipeline {
-//     using PointTest = ...;                           // point_consistency.h: is a match an inlier, with
-//     what entropy static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);   //
-//     eq::sample-p-test static bool InlierSetIsGood(z, options, thresholds);                           //
-//     eq::inlier-quality-test static bool IsBetter(score_a, score_b, options); // eq::model_select_entropy
+//     using PointTest = ...;              // point_consistency.h: is a match an inlier, with what entropy
+//     static constexpr bool kTestsSample;                                            // eq::sample-p-test, and
+//     static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);   // what it is
+//     static bool InlierSetIsGood(z, options, thresholds);                           // eq::inlier-quality-test
+//     static bool IsBetter(score_a, score_b, options);                               // eq::model_select_entropy
 //   };
 //
-// estimators/standard.cc and estimators/rcme.cc are the worked examples. No heap allocation inside the loop.
+// A search makes the hypotheses and scores them: reference_search.h one by one, kernels/block_search.h eight at a
+// time. No heap allocation inside the loop.
+//
+//   struct Search {
+//     const Thresholds& thresholds() const;
+//     Proposal Next();      // the next sample and what became of it
+//     InlierScore Score();  // of the last proposal, all matches
+//   };
 #pragma once
 
 #include <optional>
 
 #include "estimator/candidate_set.h"
 #include "estimator/motion_estimate.h"
-#include "estimator/point_consistency.h"
+#include "estimator/motion_problem.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -35,85 +43,43 @@ struct Thresholds {
 // Eight distinct indices below n, every set equally likely; n >= 8.
 Sample DrawSample(int n, RandomStream& rng);
 
-// Sigma_p propagated and the point test built on it; nothing if the covariance is not finite.
-template <typename PointTest>
-std::optional<PointTest> MakePointTest(const MotionProblem& problem, Hypothesis* hypothesis) {
-  if constexpr (!PointTest::kNeedsCovariance) {
-    return PointTest(hypothesis->F, problem.sigma_px);
-  } else {
-    PropagateCovariance(problem, hypothesis);
-    const std::optional<UncertainFundamental> model =
-        UncertainFundamental::From(hypothesis->pose, hypothesis->pose_cov, problem.camera1, problem.camera2);
-    if (!model) return std::nullopt;
-    return PointTest(*model, problem.sigma_px);
-  }
-}
-
-// Inliers and their scores, all matches (eq::find-inlier, eq::score-inliers).
-template <typename PointTest>
-InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, const Thresholds& thresholds) {
-  InlierScore score;
-  for (const Correspondence& match : problem.matches) {
-    PointResidual residual;
-    double cost = thresholds.outlier_cost;
-    const double d2 = test.Distance(match, &residual);
-    if (d2 <= thresholds.point) score.AddInlier(test.Entropy(residual));
-    if (d2 < 2.0 * cost) cost = std::min(cost, test.NegativeLogLikelihood(residual));
-    score.negative_log_likelihood += cost;
-  }
-  return score;
-}
-
-// The inliers of a hypothesis, ascending.
-template <typename PointTest>
-std::vector<int> FindInliers(const MotionProblem& problem, const PointTest& test, double threshold) {
-  std::vector<int> inliers;
-  for (size_t i = 0; i < problem.matches.size(); ++i) {
-    PointResidual residual;
-    if (test.Distance(problem.matches[i], &residual) <= threshold) inliers.push_back(static_cast<int>(i));
-  }
-  return inliers;
-}
+enum class SampleVerdict {
+  kDegenerate,    // the sample determines no motion, or no covariance of it
+  kInconsistent,  // it does not agree with the motion it made (eq::sample-p-test)
+  kConsistent,
+};
+struct Proposal {
+  Sample sample{};
+  SampleVerdict verdict = SampleVerdict::kDegenerate;
+};
 
 struct LoopResult {
   std::optional<Candidate> winner;  // nothing: the paper's "Fail"
   LoopCounts counts;
 };
 
-template <typename Pipeline>
-LoopResult RunRansacLoop(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-  using PointTest = typename Pipeline::PointTest;
-  const int n = static_cast<int>(problem.matches.size());
-  const Thresholds thresholds = Thresholds::For(problem, options, PointTest::kDegreesOfFreedom);
+template <typename Pipeline, typename Search>
+LoopResult RunRansacLoop(const RansacOptions& options, int num_matches, Search& search) {
   const double mu = options.MuOrDefault();
-
   LoopResult result;
   LoopCounts& counts = result.counts;
-  CandidateSet candidates(options, n);                // C = {}
+  CandidateSet candidates(options, num_matches);      // C = {}
   for (int j = 0; j < options.num_iterations; ++j) {  // for j = 1 to N
     ++counts.num_hypotheses;
-    const Sample sample = DrawSample(n, rng);  // S_j (eq::minimal_sample_set)
-    std::optional<Hypothesis> hypothesis =
-        InstantiateModel(problem, sample);  // f_j, p_j (eq::model_instantiate,
-    if (!hypothesis) {                      //           eq::motion_estimate)
+    const Proposal proposal = search.Next();  // S_j, f_j, p_j, Sigma_p (eq::minimal_sample_set,
+                                              // eq::model_instantiate, eq::motion_estimate, eq::cov_p)
+    if (proposal.verdict == SampleVerdict::kDegenerate) {
       ++counts.num_degenerate_samples;
       continue;
     }
-    const std::optional<PointTest> test =
-        MakePointTest<PointTest>(problem, &*hypothesis);  // Sigma_p (eq::cov_p)
-    if (!test) {
-      ++counts.num_degenerate_samples;
+    if (proposal.verdict == SampleVerdict::kInconsistent) {  // S_j and p_j agree? (eq::sample-p-test)
+      ++counts.num_inconsistent_samples;
       continue;
     }
-    if (!Pipeline::SampleIsConsistent(problem, *hypothesis, *test, thresholds)) {  // S_j and p_j agree?
-      ++counts.num_inconsistent_samples;                                           // (eq::sample-p-test)
-      continue;
-    }
-    Candidate candidate{sample, ScoreInliers(problem, *test, thresholds), 0.0};  // h_j (eq::find-inlier,
-    candidate.z_statistic = ZStatistic(candidate.score, mu);                     //      eq::score-inliers)
-    if (!Pipeline::InlierSetIsGood(candidate.z_statistic, options,
-                                   thresholds)) {  // (eq::inlier-quality-test)
-      ++counts.num_poor_inlier_sets;
+    Candidate candidate{proposal.sample, search.Score(), 0.0};  // h_j (eq::find-inlier, eq::score-inliers)
+    candidate.z_statistic = ZStatistic(candidate.score, mu);
+    if (!Pipeline::InlierSetIsGood(candidate.z_statistic, options, search.thresholds())) {
+      ++counts.num_poor_inlier_sets;  // (eq::inlier-quality-test)
       continue;
     }
     candidates.Add(candidate);  // update C (eq::candidate-set)

@@ -38,6 +38,14 @@ std::vector<Parameter> Parameters(RansacOptions& o) {
           "refinement", &o.refinement,
           {{"none", Refinement::kNone}, {"mle", Refinement::kMle}, {"robust", Refinement::kRobust}},
           "what follows the selection: nothing, the paper's MLE, or a robust loss and then the MLE"),
+      Parameter::Choice<RefinementError>(
+          "refinement_error", &o.refinement_error,
+          {{"sampson", RefinementError::kSampson}, {"reprojection", RefinementError::kReprojection}},
+          "what the refinement minimises: Sampson distance (fast), or reprojection error (bundle adjustment)"),
+      Parameter::Choice<Implementation>(
+          "implementation", &o.implementation,
+          {{"fast", Implementation::kFast}, {"reference", Implementation::kReference}},
+          "vectorised, or the same mathematics in its simplest form, hundreds of times slower"),
       Parameter::Real("kappa", &o.kappa, {0.0, 1.0}, "",
                       "failure flag: consistent matches after over before the refinement <= kappa"),
   };

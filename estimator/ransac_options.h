@@ -34,6 +34,18 @@ enum class Refinement {
             // the result
 };
 
+// What the refinement minimises.
+enum class RefinementError {
+  kSampson,       // Sampson distance, over the motion alone; the same optimum to second order in the noise
+  kReprojection,  // reprojection error, over the motion and one point per match: bundle adjustment
+};
+
+// Two implementations of the same mathematics; they agree to rounding.
+enum class Implementation {
+  kFast,       // eight hypotheses, eight matches at a time, closed forms: kernels/
+  kReference,  // one by one, textbook matrices: the oracle of the tests
+};
+
 // Options of the RANSAC family (standard, prcme, rcme). Defaults are the paper's where it gives a value.
 struct RansacOptions {
   int num_iterations = 200;          // N, all of them unless early_stop_entropy says otherwise
@@ -46,6 +58,8 @@ struct RansacOptions {
   Selection selection = Selection::kMeanEntropy;
   double early_stop_entropy = std::numeric_limits<double>::quiet_NaN();  // NaN: off
   Refinement refinement = Refinement::kRobust;
+  RefinementError refinement_error = RefinementError::kSampson;
+  Implementation implementation = Implementation::kFast;
   double kappa = 0.5;  // failure flag: n*_I / n_I <= kappa (eq::metric)
 
   // mu, or the default of the reading: -3.53 as printed (of a 4-dimensional density in px: it has units); rank-aware, 6

@@ -1,22 +1,102 @@
+// Box 4 of the paper: from the winner of the loop and its inlier set to the estimate.
+//
+// Written once for two ways to hold a set of matches, reference_matches.h and kernels/block_matches.h:
+//
+//   struct Matches {
+//     using Set = ...;
+//     const MotionProblem& problem() const;
+//     RelativePose SelectPose(projection, set) const;         // cheirality
+//     RefinedMotion Refine(set, start, loss) const;
+//     Set FindAgreeing(motion, fitted, significance_level) const;
+//     Set SelectFitSet(motion, fitted) const;                 // refinement/fit_set.h
+//     int CountConsistent(set, pose, threshold) const;        // squared Sampson distance / sigma^2 < threshold
+//     Set SetOf(sorted indices) const; std::vector<int> IndicesOf(set) const; int Count(set) const;
+//   };
 #pragma once
+
+#include <algorithm>
 
 #include "estimator/hypothesis.h"
 #include "estimator/motion_estimate.h"
 #include "estimator/ransac_options.h"
+#include "estimator/refinement/motion_search.h"
 
 namespace rcme {
 
-// Box 4 of the paper: refines the winner of the loop over its inlier set `support`, and fills motion,
-// covariance, final inliers, the kappa flag and the status of `estimate`.
-//
-// The final inliers are the matches that agree with the refined motion (rank-aware, its covariance included).
-void RefineWinner(const MotionProblem& problem, const RansacOptions& options, const Hypothesis& winner,
-                  const std::vector<int>& support, MotionEstimate* estimate);
+// Most refits after the robust fit; the fit set is nearly always stable after two or three.
+inline constexpr int kMaxRefits = 10;
 
-// Matches among `indices` whose reprojection error is below sigma^2 chi2_2(1 - alpha) (Sec. metric). The
-// error is the squared Sampson distance, its first-order minimum over the point; Huber's function does not
-// change the verdict as long as its corner lies at or beyond the threshold.
-int CountConsistent(const MotionProblem& problem, const std::vector<int>& indices, const RelativePose& pose,
-                    double significance_level);
+// A motion and the matches it was fitted to.
+template <typename Matches>
+struct Fit {
+  RefinedMotion motion;
+  typename Matches::Set fitted;
+};
+
+template <typename Matches>
+Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& support, const RelativePose& start) {
+  Fit<Matches> fit{matches.Refine(support, start, Loss::kCauchy), support};
+  for (int refit = 0; refit < kMaxRefits && fit.motion.converged; ++refit) {
+    typename Matches::Set selected = matches.SelectFitSet(fit.motion, fit.fitted);
+    if (refit > 0 && selected == fit.fitted) break;
+    fit.fitted = std::move(selected);
+    fit.motion = matches.Refine(fit.fitted, fit.motion.cam2_from_cam1, Loss::kSquared);
+  }
+  return fit;
+}
+
+template <typename Matches>
+Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis* winner,
+                    const typename Matches::Set& support) {
+  switch (refinement) {
+    case Refinement::kMle:
+      return {matches.Refine(support, winner->pose, Loss::kSquared), support};
+    case Refinement::kRobust:
+      return FitRobustly(matches, support, winner->pose);
+    case Refinement::kNone:
+      break;
+  }
+  PropagateCovariance(matches.problem(), winner);
+  std::vector<int> sample(winner->sample.begin(), winner->sample.end());
+  std::sort(sample.begin(), sample.end());
+  return {{true, winner->pose, winner->pose_cov, 0}, matches.SetOf(sample)};
+}
+
+// The threshold of "reprojection error consistent", chi2_2(1 - alpha) (Sec. metric). The error is the squared
+// Sampson distance, its first-order minimum over the point; Huber's function does not change the verdict as long as
+// its corner lies at or beyond the threshold.
+double ConsistencyThreshold(double significance_level);
+
+std::string DivergenceMessage(int num_support, int num_fitted);
+std::string SuccessMessage(int num_inliers, int num_matches);
+
+// Refines the winner's motion over its inlier set `support`, and fills motion, covariance, final inliers, the kappa
+// flag and the status. The final inliers are the matches that agree with the refined motion (rank-aware, its
+// covariance included).
+template <typename Matches>
+void RefineWinner(const Matches& matches, const RansacOptions& options, const Sample& sample,
+                  const typename Matches::Set& support, MotionEstimate* estimate) {
+  Hypothesis winner = InstantiateModel(matches.problem(), sample).value();
+  winner.pose = matches.SelectPose(winner.projection, support);
+  estimate->initial_pose = winner.pose;
+  const Fit<Matches> fit = Refine(matches, options.refinement, &winner, support);
+  const RefinedMotion& refined = fit.motion;
+  if (!refined.converged) {
+    estimate->status = MotionStatus::kRefinementDiverged;
+    estimate->message = DivergenceMessage(matches.Count(support), matches.Count(fit.fitted));
+    return;
+  }
+  estimate->status = MotionStatus::kOk;
+  estimate->cam2_from_cam1 = refined.cam2_from_cam1;
+  estimate->pose_cov = refined.pose_cov;
+  estimate->inliers = matches.IndicesOf(matches.FindAgreeing(refined, fit.fitted, options.significance_level));
+  const double threshold = ConsistencyThreshold(options.significance_level);
+  estimate->num_consistent_before = matches.CountConsistent(support, winner.pose, threshold);
+  estimate->num_consistent_after = matches.CountConsistent(support, refined.cam2_from_cam1, threshold);
+  estimate->failed_by_kappa =
+      estimate->num_consistent_after <= options.kappa * estimate->num_consistent_before;  // (eq::metric)
+  estimate->message = SuccessMessage(static_cast<int>(estimate->inliers.size()),
+                                     static_cast<int>(matches.problem().matches.size()));
+}
 
 }  // namespace rcme

@@ -1,50 +1,57 @@
+// One call of an estimator of the RANSAC family: check, loop, cheirality, refinement.
 #pragma once
 
-#include <fmt/format.h>
-
-#include "estimator/problem_check.h"
-#include "estimator/ransac_loop.h"
+#include "estimator/kernels/block_matches.h"
+#include "estimator/kernels/block_search.h"
 #include "estimator/refine_winner.h"
+#include "estimator/reference_matches.h"
+#include "estimator/reference_search.h"
 
 namespace rcme {
 
-// One call of an estimator: check, loop, cheirality, refinement.
+// The check before any hypothesis is drawn; a refusal, or nothing.
+std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem);
+
+// What the loop says of its winner, or why there is none.
+MotionEstimate EstimateFromLoop(const LoopResult& loop);
+
+template <typename Pipeline>
+MotionEstimate RunReferencePipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+  if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop(problem)) return *refusal;
+  ReferenceSearch<Pipeline> search(problem, options, rng);
+  const LoopResult loop = RunRansacLoop<Pipeline>(options, static_cast<int>(problem.matches.size()), search);
+  MotionEstimate estimate = EstimateFromLoop(loop);
+  if (!loop.winner) return estimate;
+  const Sample& sample = loop.winner->sample;
+  RefineWinner(ReferenceMatches(problem, options.refinement_error), options, sample, search.FindSupport(sample),
+               &estimate);
+  return estimate;
+}
+
+template <typename Pipeline>
+MotionEstimate RunFastPipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+  using PointTest = typename Pipeline::PointTest;
+  constexpr BlockSearch::Reading kReading = std::is_same_v<PointTest, KnownPoseTest> ? BlockSearch::Reading::kKnownPose
+                                            : std::is_same_v<PointTest, RankAwareTest>
+                                                ? BlockSearch::Reading::kRankAware
+                                                : BlockSearch::Reading::kAsPrinted;
+  if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop(problem)) return *refusal;
+  const MatchBlocks matches(problem);
+  BlockSearch search(problem, matches, options,
+                     {kReading, Pipeline::kTestsSample, options.selection == Selection::kPredictiveLikelihood}, rng);
+  const LoopResult loop = RunRansacLoop<Pipeline>(options, matches.num_matches(), search);
+  MotionEstimate estimate = EstimateFromLoop(loop);
+  if (!loop.winner) return estimate;
+  const Sample& sample = loop.winner->sample;
+  RefineWinner(BlockMatches(problem, matches, options.refinement_error), options, sample, search.FindSupport(sample),
+               &estimate);
+  return estimate;
+}
+
 template <typename Pipeline>
 MotionEstimate RunPipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-  if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, EightPoint::kSampleSize))
-    return *refusal;
-  const LoopResult loop = RunRansacLoop<Pipeline>(problem, options, rng);
-  MotionEstimate estimate;
-  estimate.counts = loop.counts;
-  if (!loop.winner) {
-    const bool all_degenerate = loop.counts.num_degenerate_samples == loop.counts.num_hypotheses;
-    estimate.status = all_degenerate ? MotionStatus::kDegenerateMatches : MotionStatus::kNoCandidate;
-    estimate.message =
-        all_degenerate
-            ? fmt::format("none of {} samples determines a motion", loop.counts.num_hypotheses)
-            : fmt::format(
-                  "no hypothesis of {} is a candidate: {} degenerate, {} disagree with their sample, "
-                  "{} have poor inliers",
-                  loop.counts.num_hypotheses, loop.counts.num_degenerate_samples,
-                  loop.counts.num_inconsistent_samples, loop.counts.num_poor_inlier_sets);
-    return estimate;
-  }
-  estimate.num_support = loop.winner->score.num_inliers;
-  estimate.mean_entropy = loop.winner->score.mean_entropy;
-  estimate.z_statistic = loop.winner->z_statistic;
-
-  // The winner again, now with its inliers and its covariance.
-  using PointTest = typename Pipeline::PointTest;
-  Hypothesis winner = InstantiateModel(problem, loop.winner->sample).value();
-  PropagateCovariance(problem, &winner);
-  const PointTest test = MakePointTest<PointTest>(problem, &winner).value();
-  const Thresholds thresholds = Thresholds::For(problem, options, PointTest::kDegreesOfFreedom);
-  const std::vector<int> support = FindInliers(problem, test, thresholds.point);
-  std::vector<Correspondence> support_matches;
-  for (const int index : support) support_matches.push_back(problem.matches[static_cast<size_t>(index)]);
-  ResolveCheirality(problem, support_matches, &winner);
-  RefineWinner(problem, options, winner, support, &estimate);
-  return estimate;
+  return options.implementation == Implementation::kFast ? RunFastPipeline<Pipeline>(problem, options, rng)
+                                                         : RunReferencePipeline<Pipeline>(problem, options, rng);
 }
 
 }  // namespace rcme

@@ -132,7 +132,7 @@ ValidityTrial RunValidityTrial(const SampleFamily& family, const StreamName& nam
     trial.fresh_point_d2 =
         RankAwareTest(*model, sample.problem.sigma_px).Distance(sample.fresh_match, &residual);
   }
-  const RefinedMotion refined = RefineBySampson(sample.problem, pose);
+  const RefinedMotion refined = RefineAllBySampson(sample.problem, pose);
   if (refined.converged) {
     trial.ml_pose_nees = NormalizedErrorOfPose(refined.cam2_from_cam1, refined.pose_cov, pose_true);
   }

@@ -8,6 +8,7 @@ namespace {
 
 // Each sample point on its own, as printed (eq::sample-p-test).
 struct PerPointSampleTest {
+  static constexpr bool kTestsSample = true;
   static bool Passes(const MotionProblem& problem, const Hypothesis& hypothesis, const AsPrintedTest& test,
                      const Thresholds& thresholds) {
     return EverySamplePointFits(problem, hypothesis, test, thresholds.point);
@@ -16,6 +17,7 @@ struct PerPointSampleTest {
 
 // The sample's three constraints on the motion jointly, rank-aware.
 struct JointSampleTest {
+  static constexpr bool kTestsSample = true;
   static bool Passes(const MotionProblem&, const Hypothesis& hypothesis, const RankAwareTest&,
                      const Thresholds& thresholds) {
     return JointSampleStatistic(hypothesis) <= thresholds.sample;
@@ -24,6 +26,7 @@ struct JointSampleTest {
 
 // pRCME: no sample test.
 struct NoSampleTest {
+  static constexpr bool kTestsSample = false;
   template <typename PointTest>
   static bool Passes(const MotionProblem&, const Hypothesis&, const PointTest&, const Thresholds&) {
     return true;
@@ -33,6 +36,7 @@ struct NoSampleTest {
 template <typename PointTestT, typename SampleTest>
 struct RcmePipeline {
   using PointTest = PointTestT;
+  static constexpr bool kTestsSample = SampleTest::kTestsSample;
   static bool SampleIsConsistent(const MotionProblem& problem, const Hypothesis& hypothesis,
                                  const PointTest& test, const Thresholds& thresholds) {
     return SampleTest::Passes(problem, hypothesis, test, thresholds);

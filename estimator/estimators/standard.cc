@@ -7,6 +7,7 @@ namespace {
 
 struct StandardPipeline {
   using PointTest = KnownPoseTest;
+  static constexpr bool kTestsSample = false;
   static bool SampleIsConsistent(const MotionProblem&, const Hypothesis&, const PointTest&,
                                  const Thresholds&) {
     return true;

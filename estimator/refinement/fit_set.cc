@@ -9,11 +9,6 @@
 namespace rcme {
 namespace {
 
-// Wide enough to leave the Gaussian tails in: a fit to the matches within the 95 % quantile would report 0.76
-// of its true variance, within 99.9 % it reports 0.99.
-constexpr double kFitSignificance = 0.001;
-constexpr double kMaxRelativeLeverage = 10.0;
-
 // The triangulated point lies behind a camera, and its parallax is too large to be noise around a point at
 // infinity.
 bool IsClearlyBehindACamera(const MotionProblem& problem, const RelativePose& pose,
@@ -55,7 +50,7 @@ std::vector<int> SelectFitSet(const MotionProblem& problem, const RefinedMotion&
   std::vector<int> selected = FindAgreeing(problem, motion, fitted, kFitSignificance);
   if (!model || fitted.empty()) return selected;
   const double max_motion_variance =
-      kMaxRelativeLeverage * 5.0 / static_cast<double>(fitted.size()) * problem.sigma_px * problem.sigma_px;
+      MaxLeverage(static_cast<int>(fitted.size())) * problem.sigma_px * problem.sigma_px;
   std::erase_if(selected, [&](int i) {
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
     return EvaluateResidual(*model, match).motion_variance > max_motion_variance;

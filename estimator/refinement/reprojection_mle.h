@@ -10,20 +10,9 @@
 
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
+#include "estimator/refinement/motion_search.h"
 
 namespace rcme {
-
-enum class Loss {
-  kSquared,
-  kCauchy,  // scale 2.385 sigma: 95 % efficient for Gaussian noise
-};
-
-struct RefinedMotion {
-  bool converged = false;  // false: no finite optimum; the other fields are then the start
-  RelativePose cam2_from_cam1;
-  Matrix5d pose_cov = Matrix5d::Zero();
-  int num_iterations = 0;
-};
 
 // Ceres, points as (u, v, inverse depth) in camera 1 and eliminated by Schur complement. `indices` names the
 // matches to use, at least five. Stops when a step lowers the cost by less than `function_tolerance` of it.

@@ -3,13 +3,22 @@
 // second order and the optimum is that of RefineByReprojection, at a fraction of the time.
 #pragma once
 
-#include "estimator/motion_problem.h"
-#include "estimator/refinement/reprojection_mle.h"
+#include <span>
+
+#include "estimator/kernels/match_blocks.h"
+#include "estimator/refinement/motion_search.h"
 
 namespace rcme {
 
-// Levenberg-Marquardt over the five coordinates of the motion on all matches (m >= 5) of the problem.
-// pose_cov = (sum_k g_p' g_p / var g_k)^-1 at the optimum, 5x5, [rotation, direction], rad^2.
-RefinedMotion RefineBySampson(const MotionProblem& problem, const RelativePose& start);
+// `indices` names the matches to use, at least five. pose_cov = (sum_k g_p' g_p / var g_k)^-1 at the optimum, 5x5,
+// [rotation, direction], rad^2.
+RefinedMotion RefineBySampson(const MotionProblem& problem, std::span<const int> indices,
+                              const RelativePose& start, Loss loss);
+// The same with the matches already packed.
+RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& start,
+                              Loss loss);
+
+// All matches, squared loss: maximum likelihood where none is wrong.
+RefinedMotion RefineAllBySampson(const MotionProblem& problem, const RelativePose& start);
 
 }  // namespace rcme

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "estimator/hypothesis.h"
-#include "estimator/ransac_loop.h"
+#include "estimator/reference_search.h"
 #include "experiments/claims/case.h"
 
 namespace rcme {

@@ -7,7 +7,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "estimator/estimator_registry.h"
-#include "estimator/ransac_loop.h"
+#include "estimator/reference_search.h"
 #include "estimator/refinement/reprojection_mle.h"
 #include "estimator/sample_consistency.h"
 #include "experiments/data_source.h"

@@ -8,6 +8,8 @@
 #include <new>
 #include <set>
 
+#include "estimator/kernels/block_search.h"
+#include "estimator/reference_search.h"
 #include "simulator/observe.h"
 #include "simulator/scenes/uniform_volume.h"
 #include "stats/distributions.h"
@@ -28,16 +30,19 @@ std::atomic<long> num_allocations{0};
 namespace rcme {
 namespace {
 
-template <typename PointTestT>
 struct BarePipeline {
+  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
+  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
+    return a.num_inliers > b.num_inliers;
+  }
+};
+
+template <typename PointTestT>
+struct BareReference : BarePipeline {
   using PointTest = PointTestT;
   static bool SampleIsConsistent(const MotionProblem&, const Hypothesis&, const PointTest&,
                                  const Thresholds&) {
     return true;
-  }
-  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
-  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
-    return a.num_inliers > b.num_inliers;
   }
 };
 
@@ -49,30 +54,52 @@ MotionProblem MakeProblem(int num_matches) {
   return {Observe(scene, {0.5}, {0.2}, noise_rng, outlier_rng).matches, scene.camera1, scene.camera2, 0.5};
 }
 
-template <typename PointTest>
-long CountAllocations(int num_matches, int num_iterations) {
-  const MotionProblem problem = MakeProblem(num_matches);
-  RansacOptions options;
-  options.num_iterations = num_iterations;
-  RandomStream rng({1, 0, 0, 4});
-  const long before = num_allocations;
-  RunRansacLoop<BarePipeline<PointTest>>(problem, options, rng);
-  return num_allocations - before;
+// Allocations of the loop alone; `run` makes a search and runs the loop with it.
+template <typename MakeAndRun>
+void ExpectNoAllocationPerHypothesisOrPoint(const MakeAndRun& run) {
+  const auto count = [&](int num_matches, int num_iterations) {
+    const MotionProblem problem = MakeProblem(num_matches);
+    RansacOptions options;
+    options.num_iterations = num_iterations;
+    RandomStream rng({1, 0, 0, 4});
+    return run(problem, options, rng);
+  };
+  // The candidate list is one allocation per call; beyond it nothing depends on the hypotheses or the points.
+  const long few = count(100, 10);
+  EXPECT_GE(few, 1);
+  EXPECT_EQ(count(100, 400), few);
+  EXPECT_EQ(count(1000, 10), few);
 }
 
-// The candidate list is one allocation per call; beyond it nothing depends on the hypotheses or the points.
 template <typename PointTest>
-void ExpectNoAllocationPerHypothesisOrPoint() {
-  const long few = CountAllocations<PointTest>(100, 10);
-  EXPECT_GE(few, 1);
-  EXPECT_EQ(CountAllocations<PointTest>(100, 400), few);
-  EXPECT_EQ(CountAllocations<PointTest>(1000, 10), few);
+void ExpectReferenceDoesNotAllocate() {
+  ExpectNoAllocationPerHypothesisOrPoint(
+      [](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+        ReferenceSearch<BareReference<PointTest>> search(problem, options, rng);
+        const long before = num_allocations;
+        RunRansacLoop<BarePipeline>(options, static_cast<int>(problem.matches.size()), search);
+        return num_allocations - before;
+      });
+}
+
+void ExpectBlocksDoNotAllocate(BlockSearch::Reading reading) {
+  ExpectNoAllocationPerHypothesisOrPoint(
+      [&](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+        const MatchBlocks matches(problem);
+        BlockSearch search(problem, matches, options, {reading, true, true}, rng);
+        const long before = num_allocations;
+        RunRansacLoop<BarePipeline>(options, matches.num_matches(), search);
+        return num_allocations - before;
+      });
 }
 
 TEST(RansacLoop, DoesNotAllocatePerHypothesisOrPoint) {
-  ExpectNoAllocationPerHypothesisOrPoint<KnownPoseTest>();
-  ExpectNoAllocationPerHypothesisOrPoint<AsPrintedTest>();
-  ExpectNoAllocationPerHypothesisOrPoint<RankAwareTest>();
+  ExpectReferenceDoesNotAllocate<KnownPoseTest>();
+  ExpectReferenceDoesNotAllocate<AsPrintedTest>();
+  ExpectReferenceDoesNotAllocate<RankAwareTest>();
+  ExpectBlocksDoNotAllocate(BlockSearch::Reading::kKnownPose);
+  ExpectBlocksDoNotAllocate(BlockSearch::Reading::kAsPrinted);
+  ExpectBlocksDoNotAllocate(BlockSearch::Reading::kRankAware);
 }
 
 TEST(DrawSample, IndicesAreDistinctAndInRange) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "estimator/refinement/reprojection_mle.h"
 #include "stats/consistency.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
@@ -24,7 +25,7 @@ TEST(RefineBySampson, IsWhatReprojectionErrorGives) {
     std::vector<int> all(60);
     std::iota(all.begin(), all.end(), 0);
     const RefinedMotion points = RefineByReprojection(random.problem, all, random.pose_true, Loss::kSquared);
-    const RefinedMotion sampson = RefineBySampson(random.problem, random.pose_true);
+    const RefinedMotion sampson = RefineAllBySampson(random.problem, random.pose_true);
     ASSERT_TRUE(points.converged && sampson.converged);
     const Vector5d difference = LocalCoordinates(points.cam2_from_cam1, sampson.cam2_from_cam1);
     EXPECT_LT(NormalizedErrorSquared(difference, points.pose_cov), 0.01 * 0.01 * 5.0);
@@ -44,7 +45,7 @@ TEST(RefineBySampson, CoversWhereNoiseIsSmall) {
     for (int i = 0; i < 5'000; ++i) {
       RandomProblem random = MakeRandomProblem(rng, {.num_matches = m});
       AddNoise(1e-4, rng, &random.problem);
-      const RefinedMotion refined = RefineBySampson(random.problem, random.pose_true);
+      const RefinedMotion refined = RefineAllBySampson(random.problem, random.pose_true);
       const double nees = NormalizedErrorSquared(LocalCoordinates(refined.cam2_from_cam1, random.pose_true),
                                                  refined.pose_cov);
       count.Add(refined.converged && nees <= limit);
@@ -63,7 +64,7 @@ TEST(RefineBySampson, ConvergesFromAWrongStart) {
     const RandomProblem random = MakeRandomProblem(rng, {.num_matches = 40});
     Vector5d off;
     for (double& x : off) x = 0.02 * rng.Normal();
-    const RefinedMotion refined = RefineBySampson(random.problem, Retract(random.pose_true, off));
+    const RefinedMotion refined = RefineAllBySampson(random.problem, Retract(random.pose_true, off));
     ASSERT_TRUE(refined.converged);
     EXPECT_LT(LocalCoordinates(refined.cam2_from_cam1, random.pose_true).norm(), 1e-6);
   }
@@ -73,7 +74,7 @@ TEST(RefineBySampson, ReturnsTheStartWithoutConvergence) {
   RandomStream rng({.seed = 1, .purpose = 923});
   RandomProblem random = MakeRandomProblem(rng);
   random.problem.matches[2].x1_px.x() = std::numeric_limits<double>::quiet_NaN();
-  const RefinedMotion refined = RefineBySampson(random.problem, random.pose_true);
+  const RefinedMotion refined = RefineAllBySampson(random.problem, random.pose_true);
   EXPECT_FALSE(refined.converged);
   EXPECT_EQ(refined.cam2_from_cam1.R, random.pose_true.R);
 }

@@ -110,7 +110,7 @@ Statistic DistanceFromTen(size_t match) {
     MotionProblem ten = made.problem();
     ten.matches.resize(10);
     const RefinedMotion refined =
-        RefineBySampson(ten, made.pose_true());  // the optimum, not the search, is at stake
+        RefineAllBySampson(ten, made.pose_true());  // the optimum, not the search, is at stake
     if (!refined.converged) return {kInfinity};
     const auto model =
         UncertainFundamental::From(refined.cam2_from_cam1, refined.pose_cov, ten.camera1, ten.camera2);

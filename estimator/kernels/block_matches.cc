@@ -1,0 +1,55 @@
+#include "estimator/kernels/block_matches.h"
+
+#include <limits>
+
+#include "estimator/kernels/agreement.h"
+#include "estimator/refinement/fit_set.h"
+#include "estimator/refinement/reprojection_mle.h"
+#include "estimator/refinement/sampson_mle.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+MatchMask FindWithin(const MatchBlocks& matches, const RefinedMotion& motion, const MatchMask& fitted,
+                     const AgreementBounds& bounds) {
+  MatchMask agreeing = matches.Empty();
+  const std::optional<WhitenedModel> model =
+      WhitenedModel::From(matches, motion.cam2_from_cam1, motion.pose_cov);
+  if (!model) return agreeing;
+  FindAgreeing(matches, motion.cam2_from_cam1, model->F, VariancePolynomial(model->dF), fitted, bounds, &agreeing);
+  return agreeing;
+}
+
+}  // namespace
+
+RelativePose BlockMatches::SelectPose(const EssentialProjection& projection, const Set& set) const {
+  return SelectPoseByCheirality(matches_, set, projection);
+}
+
+RefinedMotion BlockMatches::Refine(const Set& set, const RelativePose& start, Loss loss) const {
+  return error_ == RefinementError::kReprojection
+             ? RefineByReprojection(problem_, rcme::IndicesOf(set), start, loss)
+             : RefineBySampson(matches_, set, start, loss);
+}
+
+MatchMask BlockMatches::FindAgreeing(const RefinedMotion& motion, const Set& fitted,
+                                     double significance_level) const {
+  return FindWithin(matches_, motion, fitted,
+                    {ChiSquareQuantile(1, 1.0 - significance_level), std::numeric_limits<double>::infinity()});
+}
+
+MatchMask BlockMatches::SelectFitSet(const RefinedMotion& motion, const Set& fitted) const {
+  return FindWithin(matches_, motion, fitted,
+                    {ChiSquareQuantile(1, 1.0 - kFitSignificance), MaxLeverage(CountIn(fitted))});
+}
+
+int BlockMatches::CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {
+  InlierScan scan(matches_);
+  double F[9];
+  WriteRowMajor(matches_.FundamentalFromEssential(EssentialFromPose(pose)), F);
+  ScanKnownPose(matches_, F, threshold, &scan);
+  return CountInBoth(scan.inliers, set);
+}
+
+}  // namespace rcme

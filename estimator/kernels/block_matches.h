@@ -1,0 +1,34 @@
+#pragma once
+
+#include "estimator/kernels/match_blocks.h"
+#include "estimator/kernels/score.h"
+#include "estimator/ransac_options.h"
+#include "estimator/refinement/motion_search.h"
+
+namespace rcme {
+
+// Sets of matches as bits, looked at many at a time; see refine_winner.h. The same decisions as ReferenceMatches, to
+// rounding.
+class BlockMatches {
+ public:
+  using Set = MatchMask;
+  BlockMatches(const MotionProblem& problem, const MatchBlocks& matches, RefinementError error)
+      : problem_(problem), matches_(matches), error_(error) {}
+
+  const MotionProblem& problem() const { return problem_; }
+  RelativePose SelectPose(const EssentialProjection& projection, const Set& set) const;
+  RefinedMotion Refine(const Set& set, const RelativePose& start, Loss loss) const;
+  Set FindAgreeing(const RefinedMotion& motion, const Set& fitted, double significance_level) const;
+  Set SelectFitSet(const RefinedMotion& motion, const Set& fitted) const;
+  int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
+  Set SetOf(const std::vector<int>& indices) const { return MaskOf(indices, matches_); }
+  std::vector<int> IndicesOf(const Set& set) const { return rcme::IndicesOf(set); }
+  int Count(const Set& set) const { return CountIn(set); }
+
+ private:
+  const MotionProblem& problem_;
+  const MatchBlocks& matches_;
+  RefinementError error_;
+};
+
+}  // namespace rcme

@@ -1,0 +1,94 @@
+// The essential matrix nearest to a 3x3 matrix, without iteration.
+//
+// u3, the left singular vector of the smallest singular value, is the eigenvector of the smallest eigenvalue of
+// M M' (closed form of a symmetric 3x3 matrix: Smith 1961). For any orthonormal u1, u2 normal to it, the rows
+// r_i = u_i' M span the plane normal to v3. In bases of the two planes, M is the 2x2 matrix
+//
+//   B = [[a, 0], [c, d]],   a = |r1|, v1 = r1 / a, c = r2'v1, d = r2'v2 > 0,
+//
+// whose singular values are the larger two of M, and whose nearest rotation is the one by theta with
+// tan theta = c / (a + d). So E = ut1 v1' + ut2 v2' with ut = the u turned by theta; no SVD is needed.
+#if defined(RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_
+#undef RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_
+#else
+#define RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "estimator/kernels/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rcme::HWY_NAMESPACE {
+
+struct EssentialBasis {
+  Vec3 u[3], v[3];  // E = u1 v1' + u2 v2'; u3 and v3 its null vectors
+  Vec misfit[3];    // M in [u1 v1' - u2 v2', u1 v2' + u2 v1'] / sqrt(2) and u3 v3': what E leaves of it
+  Mask determines_direction;  // the second singular value of M is above 1e-9 of the first
+};
+
+// Unit eigenvector of the smallest eigenvalue of S (symmetric, positive semi-definite).
+HWY_INLINE Vec3 SmallestEigenvector(const Mat3& S) {
+  const Vec mean = (S.row[0].x + S.row[1].y + S.row[2].z) * Set(1.0 / 3.0);
+  const Vec a = S.row[0].x - mean, b = S.row[1].y - mean, c = S.row[2].z - mean;
+  const Vec off_diagonal = Dot({S.row[0].y, S.row[0].z, S.row[1].z}, {S.row[0].y, S.row[0].z, S.row[1].z});
+  const Vec p = hn::Sqrt((Dot({a, b, c}, {a, b, c}) + off_diagonal + off_diagonal) * Set(1.0 / 6.0));
+  // det(S - mean I) / (2 p^3) is the cosine of three times the angle of the eigenvalues.
+  const Vec3 shifted0 = {a, S.row[0].y, S.row[0].z}, shifted1 = {S.row[1].x, b, S.row[1].z},
+             shifted2 = {S.row[2].x, S.row[2].y, c};
+  const Vec cosine = Dot(shifted0, Cross(shifted1, shifted2)) / (Set(2.0) * p * p * p);
+  const Vec angle = hn::Acos(Tag(), hn::Clamp(cosine, Set(-1.0), Set(1.0))) * Set(1.0 / 3.0);
+  const Vec smallest = hn::MulAdd(p + p, hn::Cos(Tag(), angle + Set(2.0943951023931954923)), mean);  // 2 pi / 3
+
+  const Vec3 row0 = {S.row[0].x - smallest, S.row[0].y, S.row[0].z};
+  const Vec3 row1 = {S.row[1].x, S.row[1].y - smallest, S.row[1].z};
+  const Vec3 row2 = {S.row[2].x, S.row[2].y, S.row[2].z - smallest};
+  Vec3 best = Cross(row0, row1);
+  Vec best_norm = Dot(best, best);
+  for (const Vec3& other : {Cross(row0, row2), Cross(row1, row2)}) {
+    const Vec norm = Dot(other, other);
+    best = Select(norm > best_norm, other, best);
+    best_norm = hn::Max(norm, best_norm);
+  }
+  return Normalized(best);
+}
+
+// Two unit vectors that complete the unit vector n to a basis (Duff et al. 2017).
+HWY_INLINE void CompleteBasis(const Vec3& n, Vec3* first, Vec3* second) {
+  const Vec one = Set(1.0), sign = hn::CopySign(one, n.z);
+  const Vec a = Set(-1.0) / (sign + n.z), b = n.x * n.y * a;
+  *first = {hn::MulAdd(sign * n.x, n.x * a, one), sign * b, hn::Neg(sign * n.x)};
+  *second = {b, hn::MulAdd(n.y, n.y * a, sign), hn::Neg(n.y)};
+}
+
+HWY_INLINE EssentialBasis ProjectToEssential(const Mat3& M) {
+  EssentialBasis basis;
+  Vec3 u1, u2;
+  basis.u[2] = SmallestEigenvector({M * M.row[0], M * M.row[1], M * M.row[2]});
+  CompleteBasis(basis.u[2], &u1, &u2);
+  const Vec3 r1 = TransposeTimes(M, u1), r2 = TransposeTimes(M, u2);
+  basis.v[2] = Normalized(Cross(r1, r2));
+  const Vec a = hn::Sqrt(Dot(r1, r1));
+  basis.v[0] = Times(r1, Set(1.0) / a);
+  basis.v[1] = Cross(basis.v[2], basis.v[0]);
+  const Vec c = Dot(r2, basis.v[0]), d = Dot(r2, basis.v[1]);
+
+  const Vec sum = a + d, h = hn::Sqrt(hn::MulAdd(sum, sum, c * c)), inverse_h = Set(1.0) / h;  // s1 + s2
+  const Vec cos = sum * inverse_h, sin = c * inverse_h;
+  basis.u[0] = Combine(u1, cos, u2, sin);
+  basis.u[1] = Combine(u2, cos, u1, hn::Neg(sin));
+  const Vec difference = hn::Sqrt(hn::MulAdd(a - d, a - d, c * c));  // s1 - s2
+  basis.determines_direction = (h - difference) > Set(1e-9) * (h + difference);
+
+  const Vec root_half = Set(0.70710678118654752440);
+  basis.misfit[0] = (a * cos + c * sin - d * cos) * root_half;
+  basis.misfit[1] = (d * sin - a * sin + c * cos) * root_half;
+  basis.misfit[2] = Dot(basis.u[2], M * basis.v[2]);
+  return basis;
+}
+
+}  // namespace rcme::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,295 @@
+#include "estimator/kernels/hypothesis_block.h"
+
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimator/kernels/hypothesis_block.cc"
+#include <hwy/foreach_target.h>
+// The above must come before these.
+#include "estimator/kernels/essential_projection-inl.h"
+#include "estimator/kernels/lanes-inl.h"
+#include "estimator/kernels/null_vector-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rcme::HWY_NAMESPACE {
+
+// Sigma_p and the misfit's covariance from Sigma_f, without forming Sigma_f.
+//
+// The products u_i v_j' of the projection are an orthonormal basis of the 3x3 matrices. Five of them (and
+// combinations) span the motions, three what is normal to the essential matrices, one is E itself:
+//
+//   T = (u1 v2' - u2 v1') / sqrt(2), u3 v1', u3 v2', u1 v3', u2 v3'
+//   N = (u1 v1' - u2 v2') / sqrt(2), (u1 v2' + u2 v1') / sqrt(2), u3 v3'
+//
+// With delta f = -G n and var n = D, the covariance of the coordinates of delta f is (G'b_i)' D (G'b_j).
+struct Basis {
+  static constexpr int kMotion = 5, kNormal = 3, kSize = 8;
+
+  // b_c as a 9-vector, row by row.
+  static HWY_INLINE void Vector(const EssentialBasis& e, int c, Vec* b) {
+    const Vec root_half = Set(0.70710678118654752440);
+    switch (c) {
+      case 0:
+        return Products(Times(e.u[0], root_half), e.v[1], Times(e.u[1], hn::Neg(root_half)), e.v[0], b);
+      case 1:
+        return Product(e.u[2], e.v[0], b);
+      case 2:
+        return Product(e.u[2], e.v[1], b);
+      case 3:
+        return Product(e.u[0], e.v[2], b);
+      case 4:
+        return Product(e.u[1], e.v[2], b);
+      case 5:
+        return Products(Times(e.u[0], root_half), e.v[0], Times(e.u[1], hn::Neg(root_half)), e.v[1], b);
+      case 6:
+        return Products(Times(e.u[0], root_half), e.v[1], Times(e.u[1], root_half), e.v[0], b);
+      default:
+        return Product(e.u[2], e.v[2], b);
+    }
+  }
+
+ private:
+  static HWY_INLINE void Product(const Vec3& u, const Vec3& v, Vec* b) {
+    const Vec us[] = {u.x, u.y, u.z};
+    for (int i = 0; i < 3; ++i) {
+      b[3 * i] = us[i] * v.x;
+      b[3 * i + 1] = us[i] * v.y;
+      b[3 * i + 2] = us[i] * v.z;
+    }
+  }
+  static HWY_INLINE void Products(const Vec3& u, const Vec3& v, const Vec3& s, const Vec3& r, Vec* b) {
+    Product(u, v, b);
+    const Vec ss[] = {s.x, s.y, s.z};
+    for (int i = 0; i < 3; ++i) {
+      b[3 * i] = hn::MulAdd(ss[i], r.x, b[3 * i]);
+      b[3 * i + 1] = hn::MulAdd(ss[i], r.y, b[3 * i + 1]);
+      b[3 * i + 2] = hn::MulAdd(ss[i], r.z, b[3 * i + 2]);
+    }
+  }
+};
+
+// Lower Cholesky factor of an m x m matrix (lower triangle); a pivot that rounding made negative counts as 0.
+template <int m>
+HWY_INLINE void Cholesky(const Vec (&S)[m][m], Vec (&L)[m][m]) {
+  for (int j = 0; j < m; ++j) {
+    Vec pivot = S[j][j];
+    for (int k = 0; k < j; ++k) pivot = hn::NegMulAdd(L[j][k], L[j][k], pivot);
+    pivot = hn::Max(pivot, Set(0.0));
+    L[j][j] = hn::Sqrt(pivot);
+    const Vec inverse = hn::IfThenElseZero(pivot > Set(0.0), Set(1.0) / L[j][j]);
+    for (int i = j + 1; i < m; ++i) {
+      Vec rest = S[i][j];
+      for (int k = 0; k < j; ++k) rest = hn::NegMulAdd(L[i][k], L[j][k], rest);
+      L[i][j] = rest * inverse;
+    }
+  }
+}
+
+// m' C^-1 m of a 3x3 C (lower triangle); infinite unless C is positive definite.
+HWY_INLINE Vec SquaredMahalanobis(const Vec* m, const Vec (&C)[3][3]) {
+  const Vec inverse0 = Set(1.0) / C[0][0];
+  const Vec l10 = C[1][0] * inverse0, l20 = C[2][0] * inverse0;
+  const Vec d1 = hn::NegMulAdd(l10, C[1][0], C[1][1]), inverse1 = Set(1.0) / d1;
+  const Vec s21 = hn::NegMulAdd(l10, C[2][0], C[2][1]), l21 = s21 * inverse1;
+  const Vec d2 = hn::NegMulAdd(l21, s21, hn::NegMulAdd(l20, C[2][0], C[2][2]));
+  const Vec m1 = hn::NegMulAdd(l10, m[0], m[1]);
+  const Vec m2 = hn::NegMulAdd(l21, m1, hn::NegMulAdd(l20, m[0], m[2]));
+  const Vec squared = Square(m[0]) * inverse0 + Square(m1) * inverse1 + Square(m2) / d2;
+  const Mask is_definite = hn::Min(C[0][0], hn::Min(d1, d2)) > Set(0.0);
+  return hn::IfThenElse(is_definite, squared, Set(std::numeric_limits<double>::infinity()));
+}
+
+// The eight samples of some lanes of a block.
+struct SampleLanes {
+  Vec x1[8], y1[8], x2[8], y2[8];
+};
+
+// Matrices in rays to whitened coordinates: entry (i, j) times second[i] first[j].
+struct Whitening {
+  Vec first[3], second[3];
+  explicit Whitening(const RayScale& s)
+      : first{Set(s.x1), Set(s.y1), Set(1.0)}, second{Set(s.x2), Set(s.y2), Set(1.0)} {}
+  Vec operator()(int i, int j, Vec entry) const { return entry * (second[i] * first[j]); }
+};
+
+HWY_INLINE void FillConstraints(const SampleLanes& sample, const Whitening& whitening, Vec (&columns)[8][9]) {
+  for (int k = 0; k < 8; ++k) {
+    const Vec ray1[] = {sample.x1[k] * whitening.first[0], sample.y1[k] * whitening.first[1]};
+    const Vec ray2[] = {sample.x2[k] * whitening.second[0], sample.y2[k] * whitening.second[1]};
+    Vec* column = columns[k];
+    for (int i = 0; i < 2; ++i) {
+      column[3 * i] = ray2[i] * ray1[0];
+      column[3 * i + 1] = ray2[i] * ray1[1];
+      column[3 * i + 2] = ray2[i];
+      column[6 + i] = ray1[i];
+    }
+    column[8] = Set(1.0);
+  }
+}
+
+// D_k = |J|^2 of the sample's constraints under the linear model f.
+HWY_INLINE void ConstraintVariances(const SampleLanes& sample, const Whitening& whitening, const Vec* f, Vec* D) {
+  Vec F[9];
+  for (int i = 0; i < 9; ++i) F[i] = whitening(i / 3, i % 3, f[i]);
+  for (int k = 0; k < 8; ++k) {
+    const Vec in_2_x = hn::MulAdd(F[0], sample.x1[k], hn::MulAdd(F[1], sample.y1[k], F[2]));
+    const Vec in_2_y = hn::MulAdd(F[3], sample.x1[k], hn::MulAdd(F[4], sample.y1[k], F[5]));
+    const Vec in_1_x = hn::MulAdd(F[0], sample.x2[k], hn::MulAdd(F[3], sample.y2[k], F[6]));
+    const Vec in_1_y = hn::MulAdd(F[1], sample.x2[k], hn::MulAdd(F[4], sample.y2[k], F[7]));
+    D[k] = hn::MulAdd(in_2_x, in_2_x,
+                      hn::MulAdd(in_2_y, in_2_y, hn::MulAdd(in_1_x, in_1_x, in_1_y * in_1_y)));
+  }
+}
+
+// Covariances of the coordinates in T and N, lower triangles.
+struct CoordinateCovariances {
+  Vec motion[5][5];
+  Vec normal[3][3];
+};
+
+HWY_INLINE CoordinateCovariances PropagateCovariance(const ConstraintFactors& factors, const EssentialBasis& basis,
+                                                     const Vec* D) {
+  Vec gain[Basis::kSize][8], scaled[8];  // G'b_c, and D times it
+  CoordinateCovariances cov;
+  for (int c = 0; c < Basis::kSize; ++c) {
+    Vec b[9];
+    Basis::Vector(basis, c, b);
+    ApplyGainTransposed(factors, b, gain[c]);
+  }
+  const auto covariance = [&](int c) {
+    Vec sum = scaled[0] * gain[c][0];
+    for (int k = 1; k < 8; ++k) sum = hn::MulAdd(scaled[k], gain[c][k], sum);
+    return sum;
+  };
+  for (int row = 0; row < Basis::kSize; ++row) {
+    for (int k = 0; k < 8; ++k) scaled[k] = D[k] * gain[row][k];
+    if (row < 5) {
+      for (int c = 0; c <= row; ++c) cov.motion[row][c] = covariance(c);
+    } else {
+      for (int c = 5; c <= row; ++c) cov.normal[row - 5][c - 5] = covariance(c);
+    }
+  }
+  return cov;
+}
+
+// dE along a principal axis with coordinates l in T: with |E|^2 = 2, sqrt(2) sum_c l_c T_c.
+HWY_INLINE void Derivative(const EssentialBasis& e, const Vec* l, Mat3* dE) {
+  const Vec root_two = Set(1.41421356237309504880);
+  const Vec turn = l[0], l1 = root_two * l[1], l2 = root_two * l[2], l3 = root_two * l[3], l4 = root_two * l[4];
+  // Rows in the basis v: u1 (turn v2 + l3 v3), u2 (-turn v1 + l4 v3), u3 (l1 v1 + l2 v2).
+  const Vec3 along1 = Combine(e.v[1], turn, e.v[2], l3);
+  const Vec3 along2 = Combine(e.v[0], hn::Neg(turn), e.v[2], l4);
+  const Vec3 along3 = Combine(e.v[0], l1, e.v[1], l2);
+  const Mat3 u = {{e.u[0], e.u[1], e.u[2]}};
+  const auto row = [&](Vec a, Vec b, Vec c) {
+    const Vec3 two = Combine(along1, a, along2, b);
+    return Vec3{hn::MulAdd(along3.x, c, two.x), hn::MulAdd(along3.y, c, two.y), hn::MulAdd(along3.z, c, two.z)};
+  };
+  dE->row[0] = row(u.row[0].x, u.row[1].x, u.row[2].x);
+  dE->row[1] = row(u.row[0].y, u.row[1].y, u.row[2].y);
+  dE->row[2] = row(u.row[0].z, u.row[1].z, u.row[2].z);
+}
+
+HWY_INLINE void StoreWhitened(const Mat3& E, const Whitening& whitening, int lane, HypothesisBlock::Row* F) {
+  for (int i = 0; i < 3; ++i) {
+    Store(whitening(i, 0, E.row[i].x), &F[3 * i][lane]);
+    Store(whitening(i, 1, E.row[i].y), &F[3 * i + 1][lane]);
+    Store(whitening(i, 2, E.row[i].z), &F[3 * i + 2][lane]);
+  }
+}
+
+// dF and sample_statistic of some lanes; returns where they are finite.
+HWY_INLINE Mask FillSpread(const ConstraintFactors& factors, const EssentialBasis& basis, const Vec* D,
+                           const Whitening& whitening, int lane, HypothesisBlock* block) {
+  const CoordinateCovariances cov = PropagateCovariance(factors, basis, D);
+  Store(SquaredMahalanobis(basis.misfit, cov.normal), block->sample_statistic + lane);
+  Vec L[5][5];
+  Cholesky(cov.motion, L);
+  Vec trace = Set(0.0);
+  for (int k = 0; k < 5; ++k) {
+    Vec l[5];
+    for (int c = 0; c < 5; ++c) l[c] = c < k ? Set(0.0) : L[c][k];
+    Mat3 dE;
+    Derivative(basis, l, &dE);
+    StoreWhitened(dE, whitening, lane, block->dF[k]);
+    trace = trace + cov.motion[k][k];
+  }
+  return hn::IsFinite(trace);
+}
+
+// Lanes [lane, lane + kLanes) of the block.
+template <Spread spread>
+HWY_INLINE Mask FillLanes(const Whitening& whitening, int lane, HypothesisBlock* block) {
+  SampleLanes sample;
+  for (int k = 0; k < 8; ++k) {
+    sample.x1[k] = Load(block->x1[k] + lane);
+    sample.y1[k] = Load(block->y1[k] + lane);
+    sample.x2[k] = Load(block->x2[k] + lane);
+    sample.y2[k] = Load(block->y2[k] + lane);
+  }
+  ConstraintFactors factors;
+  FillConstraints(sample, whitening, factors.columns);
+  Factor(factors);
+  Vec f[9];
+  NullVector(factors, f);
+  const EssentialBasis basis =
+      ProjectToEssential({{{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}}});
+  const auto row = [&](Vec a, Vec b) { return Combine(basis.v[0], a, basis.v[1], b); };
+  StoreWhitened({{row(basis.u[0].x, basis.u[1].x), row(basis.u[0].y, basis.u[1].y),
+                  row(basis.u[0].z, basis.u[1].z)}},
+                whitening, lane, block->F);
+  const Mask is_model = hn::And(factors.smallest_pivot > Set(1e-9) * factors.largest_pivot,
+                                basis.determines_direction);
+  if constexpr (spread == Spread::kNone) return is_model;
+  Vec D[8];
+  ConstraintVariances(sample, whitening, f, D);
+  return hn::And(is_model, FillSpread(factors, basis, D, whitening, lane, block));
+}
+
+template <Spread spread>
+void FillBlock(const RayScale& ray_scale, HypothesisBlock* block) {
+  const Whitening whitening(ray_scale);
+  unsigned is_model = 0;
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    is_model |= BitsOf(FillLanes<spread>(whitening, lane, block)) << lane;
+  }
+  block->is_model = static_cast<std::uint8_t>(is_model);
+}
+
+void FillModels(const RayScale& ray_scale, HypothesisBlock* block) {
+  FillBlock<Spread::kNone>(ray_scale, block);
+}
+void FillUncertainModels(const RayScale& ray_scale, HypothesisBlock* block) {
+  FillBlock<Spread::kCovariance>(ray_scale, block);
+}
+
+}  // namespace rcme::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rcme {
+
+HWY_EXPORT(FillModels);
+HWY_EXPORT(FillUncertainModels);
+
+void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples, Spread spread,
+                       HypothesisBlock* block) {
+  for (size_t hypothesis = 0; hypothesis < samples.size(); ++hypothesis) {
+    for (size_t k = 0; k < samples[hypothesis].size(); ++k) {
+      const int index = samples[hypothesis][k], lane = index % kBlockSize;
+      const MatchBlock& from = matches[index / kBlockSize];
+      block->x1[k][hypothesis] = from.x1[lane];
+      block->y1[k][hypothesis] = from.y1[lane];
+      block->x2[k][hypothesis] = from.x2[lane];
+      block->y2[k][hypothesis] = from.y2[lane];
+    }
+  }
+  if (spread == Spread::kNone) {
+    HWY_DYNAMIC_DISPATCH(FillModels)(matches.ray_scale(), block);
+  } else {
+    HWY_DYNAMIC_DISPATCH(FillUncertainModels)(matches.ray_scale(), block);
+  }
+}
+
+}  // namespace rcme
+#endif

@@ -1,0 +1,73 @@
+// Eight numbers side by side, as many per vector as the instruction set holds, and 3-vectors of them.
+// Included once per instruction set. No Eigen in here: its templates would be compiled for several sets.
+#if defined(RCME_ESTIMATOR_KERNELS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RCME_ESTIMATOR_KERNELS_LANES_INL_H_
+#undef RCME_ESTIMATOR_KERNELS_LANES_INL_H_
+#else
+#define RCME_ESTIMATOR_KERNELS_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace rcme::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Tag = hn::CappedTag<double, 8>;
+using Vec = hn::Vec<Tag>;
+using Mask = hn::Mask<Tag>;
+
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(Tag()));
+
+HWY_INLINE Vec Set(double value) { return hn::Set(Tag(), value); }
+HWY_INLINE Vec Load(const double* from) { return hn::Load(Tag(), from); }
+HWY_INLINE void Store(Vec v, double* to) { hn::Store(v, Tag(), to); }
+HWY_INLINE Vec Square(Vec a) { return a * a; }
+// Bit l is lane l of the mask.
+HWY_INLINE unsigned BitsOf(Mask mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Tag(), mask, bits);
+  return bits[0];
+}
+
+// The inverse; bits beyond the lanes do not matter.
+HWY_INLINE Mask MaskFromBits(unsigned bits) {
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits)};
+  return hn::LoadMaskBits(Tag(), bytes);
+}
+
+struct Vec3 {
+  Vec x, y, z;
+};
+HWY_INLINE Vec Dot(const Vec3& a, const Vec3& b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, a.z * b.z)); }
+HWY_INLINE Vec3 Cross(const Vec3& a, const Vec3& b) {
+  return {hn::MulSub(a.y, b.z, a.z * b.y), hn::MulSub(a.z, b.x, a.x * b.z), hn::MulSub(a.x, b.y, a.y * b.x)};
+}
+HWY_INLINE Vec3 Times(const Vec3& a, Vec s) { return {a.x * s, a.y * s, a.z * s}; }
+// a s + b r
+HWY_INLINE Vec3 Combine(const Vec3& a, Vec s, const Vec3& b, Vec r) {
+  return {hn::MulAdd(a.x, s, b.x * r), hn::MulAdd(a.y, s, b.y * r), hn::MulAdd(a.z, s, b.z * r)};
+}
+HWY_INLINE Vec3 Normalized(const Vec3& a) { return Times(a, Set(1.0) / hn::Sqrt(Dot(a, a))); }
+HWY_INLINE Vec3 Select(Mask first, const Vec3& a, const Vec3& b) {
+  return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y), hn::IfThenElse(first, a.z, b.z)};
+}
+
+// A 3x3 matrix, row by row.
+struct Mat3 {
+  Vec3 row[3];
+};
+HWY_INLINE Vec3 operator*(const Mat3& m, const Vec3& v) { return {Dot(m.row[0], v), Dot(m.row[1], v), Dot(m.row[2], v)}; }
+// m' v
+HWY_INLINE Vec3 TransposeTimes(const Mat3& m, const Vec3& v) {
+  const Vec3 upper = Combine(m.row[0], v.x, m.row[1], v.y);
+  return {hn::MulAdd(m.row[2].x, v.z, upper.x), hn::MulAdd(m.row[2].y, v.z, upper.y),
+          hn::MulAdd(m.row[2].z, v.z, upper.z)};
+}
+
+}  // namespace rcme::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,84 @@
+// Householder factorization of M' (9x8, one column per constraint) for several samples side by side:
+// M' = Q R, Q = H_0 H_1 ... H_7, H_k = I + tau_k v_k v_k' with v_k zero above row k. The last column of Q is f,
+// the null vector of M; the first eight are A, and M A = R1' (R1 the upper 8x8 of R).
+//
+// With x the rest of column k, alpha = -sign(x_0) |x| and v = x - alpha e_0: H x = alpha e_0 for
+// tau = -2 / v'v = 1 / (alpha v_0).
+#if defined(RCME_ESTIMATOR_KERNELS_NULL_VECTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RCME_ESTIMATOR_KERNELS_NULL_VECTOR_INL_H_
+#undef RCME_ESTIMATOR_KERNELS_NULL_VECTOR_INL_H_
+#else
+#define RCME_ESTIMATOR_KERNELS_NULL_VECTOR_INL_H_
+#endif
+
+#include <utility>
+
+#include "estimator/kernels/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rcme::HWY_NAMESPACE {
+
+struct ConstraintFactors {
+  Vec columns[8][9];      // M' on entry; then v_k from row k on, above it R
+  Vec tau[8];
+  Vec inverse_pivot[8];   // 1 / R_kk
+  Vec smallest_pivot, largest_pivot;  // of |R_kk|
+};
+
+// b + tau_k v_k (v_k' b): H_k b.
+template <int k>
+HWY_INLINE void Reflect(const Vec* v, Vec tau, Vec* b) {
+  Vec dot = v[k] * b[k];
+  for (int i = k + 1; i < 9; ++i) dot = hn::MulAdd(v[i], b[i], dot);
+  const Vec weight = tau * dot;
+  for (int i = k; i < 9; ++i) b[i] = hn::MulAdd(v[i], weight, b[i]);
+}
+
+template <int k>
+HWY_INLINE void FactorColumn(ConstraintFactors& factors) {
+  Vec* x = factors.columns[k];
+  Vec squared_norm = Square(x[k]);
+  for (int i = k + 1; i < 9; ++i) squared_norm = hn::MulAdd(x[i], x[i], squared_norm);
+  const Vec norm = hn::Sqrt(squared_norm);
+  const Vec alpha = hn::CopySign(norm, hn::Neg(x[k]));
+  const Vec v_0 = x[k] - alpha;
+  factors.tau[k] = Set(1.0) / (alpha * v_0);
+  factors.inverse_pivot[k] = factors.tau[k] * v_0;
+  factors.smallest_pivot = k == 0 ? norm : hn::Min(norm, factors.smallest_pivot);
+  factors.largest_pivot = k == 0 ? norm : hn::Max(norm, factors.largest_pivot);
+  x[k] = v_0;
+  for (int c = k + 1; c < 8; ++c) Reflect<k>(x, factors.tau[k], factors.columns[c]);
+}
+
+HWY_INLINE void Factor(ConstraintFactors& factors) {
+  [&]<int... k>(std::integer_sequence<int, k...>) { (FactorColumn<k>(factors), ...); }
+  (std::make_integer_sequence<int, 8>());
+}
+
+// The last column of Q.
+HWY_INLINE void NullVector(const ConstraintFactors& factors, Vec* f) {
+  for (int i = 0; i < 8; ++i) f[i] = Set(0.0);
+  f[8] = Set(1.0);
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (Reflect<7 - k>(factors.columns[7 - k], factors.tau[7 - k], f), ...);
+  }
+  (std::make_integer_sequence<int, 8>());
+}
+
+// G'b, 8 numbers, for a 9-vector b, which is overwritten: the solution y of R1 y = (Q'b)_top, G = A R1^-T.
+HWY_INLINE void ApplyGainTransposed(const ConstraintFactors& factors, Vec* b, Vec* y) {
+  [&]<int... k>(std::integer_sequence<int, k...>) {
+    (Reflect<k>(factors.columns[k], factors.tau[k], b), ...);
+  }
+  (std::make_integer_sequence<int, 8>());
+  for (int row = 7; row >= 0; --row) {
+    Vec rest = b[row];
+    for (int c = row + 1; c < 8; ++c) rest = hn::NegMulAdd(factors.columns[c][row], y[c], rest);
+    y[row] = rest * factors.inverse_pivot[row];
+  }
+}
+
+}  // namespace rcme::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

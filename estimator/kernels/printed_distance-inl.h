@@ -1,0 +1,117 @@
+// The printed point test (eq::find-inlier), delta' Sigma_delta^-1 delta with Sigma_delta 4x4, in closed form.
+//
+// In whitened coordinates (unit noise) let j, g, n2 = |j|^2 be the gradient, value and squared gradient of the
+// constraint, j_k, g_k those of its derivatives along the principal axes of the motion, H the Hessian. The
+// Sampson vector -j g / n2 depends on match and motion through z = (j, g) alone, whose covariance is
+//
+//   X = [[Q, a], [a', D]],   Q = H H' + sum j_k j_k',   a = H j + sum g_k j_k,   D = n2 + sum g_k^2.
+//
+// Up to a reflection, n2^2 Sigma_delta = B X B' with B = [g I, -j], whose null vector is z. For such a B
+// (Cauchy-Binet) det(B X B') = g^6 det(X) z' X^-1 z, and by blocks, with e = D - a'Q^-1 a,
+//
+//   det(X) z'X^-1 z = det(Q) p,   p = e j'Q^-1 j + (g - a'Q^-1 j)^2.
+//
+// The same argument one dimension lower gives the quadratic form. Hence
+//
+//   d2 = g^2 j'Q^-1 j / p,   det Sigma_delta = g^6 det(Q) p / n2^8.
+//
+// Nothing is divided by g; Q = L diag(d) L' costs four divisions. (Cofactors would cost one, and lose all digits:
+// the eigenvalues of Q span many decades.)
+#if defined(RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_
+#undef RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_
+#else
+#define RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_
+#endif
+
+#include "estimator/kernels/epipolar-inl.h"
+#include "estimator/point_consistency.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rcme::HWY_NAMESPACE {
+
+struct PrintedDistance {
+  Vec numerator, denominator;  // d2 = numerator / denominator
+  Mask is_regular;             // Sigma_delta is positive definite
+  Vec determinant;             // of Sigma_delta, in units of sigma^8
+};
+
+// Lower triangle of a symmetric 4x4 matrix, row by row: 00, 10, 11, 20, 21, 22, 30, 31, 32, 33.
+HWY_INLINE void AddOuterProduct(const Vec* j, Vec* Q) {
+  for (int row = 0, i = 0; row < 4; ++row) {
+    for (int c = 0; c <= row; ++c, ++i) Q[i] = hn::MulAdd(j[row], j[c], Q[i]);
+  }
+}
+
+// Model: F(i) and dF(k) as Entries of EvaluateConstraint.
+template <typename Model>
+HWY_INLINE PrintedDistance EvaluatePrinted(const Model& model, const Matches& matches) {
+  const Constraint c = EvaluateConstraint(model.F(), matches);
+  const Vec* j = c.gradient;
+  const Vec n2 = Dot4(j, j);
+
+  // H = [[0, A'], [A, 0]], A the upper left 2x2 of F: H H' = [[A'A, 0], [0, A A']].
+  const Vec A00 = model.F()(0), A01 = model.F()(1), A10 = model.F()(3), A11 = model.F()(4), zero = Set(0.0);
+  Vec Q[10] = {hn::MulAdd(A00, A00, A10 * A10),
+               hn::MulAdd(A00, A01, A10 * A11),
+               hn::MulAdd(A01, A01, A11 * A11),
+               zero,
+               zero,
+               hn::MulAdd(A00, A00, A01 * A01),
+               zero,
+               zero,
+               hn::MulAdd(A00, A10, A01 * A11),
+               hn::MulAdd(A10, A10, A11 * A11)};
+  Vec a[4] = {hn::MulAdd(A00, j[2], A10 * j[3]), hn::MulAdd(A01, j[2], A11 * j[3]),
+              hn::MulAdd(A00, j[0], A01 * j[1]), hn::MulAdd(A10, j[0], A11 * j[1])};
+  Vec D = n2;
+  for (int k = 0; k < 5; ++k) {
+    const Constraint d = EvaluateConstraint(model.dF(k), matches);
+    AddOuterProduct(d.gradient, Q);
+    for (int i = 0; i < 4; ++i) a[i] = hn::MulAdd(d.g, d.gradient[i], a[i]);
+    D = hn::MulAdd(d.g, d.g, D);
+  }
+
+  // Q = L diag(d) L', y = L^-1 j, b = L^-1 a.
+  const Vec one = Set(1.0);
+  const Vec d0 = Q[0], i0 = one / d0;
+  const Vec l10 = Q[1] * i0, l20 = Q[3] * i0, l30 = Q[6] * i0;
+  const Vec d1 = hn::NegMulAdd(l10, Q[1], Q[2]), i1 = one / d1;
+  const Vec s21 = hn::NegMulAdd(l10, Q[3], Q[4]), s31 = hn::NegMulAdd(l10, Q[6], Q[7]);
+  const Vec l21 = s21 * i1, l31 = s31 * i1;
+  const Vec d2 = hn::NegMulAdd(l21, s21, hn::NegMulAdd(l20, Q[3], Q[5])), i2 = one / d2;
+  const Vec s32 = hn::NegMulAdd(l21, s31, hn::NegMulAdd(l20, Q[6], Q[8])), l32 = s32 * i2;
+  const Vec d3 = hn::NegMulAdd(l32, s32, hn::NegMulAdd(l31, s31, hn::NegMulAdd(l30, Q[6], Q[9]))), i3 = one / d3;
+  const auto solve = [&](const Vec* x, Vec* y) {
+    y[0] = x[0];
+    y[1] = hn::NegMulAdd(l10, y[0], x[1]);
+    y[2] = hn::NegMulAdd(l21, y[1], hn::NegMulAdd(l20, y[0], x[2]));
+    y[3] = hn::NegMulAdd(l32, y[2], hn::NegMulAdd(l31, y[1], hn::NegMulAdd(l30, y[0], x[3])));
+  };
+  Vec y[4], b[4];
+  solve(j, y);
+  solve(a, b);
+  const Vec iy[4] = {i0 * y[0], i1 * y[1], i2 * y[2], i3 * y[3]};
+  const Vec ib[4] = {i0 * b[0], i1 * b[1], i2 * b[2], i3 * b[3]};
+  const Vec jQj = Dot4(iy, y), rest = c.g - Dot4(iy, b), e = D - Dot4(ib, b);
+  const Vec p = hn::MulAdd(e, jQj, rest * rest);
+
+  const Vec g2 = c.g * c.g, unit = one / n2;
+  const Vec squared_distance = hn::Max(g2 * unit, Set(kLeastSquaredDistance));
+  PrintedDistance distance;
+  distance.numerator = g2 * jQj;
+  distance.denominator = p;
+  distance.is_regular = hn::Min(hn::Min(d0, d1), hn::Min(hn::Min(d2, d3), p)) > zero;
+  distance.determinant = squared_distance * squared_distance * squared_distance * ((d0 * unit) * (d1 * unit)) *
+                         ((d2 * unit) * (d3 * unit)) * (p * unit);
+  return distance;
+}
+
+HWY_INLINE Mask IsWithin(const PrintedDistance& distance, Vec threshold) {
+  return hn::And(distance.numerator <= threshold * distance.denominator, distance.is_regular);
+}
+
+}  // namespace rcme::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,228 @@
+#include "estimator/kernels/score.h"
+
+#include "estimator/point_consistency.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimator/kernels/score.cc"
+#include <hwy/foreach_target.h>
+// The above must come before these.
+#include <hwy/contrib/math/math-inl.h>
+
+#include "estimator/kernels/epipolar-inl.h"
+#include "estimator/kernels/lanes-inl.h"
+#include "estimator/kernels/printed_distance-inl.h"
+#include "estimator/kernels/variance-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace rcme::HWY_NAMESPACE {
+
+// Calls visit(matches, are_matches) for every vector of matches, and keeps what it returns: the inliers and
+// their spreads.
+struct Visited {
+  Mask is_inlier;
+  Vec spread;
+};
+
+template <bool has_spread, typename Visit>
+HWY_INLINE void Scan(const MatchBlock* blocks, int num_matches, InlierScan* scan, const Visit& visit) {
+  double* spread = scan->spreads.data();
+  const int num_blocks = static_cast<int>(scan->inliers.size());
+  int num_inliers = 0;
+  for (int b = 0; b < num_blocks; ++b) {
+    unsigned bits = 0;
+    for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+      const Visited visited = visit(LoadMatches(blocks[b], lane));
+      const Mask is_inlier = hn::And(visited.is_inlier, AreMatches(b * kBlockSize + lane, num_matches));
+      if constexpr (has_spread) {
+        spread += hn::CompressStore(visited.spread, is_inlier, Tag(), spread);
+      }
+      bits |= BitsOf(is_inlier) << lane;
+    }
+    scan->inliers[static_cast<size_t>(b)] = static_cast<std::uint8_t>(bits);
+    num_inliers += __builtin_popcount(bits);
+  }
+  scan->num_inliers = num_inliers;
+}
+
+void ScanExact(const MatchBlock* blocks, int num_matches, const double* F, double threshold, InlierScan* scan) {
+  const Vec limit = Set(threshold);
+  Scan<false>(blocks, num_matches, scan, [&](const Matches& matches) {
+    const Constraint c = EvaluateConstraint(Broadcast{F}, matches);
+    return Visited{c.g * c.g <= limit * Dot4(c.gradient, c.gradient), limit};
+  });
+}
+
+struct OneModel {
+  const WhitenedModel& model;
+  HWY_INLINE Broadcast F() const { return {model.F}; }
+  HWY_INLINE Broadcast dF(int k) const { return {model.dF[k]}; }
+};
+
+void ScanPrinted(const MatchBlock* blocks, int num_matches, const WhitenedModel& model, double threshold,
+                 InlierScan* scan) {
+  const Vec limit = Set(threshold);
+  Scan<true>(blocks, num_matches, scan, [&](const Matches& matches) {
+    const PrintedDistance distance = EvaluatePrinted(OneModel{model}, matches);
+    return Visited{IsWithin(distance, limit), distance.determinant};
+  });
+}
+
+void ScanUncertain(const MatchBlock* blocks, int num_matches, const double* F, const double* coefficients,
+                   double threshold, InlierScan* scan) {
+  const Vec limit = Set(threshold);
+  Scan<true>(blocks, num_matches, scan, [&](const Matches& matches) {
+    const RankAwareTerms terms = EvaluateRankAware(F, coefficients, matches);
+    const Vec total = terms.n2 + terms.variance;
+    return Visited{terms.g2 <= limit * total, total / terms.n2};
+  });
+}
+
+double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const double* F,
+                                const double* coefficients, double outlier_cost) {
+  const Vec half = Set(0.5), log_two_pi = Set(1.8378770664093454836), limit = Set(outlier_cost);
+  Vec sum = Set(0.0);
+  for (int first = 0; first < num_matches; first += kLanes) {
+    const Matches matches = LoadMatches(blocks[first / kBlockSize], first % kBlockSize);
+    const RankAwareTerms terms = EvaluateRankAware(F, coefficients, matches);
+    const Vec total = terms.n2 + terms.variance;
+    const Vec d2 = terms.g2 / total, log_s2 = hn::Log(Tag(), total / terms.n2);
+    const Vec cost = hn::Min(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
+    sum = sum + hn::IfThenElseZero(AreMatches(first, num_matches), cost);
+  }
+  return hn::GetLane(hn::SumOfLanes(Tag(), sum));
+}
+
+// Two passes: the sum of squares about the mean loses no digits. `spreads` may be read beyond count, up to a
+// vector.
+void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
+  const Vec half = Set(0.5), shift = Set(offset);
+  const auto entropy = [&](int i) {
+    const Mask is_inlier = AreMatches(i, count);
+    const Vec spread = hn::IfThenElse(is_inlier, hn::LoadU(Tag(), spreads + i), Set(1.0));
+    return hn::IfThenElseZero(is_inlier, hn::MulAdd(half, hn::Log(Tag(), spread), shift));
+  };
+  HWY_ALIGN double stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice
+  Vec sum = Set(0.0);
+  for (int i = 0; i < count; i += kLanes) {
+    const Vec h = entropy(i);
+    if (i < 512) Store(h, stored + i);
+    sum = sum + h;
+  }
+  *mean = hn::GetLane(hn::SumOfLanes(Tag(), sum)) / count;
+  const Vec center = Set(*mean);
+  Vec squares = Set(0.0);
+  for (int i = 0; i < count; i += kLanes) {
+    const Vec h = i < 512 ? Load(stored + i) : entropy(i);
+    squares = squares + Square(hn::IfThenElseZero(AreMatches(i, count), h - center));
+  }
+  *sum_squares = hn::GetLane(hn::SumOfLanes(Tag(), squares));
+}
+
+// Each lane a hypothesis with its own model.
+struct ModelPerLane {
+  const HypothesisBlock& block;
+  int lane;
+  struct Rows {
+    const HypothesisBlock::Row* rows;
+    int lane;
+    HWY_INLINE Vec operator()(int i) const { return Load(rows[i] + lane); }
+  };
+  HWY_INLINE Rows F() const { return {block.F, lane}; }
+  HWY_INLINE Rows dF(int k) const { return {block.dF[k], lane}; }
+};
+
+unsigned TestSamples(const HypothesisBlock& block, double threshold) {
+  const Vec limit = Set(threshold);
+  unsigned bits = 0;
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    Mask are_consistent = hn::FirstN(Tag(), kBlockSize);
+    for (int k = 0; k < 8 && !hn::AllFalse(Tag(), are_consistent); ++k) {
+      const Matches matches = {Load(block.x1[k] + lane), Load(block.y1[k] + lane), Load(block.x2[k] + lane),
+                               Load(block.y2[k] + lane)};
+      const PrintedDistance distance = EvaluatePrinted(ModelPerLane{block, lane}, matches);
+      are_consistent = hn::And(are_consistent, IsWithin(distance, limit));
+    }
+    bits |= BitsOf(are_consistent) << lane;
+  }
+  return bits;
+}
+
+}  // namespace rcme::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rcme {
+
+HWY_EXPORT(ScanExact);
+HWY_EXPORT(ScanPrinted);
+HWY_EXPORT(ScanUncertain);
+HWY_EXPORT(SumNegativeLogLikelihood);
+HWY_EXPORT(SumEntropies);
+HWY_EXPORT(TestSamples);
+
+WhitenedModel::WhitenedModel(const HypothesisBlock& block, int hypothesis) {
+  for (int i = 0; i < 9; ++i) {
+    F[i] = block.F[i][hypothesis];
+    for (int k = 0; k < 5; ++k) dF[k][i] = block.dF[k][i][hypothesis];
+  }
+}
+
+std::optional<WhitenedModel> WhitenedModel::From(const MatchBlocks& matches, const RelativePose& pose,
+                                                 const Matrix5d& pose_cov) {
+  const std::optional<std::array<Eigen::Matrix3d, 5>> dE = WhitenedTangent(pose, pose_cov);
+  if (!dE) return std::nullopt;
+  WhitenedModel model;
+  WriteRowMajor(matches.FundamentalFromEssential(EssentialFromPose(pose)), model.F);
+  for (size_t k = 0; k < 5; ++k) WriteRowMajor(matches.FundamentalFromEssential((*dE)[k]), model.dF[k]);
+  return model;
+}
+
+VariancePolynomial::VariancePolynomial(const double (&dF)[5][9]) : coefficients{} {
+  constexpr int kFirst[] = {0, 0, 0, 1, 1, 2}, kSecond[] = {0, 1, 2, 1, 2, 2};  // the factors of a monomial
+  for (int a = 0; a < 6; ++a) {
+    for (int b = 0; b < 6; ++b) {
+      const int i = 3 * kFirst[a], k = 3 * kSecond[a], j = kFirst[b], l = kSecond[b];
+      double sum = 0.0;
+      for (const double* D : dF) sum += D[i + j] * D[k + l] + D[i + l] * D[k + j];
+      const bool is_square = i == k && j == l, is_product = i != k && j != l;
+      coefficients[6 * a + b] = is_square ? 0.5 * sum : is_product ? 2.0 * sum : sum;
+    }
+  }
+}
+
+void ScanKnownPose(const MatchBlocks& matches, const double* F, double threshold, InlierScan* scan) {
+  HWY_DYNAMIC_DISPATCH(ScanExact)(matches.data(), matches.num_matches(), F, threshold, scan);
+}
+
+void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, double threshold, InlierScan* scan) {
+  HWY_DYNAMIC_DISPATCH(ScanPrinted)(matches.data(), matches.num_matches(), model, threshold, scan);
+}
+
+void ScanRankAware(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
+                   double threshold, InlierScan* scan) {
+  HWY_DYNAMIC_DISPATCH(ScanUncertain)
+  (matches.data(), matches.num_matches(), F, variance.coefficients, threshold, scan);
+}
+
+InlierScore SummarizeEntropies(const InlierScan& scan, double offset) {
+  InlierScore score;
+  score.num_inliers = scan.num_inliers;
+  if (scan.num_inliers > 0) {
+    HWY_DYNAMIC_DISPATCH(SumEntropies)
+    (scan.spreads.data(), scan.num_inliers, offset, &score.mean_entropy, &score.sum_squares);
+  }
+  return score;
+}
+
+double NegativeLogLikelihood(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
+                             double outlier_cost) {
+  return HWY_DYNAMIC_DISPATCH(SumNegativeLogLikelihood)(matches.data(), matches.num_matches(), F,
+                                                        variance.coefficients, outlier_cost);
+}
+
+std::uint8_t FindConsistentSamples(const HypothesisBlock& block, double threshold) {
+  return static_cast<std::uint8_t>(HWY_DYNAMIC_DISPATCH(TestSamples)(block, threshold));
+}
+
+}  // namespace rcme
+#endif

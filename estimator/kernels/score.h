@@ -1,0 +1,60 @@
+// One hypothesis against all matches: which are inliers (eq::find-inlier), and how uncertain they are
+// (eq::score-inliers). The same tests as point_consistency.h, many matches at a time.
+#pragma once
+
+#include "estimator/inlier_quality.h"
+#include "estimator/kernels/hypothesis_block.h"
+
+namespace rcme {
+
+// A motion with its covariance, in whitened coordinates; one of a block of hypotheses, or any other.
+struct WhitenedModel {
+  double F[9];
+  double dF[5][9];
+
+  WhitenedModel(const HypothesisBlock& block, int hypothesis);
+  // Nothing if pose_cov is not finite and positive semi-definite.
+  static std::optional<WhitenedModel> From(const MatchBlocks& matches, const RelativePose& pose,
+                                           const Matrix5d& pose_cov);
+
+ private:
+  WhitenedModel() = default;
+};
+
+// The variance that the motion adds to g, sum_k (x2' dF_k x1)^2, as a polynomial: coefficient 6 a + b belongs to
+// the a-th monomial of image 2 and the b-th of image 1 in the order x^2, xy, x, y^2, y, 1.
+struct VariancePolynomial {
+  double coefficients[36];
+  explicit VariancePolynomial(const double (&dF)[5][9]);
+};
+
+// What a pass over the matches finds. Kept by the caller from hypothesis to hypothesis: no allocation after the
+// first.
+struct InlierScan {
+  explicit InlierScan(const MatchBlocks& matches)
+      : inliers(matches.Empty()), spreads(inliers.size() * kBlockSize + kBlockSize) {}
+  MatchMask inliers;
+  int num_inliers = 0;
+  std::vector<double> spreads;  // of the inliers in ascending order: det Sigma_delta / sigma^8 (as printed),
+                                // s2 / sigma^2 (rank-aware)
+};
+
+// d2 = g^2 / n2 <= threshold, the motion taken as exact.
+void ScanKnownPose(const MatchBlocks& matches, const double* F, double threshold, InlierScan* scan);
+// d2 of printed_distance-inl.h <= threshold.
+void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, double threshold, InlierScan* scan);
+// d2 = g^2 / (n2 + variance of g from the motion) <= threshold.
+void ScanRankAware(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
+                   double threshold, InlierScan* scan);
+
+// The entropies h = log(spread) / 2 + offset of the inliers, summarised.
+InlierScore SummarizeEntropies(const InlierScan& scan, double offset);
+
+// Predictive: sum over all matches of min(outlier_cost, (d2 + log(2 pi s2 / sigma^2)) / 2), rank-aware.
+double NegativeLogLikelihood(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
+                             double outlier_cost);
+
+// Bit l: every match of sample l passes the printed test under its own hypothesis (eq::sample-p-test).
+std::uint8_t FindConsistentSamples(const HypothesisBlock& block, double threshold);
+
+}  // namespace rcme

@@ -1,0 +1,41 @@
+#include "estimator/reference_matches.h"
+
+#include <algorithm>
+
+#include "estimator/geometry/sampson.h"
+#include "estimator/geometry/triangulation.h"
+#include "estimator/refinement/reprojection_mle.h"
+#include "estimator/refinement/sampson_mle.h"
+
+namespace rcme {
+
+RelativePose ReferenceMatches::SelectPose(const EssentialProjection& projection, const Set& set) const {
+  std::vector<Correspondence> matches;
+  for (const int index : set) matches.push_back(problem_.matches[static_cast<size_t>(index)]);
+  return SelectPoseByCheirality(PosesFromEssential(projection), matches, problem_.camera1, problem_.camera2);
+}
+
+RefinedMotion ReferenceMatches::Refine(const Set& set, const RelativePose& start, Loss loss) const {
+  return error_ == RefinementError::kReprojection ? RefineByReprojection(problem_, set, start, loss)
+                                                  : RefineBySampson(problem_, set, start, loss);
+}
+
+ReferenceMatches::Set ReferenceMatches::FindAgreeing(const RefinedMotion& motion, const Set& fitted,
+                                                     double significance_level) const {
+  return rcme::FindAgreeing(problem_, motion, fitted, significance_level);
+}
+
+ReferenceMatches::Set ReferenceMatches::SelectFitSet(const RefinedMotion& motion, const Set& fitted) const {
+  return rcme::SelectFitSet(problem_, motion, fitted);
+}
+
+int ReferenceMatches::CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {
+  const Eigen::Matrix3d F =
+      FundamentalFromEssential(EssentialFromPose(pose), problem_.camera1, problem_.camera2);
+  const double bound = problem_.sigma_px * problem_.sigma_px * threshold;
+  return static_cast<int>(std::count_if(set.begin(), set.end(), [&](int index) {
+    return SquaredSampsonDistance(F, problem_.matches[static_cast<size_t>(index)]) < bound;
+  }));
+}
+
+}  // namespace rcme
