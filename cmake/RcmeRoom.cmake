@@ -25,5 +25,5 @@ endfunction()
 function(rcme_uses_simd name)
   target_link_libraries(rcme_${name} PRIVATE hwy::hwy)
   target_compile_definitions(rcme_${name} PRIVATE
-    "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL|HWY_AVX3_ZEN4)")
+    "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX3_DL)")
 endfunction()
