@@ -74,13 +74,14 @@ TEST_F(OnEveryTarget, UniformsAreTheUpper53BitsOfTheWords) {
   });
 }
 
-// At the ends of [0, 1), at and around the eighths of a turn, in all pairs.
+// At the ends of [0, 1), at and around the eighths of a turn, and in between, in all pairs.
 TEST_F(OnEveryTarget, NormalsAreThoseOfTheScalarFunctions) {
   std::vector<double> corners = {0x1p-53, 0x1p-30, 1.0 - 0x1p-53, 0.3, 1.0 - std::sqrt(0.5)};
   for (int eighth = 0; eighth < 8; ++eighth) {
     const double u = eighth / 8.0;
     for (const double near : {u, u + 0x1p-53, std::abs(u - 0x1p-53)}) corners.push_back(near);
   }
+  for (int k = 1; k < 37; ++k) corners.push_back(k / 37.0);
   std::vector<double> uniforms, expected;
   for (const double u : corners) {
     for (const double v : corners) {
@@ -91,7 +92,7 @@ TEST_F(OnEveryTarget, NormalsAreThoseOfTheScalarFunctions) {
     }
   }
   const size_t size = uniforms.size() / kUniformsAtOnce * kUniformsAtOnce;
-  ASSERT_GT(size, 1600u);
+  ASSERT_GT(size, 8000u);
   expected.resize(size);
   Run([&] {
     std::vector<double> values(uniforms.begin(), uniforms.begin() + static_cast<std::ptrdiff_t>(size));
