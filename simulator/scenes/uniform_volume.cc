@@ -11,7 +11,8 @@
 namespace rcme {
 namespace {
 
-// Draws per match after which a scene counts as impossible: image 2 sees less than about 1 % of the volume.
+// Draws per match, rounded up to blocks, after which a scene counts as impossible: image 2 sees less than
+// about 1 % of the volume.
 constexpr int kMaxDrawsPerMatch = 100;
 constexpr int kMinDraws = 10'000;
 
@@ -26,19 +27,18 @@ struct Candidates {
 // Three uniforms a point: its y in image 1, x in image 1, depth.
 void PlacePoints(const std::array<double, 3 * kBlock>& uniforms, const Camera& camera, double min_depth_m,
                  double max_depth_m, Candidates* candidates) {
-  const double x_span_px = camera.width - 0.5 + 0.5, y_span_px = camera.height - 0.5 + 0.5;
+  const double width_px = camera.width, height_px = camera.height;
   const double depth_span_m = max_depth_m - min_depth_m;
   for (size_t i = 0; i < kBlock; ++i) {
     const double depth_m = min_depth_m + depth_span_m * uniforms[3 * i + 2];
-    candidates->x_m[i] = depth_m * ((-0.5 + x_span_px * uniforms[3 * i + 1] - camera.cx) / camera.fx);
-    candidates->y_m[i] = depth_m * ((-0.5 + y_span_px * uniforms[3 * i] - camera.cy) / camera.fy);
+    candidates->x_m[i] = depth_m * ((-0.5 + width_px * uniforms[3 * i + 1] - camera.cx) / camera.fx);
+    candidates->y_m[i] = depth_m * ((-0.5 + height_px * uniforms[3 * i] - camera.cy) / camera.fy);
     candidates->z_m[i] = depth_m;
   }
 }
 
-// Image 2 sees a point in front of it if |fx x / z + cx - (width - 1) / 2| <= width / 2, y likewise. Times z,
-// in coordinates (a, b, c) = clip_from_cam1 [point; 1] scaled by width / 2 and height / 2: |a| <= c and |b|
-// <= c.
+// Image 2 sees a point (x, y, z) with z > 0 if |fx x / z + cx - (width - 1) / 2| <= width / 2, y likewise.
+// Times 2 z / width: |a| <= c and |b| <= c, where (a, b, c) = clip_from_cam2 (x, y, z) = A point_in_cam1 + t.
 void MeasureClearance(const Scene& scene, Candidates* candidates) {
   const Camera& camera = scene.camera2;
   Eigen::Matrix3d clip_from_cam2 = Eigen::Matrix3d::Identity();
@@ -91,7 +91,8 @@ Scene UniformVolume::Generate(RandomStream& rng) const {
   std::array<double, 3 * kBlock> uniforms;
   Candidates candidates;
   const int max_draws = std::max(kMinDraws, kMaxDrawsPerMatch * num_matches_);
-  for (int draw = 0; draw < max_draws; draw += kBlock) {
+  int num_draws = 0;
+  for (; num_draws < max_draws; num_draws += kBlock) {
     rng.FillUniform(uniforms);
     PlacePoints(uniforms, scene.camera1, min_depth_m_, max_depth_m_, &candidates);
     MeasureClearance(scene, &candidates);
@@ -107,7 +108,7 @@ Scene UniformVolume::Generate(RandomStream& rng) const {
       fmt::format("uniform_volume: image 2 sees only {} of {} drawn points; lower max_rotation_deg or "
                   "baseline_m, or raise "
                   "min_depth_m (num_matches = {})",
-                  num_accepted, max_draws, num_matches_));
+                  num_accepted, num_draws, num_matches_));
 }
 
 }  // namespace rcme

@@ -76,8 +76,8 @@ std::vector<Eigen::Vector3d> DrawPointByPoint(size_t num_matches, const GeneralM
   return points;
 }
 
-// To the bit, whether most candidates are accepted or (at 25 deg) few. A candidate within rounding error of the
-// image border may be judged otherwise; among these 100,000 there is none.
+// To the bit, whether most candidates are accepted or (at 25 deg) few. A candidate within rounding error of
+// the image border may be judged otherwise; among these 100,000 there is none.
 TEST(UniformVolume, IsThePlainLoopOverCandidates) {
   for (const GeneralMotion& motion : {GeneralMotion{10.0, 0.5}, GeneralMotion{25.0, 1.0}}) {
     for (const int num_matches : {1, 7, 128, 129, 500}) {
