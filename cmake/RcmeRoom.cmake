@@ -20,8 +20,8 @@ function(rcme_add_room name)
           FILES_MATCHING PATTERN "*.h")
 endfunction()
 
-# rcme_uses_simd(ROOM): the room has kernels in Highway, compiled for three instruction sets and chosen at run time: the
-# baseline, AVX2 with fused multiply-add, AVX-512.
+# rcme_uses_simd(ROOM): the room has kernels in Highway, compiled for three instruction sets and chosen at run time: plain
+# scalar code, AVX2 with fused multiply-add, AVX-512.
 function(rcme_uses_simd name)
   target_link_libraries(rcme_${name} PRIVATE hwy::hwy)
   target_compile_definitions(rcme_${name} PRIVATE

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "parameters/parameter.h"
@@ -11,7 +12,10 @@ namespace rcme {
 struct NoiseModel {
   double sigma_px = 0.5;  // standard deviation per coordinate
 
-  double Draw(RandomStream& rng) const { return sigma_px * rng.Normal(); }
+  void Fill(std::span<double> noise_px, RandomStream& rng) const {
+    rng.FillNormal(noise_px);
+    for (double& e : noise_px) e *= sigma_px;
+  }
 };
 std::vector<Parameter> Parameters(NoiseModel& noise);
 

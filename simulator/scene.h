@@ -30,7 +30,8 @@ class SceneModel {
   virtual ~SceneModel() = default;
   // The parameters by name; valid as long as the model lives.
   virtual std::vector<Parameter> Parameters() = 0;
-  // One scene. Throws InputError that names the keys if the parameters admit no such scene.
+  // One scene, from a stream of its own, of which more may be drawn than is used. Throws InputError that
+  // names the keys if the parameters admit no such scene.
   virtual Scene Generate(RandomStream& rng) const = 0;
 };
 

@@ -1,7 +1,5 @@
 #include "stats/random.h"
 
-#include <Random123/philox.h>
-
 #include <cmath>
 
 #include "stats/portable_math.h"
@@ -10,35 +8,21 @@ namespace rcme {
 
 std::array<std::uint32_t, 4> Philox4x32(const std::array<std::uint32_t, 4>& counter,
                                         const std::array<std::uint32_t, 2>& key) {
-  const r123::Philox4x32 generator;
-  r123::Philox4x32::ctr_type c;
-  r123::Philox4x32::key_type k;
-  for (size_t i = 0; i < 4; ++i) c[i] = counter[i];
-  for (size_t i = 0; i < 2; ++i) k[i] = key[i];
-  const r123::Philox4x32::ctr_type words = generator(c, k);
-  return {words[0], words[1], words[2], words[3]};
+  std::array<std::uint64_t, 2 * kBlocksAtOnce> pairs;
+  PhiloxWordPairs({counter, key}, pairs.size(), pairs.data());
+  const auto low = [](std::uint64_t pair) { return static_cast<std::uint32_t>(pair); };
+  return {low(pairs[0]), low(pairs[0] >> 32), low(pairs[1]), low(pairs[1] >> 32)};
 }
 
-RandomStream::RandomStream(const StreamName& name) : name_(name) {}
+RandomStream::RandomStream(const StreamName& name)
+    : next_{{0, name.trial, name.condition, name.purpose},
+            {static_cast<std::uint32_t>(name.seed), static_cast<std::uint32_t>(name.seed >> 32)}} {}
 
 void RandomStream::Refill() {
-  const std::array<std::uint32_t, 2> key = {static_cast<std::uint32_t>(name_.seed),
-                                            static_cast<std::uint32_t>(name_.seed >> 32)};
-  words_ = Philox4x32({next_block_++, name_.trial, name_.condition, name_.purpose}, key);
+  PhiloxWordPairs(next_, kNumPairs, pairs_.data());
+  next_.counter[0] += kNumPairs / 2;
   num_used_ = 0;
 }
-
-std::uint32_t RandomStream::Next32() {
-  if (num_used_ == 4) Refill();
-  return words_[static_cast<size_t>(num_used_++)];
-}
-
-std::uint64_t RandomStream::Next64() {
-  const std::uint64_t low = Next32();
-  return low | (static_cast<std::uint64_t>(Next32()) << 32);
-}
-
-double RandomStream::Uniform() { return static_cast<double>(Next64() >> 11) * 0x1p-53; }
 
 double RandomStream::Normal() {
   if (has_spare_normal_) {
@@ -52,15 +36,27 @@ double RandomStream::Normal() {
   return radius * direction.cos;
 }
 
-std::uint32_t RandomStream::IntegerBelow(std::uint32_t n) {
-  std::uint64_t product = static_cast<std::uint64_t>(Next32()) * n;
-  if (static_cast<std::uint32_t>(product) < n) {
-    const std::uint32_t num_biased = (0U - n) % n;  // 2^32 mod n
-    while (static_cast<std::uint32_t>(product) < num_biased) {
-      product = static_cast<std::uint64_t>(Next32()) * n;
-    }
+void RandomStream::FillUniform(std::span<double> uniforms) {
+  // What the buffer still holds, then whole vectors past the buffer, then the rest from a new buffer.
+  while (!uniforms.empty() && num_used_ < 2 * kNumPairs) {
+    uniforms.front() = Uniform();
+    uniforms = uniforms.subspan(1);
   }
-  return static_cast<std::uint32_t>(product >> 32);
+  const std::size_t num_at_once = uniforms.size() / kUniformsAtOnce * kUniformsAtOnce;
+  PhiloxUniforms(next_, num_at_once, uniforms.data());
+  next_.counter[0] += static_cast<std::uint32_t>(num_at_once / 2);
+  for (double& u : uniforms.subspan(num_at_once)) u = Uniform();
+}
+
+void RandomStream::FillNormal(std::span<double> normals) {
+  if (has_spare_normal_ && !normals.empty()) {
+    normals.front() = Normal();
+    normals = normals.subspan(1);
+  }
+  const std::size_t num_at_once = normals.size() / kUniformsAtOnce * kUniformsAtOnce;
+  FillUniform(normals.first(num_at_once));
+  NormalsFromUniforms(num_at_once, normals.data());
+  for (double& z : normals.subspan(num_at_once)) z = Normal();
 }
 
 }  // namespace rcme

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <set>
 
 #include "simulator/scenes/uniform_volume.h"
@@ -88,6 +90,52 @@ TEST(Observe, NoiseDoesNotDependOnTheOutlierRatio) {
   for (const Correspondence& match : clean.matches) clean_x1.insert({match.x1_px.x(), match.x1_px.y()});
   for (const Correspondence& match : mixed.matches) mixed_x1.insert({match.x1_px.x(), match.x1_px.y()});
   EXPECT_EQ(clean_x1, mixed_x1);
+}
+
+// Match by match: noise in the order of the points, mismatches in a random order, a second order for the
+// list.
+Observation ObserveOneByOne(const Scene& scene, double sigma_px, size_t num_outliers, std::uint32_t trial) {
+  RandomStream noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
+  std::vector<Correspondence> matches;
+  for (const Eigen::Vector3d& point : scene.points_in_cam1) {
+    matches.push_back({scene.camera1.Project(point), scene.camera2.Project(scene.InCamera2(point))});
+    for (Eigen::Vector2d* x_px : {&matches.back().x1_px, &matches.back().x2_px}) {
+      for (int k = 0; k < 2; ++k) (*x_px)(k) += sigma_px * noise_rng.Normal();
+    }
+  }
+  std::vector<size_t> order(matches.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  outlier_rng.Shuffle(std::span(order));
+  std::vector<bool> is_inlier(matches.size(), true);
+  for (size_t k = 0; k < num_outliers; ++k) {
+    for (const int axis : {0, 1}) {
+      const int size = axis == 0 ? scene.camera2.width : scene.camera2.height;
+      matches[order[k]].x2_px(axis) = outlier_rng.Uniform(-0.5, size - 0.5);
+    }
+    is_inlier[order[k]] = false;
+  }
+  outlier_rng.Shuffle(std::span(order));
+  Observation observation;
+  for (const size_t i : order) {
+    observation.matches.push_back(matches[i]);
+    observation.is_inlier_true.push_back(is_inlier[i]);
+  }
+  return observation;
+}
+
+TEST(Observe, IsThePlainLoopOverMatches) {
+  for (const int n : {1, 7, 64, 65, 500}) {
+    for (std::uint32_t trial = 0; trial < 20; ++trial) {
+      const Scene scene = MakeScene(n, trial);
+      const Observation observation = ObserveScene(scene, 0.5, 0.2, trial);
+      const Observation plain = ObserveOneByOne(scene, 0.5, static_cast<size_t>(std::lround(0.2 * n)), trial);
+      ASSERT_EQ(observation.is_inlier_true, plain.is_inlier_true);
+      for (size_t i = 0; i < plain.matches.size(); ++i) {
+        ASSERT_EQ(observation.matches[i].x1_px, plain.matches[i].x1_px);
+        ASSERT_EQ(observation.matches[i].x2_px, plain.matches[i].x2_px);
+      }
+    }
+  }
 }
 
 // The place of an outlier in the list says nothing: over 500 scenes the first match is one at the outlier

@@ -59,6 +59,41 @@ TEST(UniformVolume, MotionsFollowTheirLaw) {
   EXPECT_GT(TestKolmogorovSmirnov(tz, uniform).p_value, 1e-4);
 }
 
+// The points of the model with its default cameras, one candidate after the other.
+std::vector<Eigen::Vector3d> DrawPointByPoint(size_t num_matches, const GeneralMotion& motion,
+                                              RandomStream& rng) {
+  const Camera camera = CameraPair().Make();
+  const RelativePose pose = motion.Draw(rng);
+  std::vector<Eigen::Vector3d> points;
+  while (points.size() < num_matches) {
+    const double y_px = rng.Uniform(-0.5, camera.height - 0.5);
+    const double x_px = rng.Uniform(-0.5, camera.width - 0.5);
+    const double depth_m = rng.Uniform(2.0, 8.0);
+    const Eigen::Vector3d point = depth_m * camera.Ray({x_px, y_px});
+    const Eigen::Vector3d in_cam2 = pose.R * point + motion.baseline_m * pose.t;
+    if (in_cam2.z() > 0.0 && camera.IsInImage(camera.Project(in_cam2))) points.push_back(point);
+  }
+  return points;
+}
+
+// To the bit, whether most candidates are accepted or (at 25 deg) few. A candidate within rounding error of
+// the image border may be judged otherwise; among these 100,000 there is none.
+TEST(UniformVolume, IsThePlainLoopOverCandidates) {
+  for (const GeneralMotion& motion : {GeneralMotion{10.0, 0.5}, GeneralMotion{25.0, 1.0}}) {
+    for (const int num_matches : {1, 7, 128, 129, 500}) {
+      UniformVolume model;
+      Set(model, "num_matches", std::to_string(num_matches));
+      Set(model, "max_rotation_deg", std::to_string(motion.max_rotation_deg));
+      Set(model, "baseline_m", std::to_string(motion.baseline_m));
+      for (std::uint32_t trial = 0; trial < 40; ++trial) {
+        RandomStream rng({1, 0, trial, 1}), plain_rng({1, 0, trial, 1});
+        ASSERT_EQ(model.Generate(rng).points_in_cam1,
+                  DrawPointByPoint(static_cast<size_t>(num_matches), motion, plain_rng));
+      }
+    }
+  }
+}
+
 TEST(UniformVolume, AnImpossibleRequestNamesTheKeysAndEnds) {
   UniformVolume model;
   Set(model, "focal_px", "1000000");  // the disparity is 60,000 px and more
