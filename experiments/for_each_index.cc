@@ -2,21 +2,27 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 namespace rcme {
 
 void ForEachIndex(std::int64_t n, int num_threads, Progress* progress,
                   const std::function<void(std::int64_t)>& work) {
   const int threads = num_threads > 0 ? num_threads : tbb::info::default_concurrency();
+  // For estimators that use TBB themselves.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
   // Each thread takes one index at a time: that costs some ten nanoseconds, so larger portions would gain
   // nothing and leave threads idle at the end.
   std::atomic<std::int64_t> next = 0;
-  const auto run = [&](int) {
+  std::exception_ptr error;
+  std::mutex error_mutex;
+  const auto run = [&] {
     try {
       for (std::int64_t i = next++; i < n; i = next++) {
         work(i);
@@ -24,12 +30,16 @@ void ForEachIndex(std::int64_t n, int num_threads, Progress* progress,
       }
     } catch (...) {
       next = n;
-      throw;
+      const std::lock_guard lock(error_mutex);
+      if (!error) error = std::current_exception();
     }
   };
-  tbb::task_arena arena(threads);
-  arena.execute([&] { tbb::parallel_for(0, threads, run, tbb::simple_partitioner()); });
-  next.load();  // makes what every thread wrote before its last look visible to this one
+  {
+    std::vector<std::jthread> others;
+    for (std::int64_t t = 1; t < std::min<std::int64_t>(threads, n); ++t) others.emplace_back(run);
+    run();
+  }
+  if (error) std::rethrow_exception(error);
 }
 
 }  // namespace rcme

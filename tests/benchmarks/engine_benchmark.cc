@@ -52,7 +52,7 @@ constexpr const char* k80Microseconds = "80_us";  // or thereabouts
 
 void AddEstimators() {
   static const bool once = [] {
-    for (const auto& [name, num_steps] : {std::pair{kNoWork, 0}, {k80Microseconds, 42'000}}) {
+    for (const auto& [name, num_steps] : {std::pair{kNoWork, 0}, {k80Microseconds, 47'000}}) {
       const int steps = num_steps;
       AddEstimator({name, "answers the same motion for every problem",
                     [steps](const RansacOptions&) { return std::make_unique<FixedAnswer>(steps); }});
@@ -150,7 +150,7 @@ BENCHMARK_CAPTURE(BM_EngineRun, no_work, kNoWork, 200'000)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
-BENCHMARK_CAPTURE(BM_EngineRun, 80_us, k80Microseconds, 20'000)
+BENCHMARK_CAPTURE(BM_EngineRun, 80_us, k80Microseconds, 50'000)
     ->ArgName("threads")
     ->Arg(1)
     ->Arg(2)
