@@ -202,26 +202,33 @@ struct ResultStore::Connection {
     statement.exec();
   }
 
-  // A transaction holds whole calls only: an error takes back all that is not committed.
-  void Add(const std::vector<TrialRecord>& records) {
-    if (!transaction) transaction.emplace(database);
+  // Runs `action`; an error takes back all that is not committed: a transaction holds whole calls only.
+  template <typename Action>
+  void OrRollBack(Action action) {
     try {
-      for (const TrialRecord& record : records) {
-        Bind(*insert, record);
-        insert->exec();
-        insert->reset();
-      }
+      action();
     } catch (...) {
       insert->tryReset();
       transaction.reset();
       throw;
     }
+  }
+
+  void Add(const std::vector<TrialRecord>& records) {
+    if (!transaction) transaction.emplace(database);
+    OrRollBack([&] {
+      for (const TrialRecord& record : records) {
+        Bind(*insert, record);
+        insert->exec();
+        insert->reset();
+      }
+    });
     if (Clock::now() - last_commit > kCommitInterval) Commit();
   }
 
   void Commit() {
     if (!transaction) return;
-    transaction->commit();
+    OrRollBack([&] { transaction->commit(); });
     transaction.reset();
     last_commit = Clock::now();
   }
