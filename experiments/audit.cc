@@ -47,7 +47,7 @@ int NumThreads(const AuditOptions& options) {
 // Seconds on all threads that the check takes if no verdict stops it.
 double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
   constexpr std::uint32_t kLeastTimed = 4;
-  constexpr double kLeastSeconds = 0.01, kMostSeconds = 0.1;
+  constexpr double kLeastSeconds = 0.002, kMostSeconds = 0.1;
   const auto start = std::chrono::steady_clock::now();
   std::uint32_t num_timed = 0;
   std::chrono::duration<double> elapsed{};

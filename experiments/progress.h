@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <string>
 
 namespace rcme {
@@ -10,9 +12,11 @@ namespace rcme {
 // plain line every five seconds. Says nothing for work that ends within a second.
 class Progress {
  public:
-  Progress(std::string unit, std::int64_t total);
+  // `num_done_before` of the total have been done at some other time: they say nothing about the rate.
+  Progress(std::string unit, std::int64_t total, std::int64_t num_done_before = 0);
   ~Progress();  // ends the line
 
+  // Callable from several threads.
   void Advance(std::int64_t count);
 
  private:
@@ -20,9 +24,13 @@ class Progress {
   void Print(Clock::time_point now);
 
   std::string unit_;
-  std::int64_t total_, done_ = 0;
+  std::int64_t total_, num_done_before_;
+  std::atomic<std::int64_t> done_;
   bool is_terminal_, has_printed_ = false;
-  Clock::time_point start_, last_print_;
+  std::chrono::milliseconds interval_;
+  Clock::time_point start_;
+  std::atomic<Clock::time_point> next_print_;
+  std::mutex print_mutex_;
 };
 
 // Seconds as "45 s", "3 min 20 s", "2 h 05 min".

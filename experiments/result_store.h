@@ -17,6 +17,12 @@
 
 namespace rcme {
 
+// The trials first, ..., end - 1.
+struct TrialRange {
+  std::uint32_t first = 0, end = 0;
+};
+
+// One thread at a time may call it.
 class ResultStore {
  public:
   // Opens the file of this plan's study, or makes it. Throws InputError if the path cannot be written, is no
@@ -32,8 +38,8 @@ class ResultStore {
   // changed.
   StudyPlan Plan() const;
 
-  // Trials of a condition in [first, last) that are not in the file. Callable while another thread adds.
-  std::vector<std::uint32_t> MissingTrials(std::uint32_t condition, std::uint32_t first, std::uint32_t last);
+  // Those of the first `num_trials` trials of a condition that are not in the file, ascending.
+  std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials);
 
   // Adds the records of whole trials; they reach the disk within about half a second, all records of a call
   // or none.

@@ -1,116 +1,116 @@
 #include "experiments/run_study.h"
 
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <chrono>
 #include <mutex>
-#include <optional>
 
+#include "experiments/for_each_index.h"
 #include "experiments/progress.h"
 
 namespace rcme {
 namespace {
 
-// Trials of one condition that a thread runs before it asks for more.
-struct Batch {
-  const Condition* condition = nullptr;
-  std::uint32_t num_in_range = 0;  // with those that were in the store already
-  std::vector<std::uint32_t> trials;
-};
+using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kTrialsPerBatch = 8;
-
-// Hands out the plan's missing trials batch by batch and takes in their records. Every call holds the one
-// lock, so each thread has one batch in hand and memory does not grow.
-class Ledger {
+// The trials of the plan that are not in the store, in the plan's order.
+class TrialsToRun {
  public:
-  Ledger(const StudyPlan& plan, ResultStore* store)
-      : plan_(plan), store_(store), progress_("trials", plan.NumTrials()) {}
-
-  // Nothing left, or stopped: nullopt.
-  std::optional<Batch> Next() {
-    const std::lock_guard lock(mutex_);
-    while (!is_stopped_ && condition_ < plan_.conditions.size()) {
-      const Condition& condition = plan_.conditions[condition_];
-      const auto end = static_cast<std::uint32_t>(condition.num_trials);
-      if (first_ >= end) {
-        ++condition_;
-        first_ = 0;
-        continue;
+  TrialsToRun(const StudyPlan& plan, ResultStore* store) {
+    for (const Condition& condition : plan.conditions) {
+      const auto num_trials = static_cast<std::uint32_t>(condition.num_trials);
+      for (const TrialRange& range : store->MissingTrials(condition.index, num_trials)) {
+        parts_.push_back({size_, &condition, range.first});
+        size_ += range.end - range.first;
       }
-      const std::uint32_t last = first_ + std::min(kTrialsPerBatch, end - first_);
-      Batch batch{&condition, last - first_, store_->MissingTrials(condition.index, first_, last)};
-      first_ = last;
-      return batch;
     }
-    return std::nullopt;
   }
 
-  void TakeIn(const Batch& batch, const std::vector<TrialRecord>& records) {
-    const std::lock_guard lock(mutex_);
-    if (!records.empty()) store_->Add(records);
-    num_run_ += static_cast<std::int64_t>(batch.trials.size());
-    progress_.Advance(batch.num_in_range);
-  }
+  std::int64_t size() const { return size_; }
 
-  // No more batches: a thread has failed.
-  void Stop() {
-    const std::lock_guard lock(mutex_);
-    is_stopped_ = true;
-  }
-
-  std::int64_t num_run() {
-    const std::lock_guard lock(mutex_);
-    return num_run_;
+  std::pair<const Condition*, std::uint32_t> operator[](std::int64_t index) const {
+    const Part& part = *std::prev(std::ranges::upper_bound(parts_, index, {}, &Part::first_index));
+    return {part.condition, part.first_trial + static_cast<std::uint32_t>(index - part.first_index)};
   }
 
  private:
-  std::mutex mutex_;
-  const StudyPlan& plan_;
-  ResultStore* store_;
-  Progress progress_;
-  size_t condition_ = 0;
-  std::uint32_t first_ = 0;
-  std::int64_t num_run_ = 0;
-  bool is_stopped_ = false;
+  struct Part {
+    std::int64_t first_index;
+    const Condition* condition;
+    std::uint32_t first_trial;
+  };
+  std::vector<Part> parts_;
+  std::int64_t size_ = 0;
 };
 
-// One thread's work, to the end of the study.
-void RunBatches(const StudyPlan& plan, Ledger* ledger) {
-  try {
-    while (const std::optional<Batch> batch = ledger->Next()) {
-      std::vector<TrialRecord> records;
-      for (const std::uint32_t trial : batch->trials) {
-        const TrialResult result = RunTrial(plan, *batch->condition, trial);
-        records.insert(records.end(), result.records.begin(), result.records.end());
-      }
-      ledger->TakeIn(*batch, records);
+// Collects the records of finished trials; from time to time one thread writes them, while the others go on.
+class RecordBuffer {
+ public:
+  explicit RecordBuffer(ResultStore* store) : store_(store) {}
+
+  // The records of a whole trial.
+  void Add(const std::vector<TrialRecord>& records) {
+    const Clock::time_point now = Clock::now();
+    size_t num_waiting = 0;
+    {
+      const std::lock_guard lock(waiting_mutex_);
+      waiting_.insert(waiting_.end(), records.begin(), records.end());
+      num_waiting = waiting_.size();
+      if (now < next_write_ && num_waiting < kMaxWaiting) return;
     }
-  } catch (...) {
-    ledger->Stop();
-    throw;
+    std::unique_lock writing(writing_mutex_, std::try_to_lock);
+    if (!writing && num_waiting < kMaxWaiting) return;  // another thread writes
+    if (!writing) writing.lock();                       // ... but not fast enough
+    Write();
   }
-}
+
+  // Writes what is left.
+  void Flush() {
+    const std::lock_guard writing(writing_mutex_);
+    Write();
+    store_->Commit();
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kWriteInterval{50};
+  static constexpr size_t kMaxWaiting = 10'000;
+
+  void Write() {
+    {
+      const std::lock_guard lock(waiting_mutex_);
+      written_.clear();
+      written_.swap(waiting_);
+      next_write_ = Clock::now() + kWriteInterval;
+    }
+    store_->Add(written_);
+  }
+
+  ResultStore* store_;
+  std::mutex waiting_mutex_;  // of waiting_ and next_write_
+  std::vector<TrialRecord> waiting_;
+  Clock::time_point next_write_ = Clock::now() + kWriteInterval;
+  std::mutex writing_mutex_;  // of written_
+  std::vector<TrialRecord> written_;
+};
 
 }  // namespace
 
 RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
-  const auto start = std::chrono::steady_clock::now();
-  const int threads = num_threads > 0 ? num_threads : tbb::info::default_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-  Ledger ledger(plan, store);
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
-    tbb::parallel_for(
-        0, threads, [&](int) { RunBatches(plan, &ledger); }, tbb::simple_partitioner());
-  });
-  store->Commit();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  return {plan.NumTrials(), ledger.num_run(), elapsed.count()};
+  const Clock::time_point start = Clock::now();
+  const TrialsToRun trials(plan, store);
+  Progress progress("trials", plan.NumTrials(), plan.NumTrials() - trials.size());
+  RecordBuffer buffer(store);
+  try {
+    ForEachIndex(trials.size(), num_threads, &progress, [&](std::int64_t index) {
+      const auto [condition, trial] = trials[index];
+      buffer.Add(RunTrial(plan, *condition, trial).records);
+    });
+  } catch (...) {
+    buffer.Flush();  // the trials before the error are good
+    throw;
+  }
+  buffer.Flush();
+  const std::chrono::duration<double> elapsed = Clock::now() - start;
+  return {plan.NumTrials(), trials.size(), elapsed.count()};
 }
 
 }  // namespace rcme

@@ -68,6 +68,8 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   const StreamName name{plan.study.seed, condition.index, trial, 0};
   TrialResult result;
   result.data = condition.source->Make(name);
+  result.estimates.reserve(plan.estimators.size());
+  result.records.reserve(plan.estimators.size());
   for (size_t e = 0; e < plan.estimators.size(); ++e) {
     RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
     const auto start = std::chrono::steady_clock::now();

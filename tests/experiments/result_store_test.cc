@@ -60,6 +60,16 @@ std::string Query(const std::string& path, const std::string& sql) {
   return answer;
 }
 
+// Trials of the condition that are not in the file, one by one.
+Trials Missing(ResultStore& store, std::uint32_t condition, std::uint32_t num_trials) {
+  Trials missing;
+  for (const TrialRange& range : store.MissingTrials(condition, num_trials)) {
+    EXPECT_LT(range.first, range.end);
+    for (std::uint32_t trial = range.first; trial < range.end; ++trial) missing.push_back(trial);
+  }
+  return missing;
+}
+
 class ResultStoreTest : public testing::Test {
  protected:
   std::string Text(const ResultStore& store) {
@@ -143,19 +153,36 @@ TEST_F(ResultStoreTest, EveryStatusComesBack) {
 
 TEST_F(ResultStoreTest, MissingTrials) {
   ResultStore store = ResultStore::OpenForRun(path_, plan_);
-  EXPECT_EQ(store.MissingTrials(0, 0, 4), (Trials{0, 1, 2, 3}));
-  EXPECT_EQ(store.MissingTrials(0, 3, 3), Trials{});
+  EXPECT_EQ(Missing(store, 0, 4), (Trials{0, 1, 2, 3}));
+  EXPECT_EQ(Missing(store, 0, 0), Trials{});
   for (const std::uint32_t trial : {0u, 2u, 5u}) store.Add(RecordsOfTrial(0, trial));
-  EXPECT_EQ(store.MissingTrials(0, 0, 7), (Trials{1, 3, 4, 6}));
-  EXPECT_EQ(store.MissingTrials(0, 2, 6), (Trials{3, 4}));
-  EXPECT_EQ(store.MissingTrials(0, 5, 6), Trials{});
-  EXPECT_EQ(store.MissingTrials(1, 0, 2), (Trials{0, 1}));
+  EXPECT_EQ(Missing(store, 0, 7), (Trials{1, 3, 4, 6}));
+  EXPECT_EQ(store.MissingTrials(0, 7).size(), 3u) << "neighbours are one range";
+  EXPECT_EQ(Missing(store, 0, 6), (Trials{1, 3, 4}));
+  EXPECT_EQ(Missing(store, 0, 5), (Trials{1, 3, 4}));
+  EXPECT_EQ(Missing(store, 0, 4), (Trials{1, 3}));
+  EXPECT_EQ(Missing(store, 0, 1), Trials{});
+  EXPECT_EQ(Missing(store, 1, 2), (Trials{0, 1}));
 }
 
 TEST_F(ResultStoreTest, AddsWholeTrialsOnce) {
   ResultStore store = ResultStore::OpenForRun(path_, plan_);
   store.Add(RecordsOfTrial(0, 0));
   EXPECT_TRUE(ThrowsInputError([&] { store.Add(RecordsOfTrial(0, 0)); }, {path_}));
+}
+
+TEST_F(ResultStoreTest, ACallThatFailsLeavesNothing) {
+  std::vector<TrialRecord> records = RecordsOfTrial(0, 1), again = RecordsOfTrial(0, 0);
+  records.insert(records.end(), again.begin(), again.end());
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    store.Add(again);
+    store.Commit();
+    EXPECT_TRUE(ThrowsInputError([&] { store.Add(records); }, {path_}));  // after its first trial is in
+    store.Add(RecordsOfTrial(0, 2));
+  }
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  EXPECT_EQ(Missing(store, 0, 4), (Trials{1, 3})) << "a part of a call was kept, or more than the call lost";
 }
 
 TEST_F(ResultStoreTest, ReopensForMoreTrialsAndAnotherDescription) {
@@ -166,7 +193,7 @@ TEST_F(ResultStoreTest, ReopensForMoreTrialsAndAnotherDescription) {
   const StudyPlan longer = MakePlan(study);
   {
     ResultStore store = ResultStore::OpenForRun(path_, longer);
-    EXPECT_EQ(store.MissingTrials(0, 0, 2), Trials{1});
+    EXPECT_EQ(Missing(store, 0, 2), Trials{1});
   }
   EXPECT_EQ(ResultStore::OpenForReading(path_).Plan().study_yaml, longer.study_yaml);
 }
@@ -253,7 +280,8 @@ TEST_F(ResultStoreTest, ASecondRunIsRefusedWhileTheFirstGoesOn) {
         ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, {path_, "in use by another run"}));
     first.Add(RecordsOfTrial(0, 1));
   }
-  EXPECT_EQ(ResultStore::OpenForRun(path_, plan_).MissingTrials(0, 0, 3), Trials{2});
+  ResultStore second = ResultStore::OpenForRun(path_, plan_);
+  EXPECT_EQ(Missing(second, 0, 3), Trials{2});
 }
 
 TEST_F(ResultStoreTest, NothingToRead) {
