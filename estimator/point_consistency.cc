@@ -34,6 +34,17 @@ ConstraintSpread SpreadOfConstraint(const UncertainFundamental& model, const Epi
   return spread;
 }
 
+// Some L with L L' = cov. Cholesky's where it exists; eigenvectors also take a covariance that is singular to
+// within rounding, such as zero for a known motion. Nothing if it is not positive semi-definite.
+std::optional<Matrix5d> SquareRootOf(const Matrix5d& cov) {
+  const Eigen::LLT<Matrix5d> llt(cov);
+  if (llt.info() == Eigen::Success) return llt.matrixL();
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(cov);
+  const Vector5d& variances = eigen.eigenvalues();
+  if (eigen.info() != Eigen::Success || variances(0) < -1e-12 * std::abs(variances(4))) return std::nullopt;
+  return eigen.eigenvectors() * variances.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
 // 4x3 orthonormal basis of the complement of the unit vector u: the last columns of the Householder
 // reflection that takes u to the first axis.
 Eigen::Matrix<double, 4, 3> ComplementOf(const Eigen::Vector4d& u) {
@@ -46,13 +57,12 @@ Eigen::Matrix<double, 4, 3> ComplementOf(const Eigen::Vector4d& u) {
 
 }  // namespace
 
-std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose& pose, const Matrix5d& pose_cov) {
+std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose& pose,
+                                                              const Matrix5d& pose_cov) {
   if (!pose_cov.allFinite()) return std::nullopt;
-  // Eigenvectors also take a covariance that is singular to within rounding, such as zero for a known motion.
-  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(pose_cov);
-  const Vector5d& variances = eigen.eigenvalues();
-  if (eigen.info() != Eigen::Success || variances(0) < -1e-12 * std::abs(variances(4))) return std::nullopt;
-  const Matrix5d L = eigen.eigenvectors() * variances.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const std::optional<Matrix5d> root = SquareRootOf(pose_cov);
+  if (!root) return std::nullopt;
+  const Matrix5d& L = *root;
 
   const std::array<Eigen::Matrix3d, 5> dE = EssentialTangent(pose);
   std::array<Eigen::Matrix3d, 5> whitened;

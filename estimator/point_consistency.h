@@ -22,9 +22,10 @@ namespace rcme {
 // The floor of a squared Sampson distance in units of sigma^2: the printed entropy stays finite at g = 0.
 inline constexpr double kLeastSquaredDistance = 1e-60;
 
-// The five derivatives of E along the principal axes of the motion's covariance: with L L' = Sigma_p, the k-th
-// is sum_l L_lk dE/dp_l. Nothing if pose_cov is not finite and positive semi-definite.
-std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose& pose, const Matrix5d& pose_cov);
+// The five derivatives of E along the principal axes of the motion's covariance: with L L' = Sigma_p, the
+// k-th is sum_l L_lk dE/dp_l. Nothing if pose_cov is not finite and positive semi-definite.
+std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose& pose,
+                                                              const Matrix5d& pose_cov);
 
 // F and its five derivatives along the principal axes of the motion's covariance: with L L' = Sigma_p, the
 // k-th is sum_l L_lk dF/dp_l, so that in these axes the motion's covariance is the identity.
@@ -71,11 +72,14 @@ class AsPrintedTest {
   static constexpr int kDegreesOfFreedom = 3;  // the paper's "4 - 1"
   AsPrintedTest(const UncertainFundamental& model, double sigma_px);
 
-  // Closed form, see the source; a singular Sigma_delta gives d2 = infinity: nothing can be said for the match.
+  // Closed form, see the source; a singular Sigma_delta gives d2 = infinity: nothing can be said for the
+  // match.
   double Distance(const Correspondence& match, PointResidual* residual) const;
   // h = 1/2 log((2 pi e)^4 det Sigma_delta), det in px^8.
   static double EntropyOfLogDeterminant(double log_det_cov);
-  double Entropy(const PointResidual& residual) const { return EntropyOfLogDeterminant(residual.log_det_cov); }
+  double Entropy(const PointResidual& residual) const {
+    return EntropyOfLogDeterminant(residual.log_det_cov);
+  }
   // Not a density of the residual: no likelihood. Always zero.
   double NegativeLogLikelihood(const PointResidual&) const { return 0.0; }
 

@@ -4,14 +4,15 @@
 //
 //   struct Pipeline {
 //     using PointTest = ...;              // point_consistency.h: is a match an inlier, with what entropy
-//     static constexpr bool kTestsSample;                                            // eq::sample-p-test, and
-//     static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);   // what it is
-//     static bool InlierSetIsGood(z, options, thresholds);                           // eq::inlier-quality-test
-//     static bool IsBetter(score_a, score_b, options);                               // eq::model_select_entropy
+//     static constexpr bool kTestsSample;                                            // eq::sample-p-test,
+//     and static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);   // what it is static
+//     bool InlierSetIsGood(z, options, thresholds);                           // eq::inlier-quality-test
+//     static bool IsBetter(score_a, score_b, options);                               //
+//     eq::model_select_entropy
 //   };
 //
-// A search makes the hypotheses and scores them: reference_search.h one by one, kernels/block_search.h eight at a
-// time. No heap allocation inside the loop.
+// A search makes the hypotheses and scores them: reference_search.h one by one, kernels/block_search.h eight
+// at a time. No heap allocation inside the loop.
 //
 //   struct Search {
 //     const Thresholds& thresholds() const;

@@ -41,7 +41,8 @@ std::vector<Parameter> Parameters(RansacOptions& o) {
       Parameter::Choice<RefinementError>(
           "refinement_error", &o.refinement_error,
           {{"sampson", RefinementError::kSampson}, {"reprojection", RefinementError::kReprojection}},
-          "what the refinement minimises: Sampson distance (fast), or reprojection error (bundle adjustment)"),
+          "what the refinement minimises: Sampson distance (fast), or reprojection error (bundle "
+          "adjustment)"),
       Parameter::Choice<Implementation>(
           "implementation", &o.implementation,
           {{"fast", Implementation::kFast}, {"reference", Implementation::kReference}},

@@ -62,8 +62,9 @@ struct RansacOptions {
   Implementation implementation = Implementation::kFast;
   double kappa = 0.5;  // failure flag: n*_I / n_I <= kappa (eq::metric)
 
-  // mu, or the default of the reading: -3.53 as printed (of a 4-dimensional density in px: it has units); rank-aware, 6
-  // nats of excess entropy: at 40 % outliers 3 nats refused 23 % of 150 trials and 6 nats 5 %, with no more failures.
+  // mu, or the default of the reading: -3.53 as printed (of a 4-dimensional density in px: it has units);
+  // rank-aware, 6 nats of excess entropy: at 40 % outliers 3 nats refused 23 % of 150 trials and 6 nats 5 %,
+  // with no more failures.
   double MuOrDefault() const;
 };
 

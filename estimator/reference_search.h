@@ -55,7 +55,8 @@ class ReferenceSearch {
     std::vector<int> inliers;
     for (size_t i = 0; i < problem_.matches.size(); ++i) {
       PointResidual residual;
-      if (test.Distance(problem_.matches[i], &residual) <= thresholds_.point) inliers.push_back(static_cast<int>(i));
+      if (test.Distance(problem_.matches[i], &residual) <= thresholds_.point)
+        inliers.push_back(static_cast<int>(i));
     }
     return inliers;
   }

@@ -6,11 +6,13 @@
 
 namespace rcme {
 
-double ConsistencyThreshold(double significance_level) { return ChiSquareQuantile(2, 1.0 - significance_level); }
+double ConsistencyThreshold(double significance_level) {
+  return ChiSquareQuantile(2, 1.0 - significance_level);
+}
 
 std::string DivergenceMessage(int num_support, int num_fitted) {
-  return fmt::format("the refinement, begun with {} matches, was left with {} and no finite optimum", num_support,
-                     num_fitted);
+  return fmt::format("the refinement, begun with {} matches, was left with {} and no finite optimum",
+                     num_support, num_fitted);
 }
 
 std::string SuccessMessage(int num_inliers, int num_matches) {

@@ -9,8 +9,8 @@
 //     RefinedMotion Refine(set, start, loss) const;
 //     Set FindAgreeing(motion, fitted, significance_level) const;
 //     Set SelectFitSet(motion, fitted) const;                 // refinement/fit_set.h
-//     int CountConsistent(set, pose, threshold) const;        // squared Sampson distance / sigma^2 < threshold
-//     Set SetOf(sorted indices) const; std::vector<int> IndicesOf(set) const; int Count(set) const;
+//     int CountConsistent(set, pose, threshold) const;        // squared Sampson distance / sigma^2 <
+//     threshold Set SetOf(sorted indices) const; std::vector<int> IndicesOf(set) const; int Count(set) const;
 //   };
 #pragma once
 
@@ -34,7 +34,8 @@ struct Fit {
 };
 
 template <typename Matches>
-Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& support, const RelativePose& start) {
+Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& support,
+                         const RelativePose& start) {
   Fit<Matches> fit{matches.Refine(support, start, Loss::kCauchy), support};
   for (int refit = 0; refit < kMaxRefits && fit.motion.converged; ++refit) {
     typename Matches::Set selected = matches.SelectFitSet(fit.motion, fit.fitted);
@@ -63,16 +64,16 @@ Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis* w
 }
 
 // The threshold of "reprojection error consistent", chi2_2(1 - alpha) (Sec. metric). The error is the squared
-// Sampson distance, its first-order minimum over the point; Huber's function does not change the verdict as long as
-// its corner lies at or beyond the threshold.
+// Sampson distance, its first-order minimum over the point; Huber's function does not change the verdict as
+// long as its corner lies at or beyond the threshold.
 double ConsistencyThreshold(double significance_level);
 
 std::string DivergenceMessage(int num_support, int num_fitted);
 std::string SuccessMessage(int num_inliers, int num_matches);
 
-// Refines the winner's motion over its inlier set `support`, and fills motion, covariance, final inliers, the kappa
-// flag and the status. The final inliers are the matches that agree with the refined motion (rank-aware, its
-// covariance included).
+// Refines the winner's motion over its inlier set `support`, and fills motion, covariance, final inliers, the
+// kappa flag and the status. The final inliers are the matches that agree with the refined motion
+// (rank-aware, its covariance included).
 template <typename Matches>
 void RefineWinner(const Matches& matches, const RansacOptions& options, const Sample& sample,
                   const typename Matches::Set& support, MotionEstimate* estimate) {
@@ -89,7 +90,8 @@ void RefineWinner(const Matches& matches, const RansacOptions& options, const Sa
   estimate->status = MotionStatus::kOk;
   estimate->cam2_from_cam1 = refined.cam2_from_cam1;
   estimate->pose_cov = refined.pose_cov;
-  estimate->inliers = matches.IndicesOf(matches.FindAgreeing(refined, fit.fitted, options.significance_level));
+  estimate->inliers =
+      matches.IndicesOf(matches.FindAgreeing(refined, fit.fitted, options.significance_level));
   const double threshold = ConsistencyThreshold(options.significance_level);
   estimate->num_consistent_before = matches.CountConsistent(support, winner.pose, threshold);
   estimate->num_consistent_after = matches.CountConsistent(support, refined.cam2_from_cam1, threshold);

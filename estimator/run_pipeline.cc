@@ -23,12 +23,13 @@ MotionEstimate EstimateFromLoop(const LoopResult& loop) {
   const bool all_degenerate = counts.num_degenerate_samples == counts.num_hypotheses;
   estimate.status = all_degenerate ? MotionStatus::kDegenerateMatches : MotionStatus::kNoCandidate;
   estimate.message =
-      all_degenerate ? fmt::format("none of {} samples determines a motion", counts.num_hypotheses)
-                     : fmt::format(
-                           "no hypothesis of {} is a candidate: {} degenerate, {} disagree with their sample, "
-                           "{} have poor inliers",
-                           counts.num_hypotheses, counts.num_degenerate_samples, counts.num_inconsistent_samples,
-                           counts.num_poor_inlier_sets);
+      all_degenerate
+          ? fmt::format("none of {} samples determines a motion", counts.num_hypotheses)
+          : fmt::format(
+                "no hypothesis of {} is a candidate: {} degenerate, {} disagree with their sample, "
+                "{} have poor inliers",
+                counts.num_hypotheses, counts.num_degenerate_samples, counts.num_inconsistent_samples,
+                counts.num_poor_inlier_sets);
   return estimate;
 }
 

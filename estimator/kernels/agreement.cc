@@ -36,7 +36,8 @@ void FindAgreeingMatches(const MatchBlocks& matches, const TwoViewPose& pose, co
       const Vec total = hn::IfThenElse(is_fitted, terms.n2 - terms.variance, terms.n2 + terms.variance);
       const Mask fits = hn::And(terms.g2 <= limit * total, terms.variance <= max_leverage * terms.n2);
       const Mask are_matches = AreMatches(b * kBlockSize + lane, matches.num_matches());
-      bits |= BitsOf(hn::And(are_matches, hn::AndNot(AreClearlyBehind(pose, matches.ray_scale(), m), fits))) << lane;
+      bits |= BitsOf(hn::And(are_matches, hn::AndNot(AreClearlyBehind(pose, matches.ray_scale(), m), fits)))
+              << lane;
     }
     (*agreeing)[static_cast<size_t>(b)] = static_cast<std::uint8_t>(bits);
   }
@@ -47,7 +48,8 @@ FrontCounts CountFront(const MatchBlocks& matches, const MatchMask& mask, const 
   for (int b = 0; b < matches.num_blocks(); ++b) {
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
       const Sides sides = EvaluateSides(pose, matches.ray_scale(), LoadMatches(matches[b], lane));
-      const unsigned ahead = BitsOf(sides.is_ahead_of_camera2) & (static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
+      const unsigned ahead =
+          BitsOf(sides.is_ahead_of_camera2) & (static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
       counts.with_t += __builtin_popcount(ahead & BitsOf(sides.inverse_depth > Set(0.0)));
       counts.with_opposite_t += __builtin_popcount(ahead & BitsOf(sides.inverse_depth < Set(0.0)));
     }

@@ -13,8 +13,8 @@ struct AgreementBounds {
   double leverage;          // variance that the motion adds, in units of sigma^2, <= this
 };
 
-// The matches with g^2 <= squared_distance * (n2 - v) where fitted, (n2 + v) elsewhere, v the variance that the
-// motion adds to g; leverage v / n2 within its bound; and not clearly behind a camera.
+// The matches with g^2 <= squared_distance * (n2 - v) where fitted, (n2 + v) elsewhere, v the variance that
+// the motion adds to g; leverage v / n2 within its bound; and not clearly behind a camera.
 void FindAgreeing(const MatchBlocks& matches, const RelativePose& pose, const double* F,
                   const VariancePolynomial& variance, const MatchMask& fitted, const AgreementBounds& bounds,
                   MatchMask* agreeing);

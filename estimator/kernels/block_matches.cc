@@ -17,7 +17,8 @@ MatchMask FindWithin(const MatchBlocks& matches, const RefinedMotion& motion, co
   const std::optional<WhitenedModel> model =
       WhitenedModel::From(matches, motion.cam2_from_cam1, motion.pose_cov);
   if (!model) return agreeing;
-  FindAgreeing(matches, motion.cam2_from_cam1, model->F, VariancePolynomial(model->dF), fitted, bounds, &agreeing);
+  FindAgreeing(matches, motion.cam2_from_cam1, model->F, VariancePolynomial(model->dF), fitted, bounds,
+               &agreeing);
   return agreeing;
 }
 
@@ -35,8 +36,9 @@ RefinedMotion BlockMatches::Refine(const Set& set, const RelativePose& start, Lo
 
 MatchMask BlockMatches::FindAgreeing(const RefinedMotion& motion, const Set& fitted,
                                      double significance_level) const {
-  return FindWithin(matches_, motion, fitted,
-                    {ChiSquareQuantile(1, 1.0 - significance_level), std::numeric_limits<double>::infinity()});
+  return FindWithin(
+      matches_, motion, fitted,
+      {ChiSquareQuantile(1, 1.0 - significance_level), std::numeric_limits<double>::infinity()});
 }
 
 MatchMask BlockMatches::SelectFitSet(const RefinedMotion& motion, const Set& fitted) const {

@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// Sets of matches as bits, looked at many at a time; see refine_winner.h. The same decisions as ReferenceMatches, to
-// rounding.
+// Sets of matches as bits, looked at many at a time; see refine_winner.h. The same decisions as
+// ReferenceMatches, to rounding.
 class BlockMatches {
  public:
   using Set = MatchMask;

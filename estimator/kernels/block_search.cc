@@ -19,8 +19,8 @@ int DegreesOfFreedom(BlockSearch::Reading reading) {
 
 }  // namespace
 
-BlockSearch::BlockSearch(const MotionProblem& problem, const MatchBlocks& matches, const RansacOptions& options,
-                         const Tests& tests, RandomStream& rng)
+BlockSearch::BlockSearch(const MotionProblem& problem, const MatchBlocks& matches,
+                         const RansacOptions& options, const Tests& tests, RandomStream& rng)
     : matches_(matches),
       tests_(tests),
       thresholds_(Thresholds::For(problem, options, DegreesOfFreedom(tests.reading))),
@@ -33,7 +33,10 @@ BlockSearch::BlockSearch(const MotionProblem& problem, const MatchBlocks& matche
 }
 
 void BlockSearch::InstantiateSamples() {
-  const Spread spread = tests_.reading == Reading::kKnownPose ? Spread::kNone : Spread::kCovariance;
+  const bool needs_misfit = tests_.tests_sample && tests_.reading == Reading::kRankAware;
+  const Spread spread = tests_.reading == Reading::kKnownPose ? Spread::kNone
+                        : needs_misfit                        ? Spread::kCovarianceAndMisfit
+                                                              : Spread::kCovariance;
   InstantiateModels(matches_, samples_, spread, &block_);
 }
 
@@ -56,7 +59,8 @@ Proposal BlockSearch::Next() {
   }
   Proposal proposal{samples_[static_cast<size_t>(lane_)]};
   if (block_.is_model >> lane_ & 1) {
-    proposal.verdict = is_consistent_ >> lane_ & 1 ? SampleVerdict::kConsistent : SampleVerdict::kInconsistent;
+    proposal.verdict =
+        is_consistent_ >> lane_ & 1 ? SampleVerdict::kConsistent : SampleVerdict::kInconsistent;
   }
   return proposal;
 }
@@ -64,27 +68,24 @@ Proposal BlockSearch::Next() {
 InlierScore BlockSearch::Score() { return ScoreLane(lane_); }
 
 InlierScore BlockSearch::ScoreLane(int lane) {
-  const WhitenedModel model(block_, lane);
-  switch (tests_.reading) {
-    case Reading::kAsPrinted:
-      ScanAsPrinted(matches_, model, thresholds_.point, &scan_);
-      return SummarizeEntropies(scan_, entropy_offset_);
-    case Reading::kRankAware: {
-      const VariancePolynomial variance(model.dF);
-      ScanRankAware(matches_, model.F, variance, thresholds_.point, &scan_);
-      InlierScore score = SummarizeEntropies(scan_, entropy_offset_);
-      if (tests_.needs_likelihood) {
-        score.negative_log_likelihood =
-            NegativeLogLikelihood(matches_, model.F, variance, thresholds_.outlier_cost);
-      }
-      return score;
-    }
-    case Reading::kKnownPose:
-      break;
+  if (tests_.reading == Reading::kKnownPose) {
+    double F[9];
+    for (int i = 0; i < 9; ++i) F[i] = block_.F[i][lane];
+    ScanKnownPose(matches_, F, thresholds_.point, &scan_);
+    return {.num_inliers = scan_.num_inliers};
   }
-  ScanKnownPose(matches_, model.F, thresholds_.point, &scan_);
-  InlierScore score;
-  score.num_inliers = scan_.num_inliers;
+  const WhitenedModel model(block_, lane);
+  if (tests_.reading == Reading::kAsPrinted) {
+    ScanAsPrinted(matches_, model, thresholds_.point, &scan_);
+    return SummarizeEntropies(scan_, entropy_offset_);
+  }
+  const VariancePolynomial variance(model.dF);
+  ScanRankAware(matches_, model.F, variance, thresholds_.point, &scan_);
+  InlierScore score = SummarizeEntropies(scan_, entropy_offset_);
+  if (tests_.needs_likelihood) {
+    score.negative_log_likelihood =
+        NegativeLogLikelihood(matches_, model.F, variance, thresholds_.outlier_cost);
+  }
   return score;
 }
 

@@ -1,5 +1,5 @@
-// The parts of the hypothesis loop, eight hypotheses and many matches at a time. The same samples, verdicts and
-// scores as reference_search.h, to rounding.
+// The parts of the hypothesis loop, eight hypotheses and many matches at a time. The same samples, verdicts
+// and scores as reference_search.h, to rounding.
 #pragma once
 
 #include <array>

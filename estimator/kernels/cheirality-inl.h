@@ -1,8 +1,9 @@
 // On which side of the cameras the triangulated points lie; see geometry/triangulation.h for the scalar twin.
 //
 // With y = R ray1, the point is y + rho t times the depth, rho = w / q the inverse depth in baselines,
-// w = -(ray2 x y)'(ray2 x t), q = |ray2 x t|^2. Only signs are needed, so nothing is divided: rho > 0 is w > 0,
-// and the depth in camera 2 has the sign of q y_z + w t_z. Turning t over turns w over, and leaves the depth.
+// w = -(ray2 x y)'(ray2 x t), q = |ray2 x t|^2. Only signs are needed, so nothing is divided: rho > 0 is w >
+// 0, and the depth in camera 2 has the sign of q y_z + w t_z. Turning t over turns w over, and leaves the
+// depth.
 #if defined(RCME_ESTIMATOR_KERNELS_CHEIRALITY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_CHEIRALITY_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_CHEIRALITY_INL_H_
@@ -26,7 +27,9 @@ HWY_INLINE Sides EvaluateSides(const TwoViewPose& pose, const RayScale& scale, c
   const Vec one = Set(1.0);
   const Vec3 ray1 = {m.x1 * Set(scale.x1), m.y1 * Set(scale.y1), one};
   const Vec3 ray2 = {m.x2 * Set(scale.x2), m.y2 * Set(scale.y2), one};
-  const auto row = [&](int i) { return Vec3{Set(pose.R[3 * i]), Set(pose.R[3 * i + 1]), Set(pose.R[3 * i + 2])}; };
+  const auto row = [&](int i) {
+    return Vec3{Set(pose.R[3 * i]), Set(pose.R[3 * i + 1]), Set(pose.R[3 * i + 2])};
+  };
   const Vec3 y = Mat3{{row(0), row(1), row(2)}} * ray1;
   const Vec3 parallax = Cross(ray2, {Set(pose.t[0]), Set(pose.t[1]), Set(pose.t[2])});
   const Vec w = hn::Neg(Dot(Cross(ray2, y), parallax));

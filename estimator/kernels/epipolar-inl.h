@@ -1,4 +1,5 @@
-// The epipolar constraint g = x2' F x1 and its gradient for several matches, or several hypotheses, side by side.
+// The epipolar constraint g = x2' F x1 and its gradient for several matches, or several hypotheses, side by
+// side.
 #if defined(RCME_ESTIMATOR_KERNELS_EPIPOLAR_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_EPIPOLAR_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_EPIPOLAR_INL_H_

@@ -1,8 +1,8 @@
 // The essential matrix nearest to a 3x3 matrix, without iteration.
 //
-// u3, the left singular vector of the smallest singular value, is the eigenvector of the smallest eigenvalue of
-// M M' (closed form of a symmetric 3x3 matrix: Smith 1961). For any orthonormal u1, u2 normal to it, the rows
-// r_i = u_i' M span the plane normal to v3. In bases of the two planes, M is the 2x2 matrix
+// u3, the left singular vector of the smallest singular value, is the eigenvector of the smallest eigenvalue
+// of M M' (closed form of a symmetric 3x3 matrix: Smith 1961). For any orthonormal u1, u2 normal to it, the
+// rows r_i = u_i' M span the plane normal to v3. In bases of the two planes, M is the 2x2 matrix
 //
 //   B = [[a, 0], [c, d]],   a = |r1|, v1 = r1 / a, c = r2'v1, d = r2'v2 > 0,
 //
@@ -39,7 +39,8 @@ HWY_INLINE Vec3 SmallestEigenvector(const Mat3& S) {
              shifted2 = {S.row[2].x, S.row[2].y, c};
   const Vec cosine = Dot(shifted0, Cross(shifted1, shifted2)) / (Set(2.0) * p * p * p);
   const Vec angle = hn::Acos(Tag(), hn::Clamp(cosine, Set(-1.0), Set(1.0))) * Set(1.0 / 3.0);
-  const Vec smallest = hn::MulAdd(p + p, hn::Cos(Tag(), angle + Set(2.0943951023931954923)), mean);  // 2 pi / 3
+  const Vec smallest =
+      hn::MulAdd(p + p, hn::Cos(Tag(), angle + Set(2.0943951023931954923)), mean);  // 2 pi / 3
 
   const Vec3 row0 = {S.row[0].x - smallest, S.row[0].y, S.row[0].z};
   const Vec3 row1 = {S.row[1].x, S.row[1].y - smallest, S.row[1].z};

@@ -22,66 +22,62 @@ namespace rcme::HWY_NAMESPACE {
 //   N = (u1 v1' - u2 v2') / sqrt(2), (u1 v2' + u2 v1') / sqrt(2), u3 v3'
 //
 // With delta f = -G n and var n = D, the covariance of the coordinates of delta f is (G'b_i)' D (G'b_j).
-struct Basis {
-  static constexpr int kMotion = 5, kNormal = 3, kSize = 8;
+HWY_INLINE void Product(const Vec3& u, const Vec3& v, Vec* b) {
+  const Vec us[] = {u.x, u.y, u.z};
+  for (int i = 0; i < 3; ++i) {
+    b[3 * i] = us[i] * v.x;
+    b[3 * i + 1] = us[i] * v.y;
+    b[3 * i + 2] = us[i] * v.z;
+  }
+}
+HWY_INLINE void SumOfProducts(const Vec3& u, const Vec3& v, const Vec3& s, const Vec3& r, Vec* b) {
+  Product(u, v, b);
+  const Vec ss[] = {s.x, s.y, s.z};
+  for (int i = 0; i < 3; ++i) {
+    b[3 * i] = hn::MulAdd(ss[i], r.x, b[3 * i]);
+    b[3 * i + 1] = hn::MulAdd(ss[i], r.y, b[3 * i + 1]);
+    b[3 * i + 2] = hn::MulAdd(ss[i], r.z, b[3 * i + 2]);
+  }
+}
 
-  // b_c as a 9-vector, row by row.
-  static HWY_INLINE void Vector(const EssentialBasis& e, int c, Vec* b) {
-    const Vec root_half = Set(0.70710678118654752440);
-    switch (c) {
-      case 0:
-        return Products(Times(e.u[0], root_half), e.v[1], Times(e.u[1], hn::Neg(root_half)), e.v[0], b);
-      case 1:
-        return Product(e.u[2], e.v[0], b);
-      case 2:
-        return Product(e.u[2], e.v[1], b);
-      case 3:
-        return Product(e.u[0], e.v[2], b);
-      case 4:
-        return Product(e.u[1], e.v[2], b);
-      case 5:
-        return Products(Times(e.u[0], root_half), e.v[0], Times(e.u[1], hn::Neg(root_half)), e.v[1], b);
-      case 6:
-        return Products(Times(e.u[0], root_half), e.v[1], Times(e.u[1], root_half), e.v[0], b);
-      default:
-        return Product(e.u[2], e.v[2], b);
-    }
-  }
+HWY_INLINE void MotionBasis(const EssentialBasis& e, Vec (&T)[5][9]) {
+  const Vec root_half = Set(0.70710678118654752440);
+  SumOfProducts(Times(e.u[0], root_half), e.v[1], Times(e.u[1], hn::Neg(root_half)), e.v[0], T[0]);
+  Product(e.u[2], e.v[0], T[1]);
+  Product(e.u[2], e.v[1], T[2]);
+  Product(e.u[0], e.v[2], T[3]);
+  Product(e.u[1], e.v[2], T[4]);
+}
 
- private:
-  static HWY_INLINE void Product(const Vec3& u, const Vec3& v, Vec* b) {
-    const Vec us[] = {u.x, u.y, u.z};
-    for (int i = 0; i < 3; ++i) {
-      b[3 * i] = us[i] * v.x;
-      b[3 * i + 1] = us[i] * v.y;
-      b[3 * i + 2] = us[i] * v.z;
-    }
-  }
-  static HWY_INLINE void Products(const Vec3& u, const Vec3& v, const Vec3& s, const Vec3& r, Vec* b) {
-    Product(u, v, b);
-    const Vec ss[] = {s.x, s.y, s.z};
-    for (int i = 0; i < 3; ++i) {
-      b[3 * i] = hn::MulAdd(ss[i], r.x, b[3 * i]);
-      b[3 * i + 1] = hn::MulAdd(ss[i], r.y, b[3 * i + 1]);
-      b[3 * i + 2] = hn::MulAdd(ss[i], r.z, b[3 * i + 2]);
-    }
-  }
-};
+HWY_INLINE void NormalBasis(const EssentialBasis& e, Vec (&N)[3][9]) {
+  const Vec root_half = Set(0.70710678118654752440);
+  const Vec3 u1 = Times(e.u[0], root_half), u2 = Times(e.u[1], root_half);
+  SumOfProducts(u1, e.v[0], Times(u2, Set(-1.0)), e.v[1], N[0]);
+  SumOfProducts(u1, e.v[1], u2, e.v[0], N[1]);
+  Product(e.u[2], e.v[2], N[2]);
+}
 
 // Lower Cholesky factor of an m x m matrix (lower triangle); a pivot that rounding made negative counts as 0.
 template <int m>
 HWY_INLINE void Cholesky(const Vec (&S)[m][m], Vec (&L)[m][m]) {
+  Vec pivots[m],
+      scaled[m][m];  // S = L1 diag(pivots) L1' first, scaled = L1 diag(pivots): no root on the long chain
   for (int j = 0; j < m; ++j) {
     Vec pivot = S[j][j];
-    for (int k = 0; k < j; ++k) pivot = hn::NegMulAdd(L[j][k], L[j][k], pivot);
-    pivot = hn::Max(pivot, Set(0.0));
-    L[j][j] = hn::Sqrt(pivot);
-    const Vec inverse = hn::IfThenElseZero(pivot > Set(0.0), Set(1.0) / L[j][j]);
+    for (int k = 0; k < j; ++k) pivot = hn::NegMulAdd(scaled[j][k], L[j][k], pivot);
+    const Mask is_positive = pivot > Set(0.0);
+    pivots[j] = hn::IfThenElseZero(is_positive, pivot);
+    const Vec inverse = hn::IfThenElseZero(is_positive, Set(1.0) / pivot);
     for (int i = j + 1; i < m; ++i) {
       Vec rest = S[i][j];
-      for (int k = 0; k < j; ++k) rest = hn::NegMulAdd(L[i][k], L[j][k], rest);
+      for (int k = 0; k < j; ++k) rest = hn::NegMulAdd(scaled[i][k], L[j][k], rest);
+      scaled[i][j] = rest;
       L[i][j] = rest * inverse;
     }
+  }
+  for (int j = 0; j < m; ++j) {
+    L[j][j] = hn::Sqrt(pivots[j]);
+    for (int i = j + 1; i < m; ++i) L[i][j] = L[i][j] * L[j][j];
   }
 }
 
@@ -128,7 +124,8 @@ HWY_INLINE void FillConstraints(const SampleLanes& sample, const Whitening& whit
 }
 
 // D_k = |J|^2 of the sample's constraints under the linear model f.
-HWY_INLINE void ConstraintVariances(const SampleLanes& sample, const Whitening& whitening, const Vec* f, Vec* D) {
+HWY_INLINE void ConstraintVariances(const SampleLanes& sample, const Whitening& whitening, const Vec* f,
+                                    Vec* D) {
   Vec F[9];
   for (int i = 0; i < 9; ++i) F[i] = whitening(i / 3, i % 3, f[i]);
   for (int k = 0; k < 8; ++k) {
@@ -136,46 +133,37 @@ HWY_INLINE void ConstraintVariances(const SampleLanes& sample, const Whitening& 
     const Vec in_2_y = hn::MulAdd(F[3], sample.x1[k], hn::MulAdd(F[4], sample.y1[k], F[5]));
     const Vec in_1_x = hn::MulAdd(F[0], sample.x2[k], hn::MulAdd(F[3], sample.y2[k], F[6]));
     const Vec in_1_y = hn::MulAdd(F[1], sample.x2[k], hn::MulAdd(F[4], sample.y2[k], F[7]));
-    D[k] = hn::MulAdd(in_2_x, in_2_x,
-                      hn::MulAdd(in_2_y, in_2_y, hn::MulAdd(in_1_x, in_1_x, in_1_y * in_1_y)));
+    D[k] =
+        hn::MulAdd(in_2_x, in_2_x, hn::MulAdd(in_2_y, in_2_y, hn::MulAdd(in_1_x, in_1_x, in_1_y * in_1_y)));
   }
 }
 
-// Covariances of the coordinates in T and N, lower triangles.
-struct CoordinateCovariances {
-  Vec motion[5][5];
-  Vec normal[3][3];
-};
-
-HWY_INLINE CoordinateCovariances PropagateCovariance(const ConstraintFactors& factors, const EssentialBasis& basis,
-                                                     const Vec* D) {
-  Vec gain[Basis::kSize][8], scaled[8];  // G'b_c, and D times it
-  CoordinateCovariances cov;
-  for (int c = 0; c < Basis::kSize; ++c) {
-    Vec b[9];
-    Basis::Vector(basis, c, b);
-    ApplyGainTransposed(factors, b, gain[c]);
-  }
-  const auto covariance = [&](int c) {
-    Vec sum = scaled[0] * gain[c][0];
-    for (int k = 1; k < 8; ++k) sum = hn::MulAdd(scaled[k], gain[c][k], sum);
-    return sum;
-  };
-  for (int row = 0; row < Basis::kSize; ++row) {
+// Covariance of the coordinates of delta f in m vectors b, which are overwritten: (G'b_i)' D (G'b_j), lower
+// triangle.
+template <int m>
+HWY_INLINE void PropagateCovariance(const ConstraintFactors& factors, const Vec* D, Vec (&b)[m][9],
+                                    Vec (&cov)[m][m]) {
+  Vec gain[m][8];
+  ApplyGainTransposed(factors, b, gain);
+  for (int row = 0; row < m; ++row) {
+    Vec scaled[8];
     for (int k = 0; k < 8; ++k) scaled[k] = D[k] * gain[row][k];
-    if (row < 5) {
-      for (int c = 0; c <= row; ++c) cov.motion[row][c] = covariance(c);
-    } else {
-      for (int c = 5; c <= row; ++c) cov.normal[row - 5][c - 5] = covariance(c);
+    for (int c = 0; c <= row; ++c) {
+      Vec even = scaled[0] * gain[c][0], odd = scaled[1] * gain[c][1];
+      for (int k = 2; k < 8; k += 2) {
+        even = hn::MulAdd(scaled[k], gain[c][k], even);
+        odd = hn::MulAdd(scaled[k + 1], gain[c][k + 1], odd);
+      }
+      cov[row][c] = even + odd;
     }
   }
-  return cov;
 }
 
 // dE along a principal axis with coordinates l in T: with |E|^2 = 2, sqrt(2) sum_c l_c T_c.
 HWY_INLINE void Derivative(const EssentialBasis& e, const Vec* l, Mat3* dE) {
   const Vec root_two = Set(1.41421356237309504880);
-  const Vec turn = l[0], l1 = root_two * l[1], l2 = root_two * l[2], l3 = root_two * l[3], l4 = root_two * l[4];
+  const Vec turn = l[0], l1 = root_two * l[1], l2 = root_two * l[2], l3 = root_two * l[3],
+            l4 = root_two * l[4];
   // Rows in the basis v: u1 (turn v2 + l3 v3), u2 (-turn v1 + l4 v3), u3 (l1 v1 + l2 v2).
   const Vec3 along1 = Combine(e.v[1], turn, e.v[2], l3);
   const Vec3 along2 = Combine(e.v[0], hn::Neg(turn), e.v[2], l4);
@@ -183,7 +171,8 @@ HWY_INLINE void Derivative(const EssentialBasis& e, const Vec* l, Mat3* dE) {
   const Mat3 u = {{e.u[0], e.u[1], e.u[2]}};
   const auto row = [&](Vec a, Vec b, Vec c) {
     const Vec3 two = Combine(along1, a, along2, b);
-    return Vec3{hn::MulAdd(along3.x, c, two.x), hn::MulAdd(along3.y, c, two.y), hn::MulAdd(along3.z, c, two.z)};
+    return Vec3{hn::MulAdd(along3.x, c, two.x), hn::MulAdd(along3.y, c, two.y),
+                hn::MulAdd(along3.z, c, two.z)};
   };
   dE->row[0] = row(u.row[0].x, u.row[1].x, u.row[2].x);
   dE->row[1] = row(u.row[0].y, u.row[1].y, u.row[2].y);
@@ -198,13 +187,13 @@ HWY_INLINE void StoreWhitened(const Mat3& E, const Whitening& whitening, int lan
   }
 }
 
-// dF and sample_statistic of some lanes; returns where they are finite.
-HWY_INLINE Mask FillSpread(const ConstraintFactors& factors, const EssentialBasis& basis, const Vec* D,
-                           const Whitening& whitening, int lane, HypothesisBlock* block) {
-  const CoordinateCovariances cov = PropagateCovariance(factors, basis, D);
-  Store(SquaredMahalanobis(basis.misfit, cov.normal), block->sample_statistic + lane);
-  Vec L[5][5];
-  Cholesky(cov.motion, L);
+// dF of some lanes; returns where they are finite.
+HWY_INLINE Mask FillDerivatives(const ConstraintFactors& factors, const EssentialBasis& basis, const Vec* D,
+                                const Whitening& whitening, int lane, HypothesisBlock* block) {
+  Vec T[5][9], cov[5][5], L[5][5];
+  MotionBasis(basis, T);
+  PropagateCovariance(factors, D, T, cov);
+  Cholesky(cov, L);
   Vec trace = Set(0.0);
   for (int k = 0; k < 5; ++k) {
     Vec l[5];
@@ -212,9 +201,17 @@ HWY_INLINE Mask FillSpread(const ConstraintFactors& factors, const EssentialBasi
     Mat3 dE;
     Derivative(basis, l, &dE);
     StoreWhitened(dE, whitening, lane, block->dF[k]);
-    trace = trace + cov.motion[k][k];
+    trace = trace + cov[k][k];
   }
   return hn::IsFinite(trace);
+}
+
+HWY_INLINE void FillSampleStatistic(const ConstraintFactors& factors, const EssentialBasis& basis,
+                                    const Vec* D, int lane, HypothesisBlock* block) {
+  Vec N[3][9], cov[3][3];
+  NormalBasis(basis, N);
+  PropagateCovariance(factors, D, N, cov);
+  Store(SquaredMahalanobis(basis.misfit, cov), block->sample_statistic + lane);
 }
 
 // Lanes [lane, lane + kLanes) of the block.
@@ -235,15 +232,18 @@ HWY_INLINE Mask FillLanes(const Whitening& whitening, int lane, HypothesisBlock*
   const EssentialBasis basis =
       ProjectToEssential({{{f[0], f[1], f[2]}, {f[3], f[4], f[5]}, {f[6], f[7], f[8]}}});
   const auto row = [&](Vec a, Vec b) { return Combine(basis.v[0], a, basis.v[1], b); };
-  StoreWhitened({{row(basis.u[0].x, basis.u[1].x), row(basis.u[0].y, basis.u[1].y),
-                  row(basis.u[0].z, basis.u[1].z)}},
-                whitening, lane, block->F);
-  const Mask is_model = hn::And(factors.smallest_pivot > Set(1e-9) * factors.largest_pivot,
-                                basis.determines_direction);
+  StoreWhitened(
+      {{row(basis.u[0].x, basis.u[1].x), row(basis.u[0].y, basis.u[1].y), row(basis.u[0].z, basis.u[1].z)}},
+      whitening, lane, block->F);
+  const Mask is_model =
+      hn::And(factors.smallest_pivot > Set(1e-9) * factors.largest_pivot, basis.determines_direction);
   if constexpr (spread == Spread::kNone) return is_model;
   Vec D[8];
   ConstraintVariances(sample, whitening, f, D);
-  return hn::And(is_model, FillSpread(factors, basis, D, whitening, lane, block));
+  if constexpr (spread == Spread::kCovarianceAndMisfit) {
+    FillSampleStatistic(factors, basis, D, lane, block);
+  }
+  return hn::And(is_model, FillDerivatives(factors, basis, D, whitening, lane, block));
 }
 
 template <Spread spread>
@@ -262,6 +262,9 @@ void FillModels(const RayScale& ray_scale, HypothesisBlock* block) {
 void FillUncertainModels(const RayScale& ray_scale, HypothesisBlock* block) {
   FillBlock<Spread::kCovariance>(ray_scale, block);
 }
+void FillTestedModels(const RayScale& ray_scale, HypothesisBlock* block) {
+  FillBlock<Spread::kCovarianceAndMisfit>(ray_scale, block);
+}
 
 }  // namespace rcme::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -271,6 +274,7 @@ namespace rcme {
 
 HWY_EXPORT(FillModels);
 HWY_EXPORT(FillUncertainModels);
+HWY_EXPORT(FillTestedModels);
 
 void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples, Spread spread,
                        HypothesisBlock* block) {
@@ -284,10 +288,13 @@ void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBloc
       block->y2[k][hypothesis] = from.y2[lane];
     }
   }
-  if (spread == Spread::kNone) {
-    HWY_DYNAMIC_DISPATCH(FillModels)(matches.ray_scale(), block);
-  } else {
-    HWY_DYNAMIC_DISPATCH(FillUncertainModels)(matches.ray_scale(), block);
+  switch (spread) {
+    case Spread::kNone:
+      return HWY_DYNAMIC_DISPATCH(FillModels)(matches.ray_scale(), block);
+    case Spread::kCovariance:
+      return HWY_DYNAMIC_DISPATCH(FillUncertainModels)(matches.ray_scale(), block);
+    case Spread::kCovarianceAndMisfit:
+      return HWY_DYNAMIC_DISPATCH(FillTestedModels)(matches.ray_scale(), block);
   }
 }
 

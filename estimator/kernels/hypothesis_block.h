@@ -14,17 +14,18 @@ struct alignas(64) HypothesisBlock {
 
   Row x1[8], y1[8], x2[8], y2[8];  // the samples: number = the match within the sample
 
-  Row F[9];              // F_j row by row, of the E with singular values 1, 1, 0
-  Row dF[5][9];          // its derivatives along the principal axes of Sigma_p: with L L' = Sigma_p, the k-th is
-                         // sum_l L_lk dF/dp_l
-  Row sample_statistic;  // T, see JointSampleStatistic; infinite where it has no covariance
+  Row F[9];      // F_j row by row, of the E with singular values 1, 1, 0
+  Row dF[5][9];  // its derivatives along the principal axes of Sigma_p: with L L' = Sigma_p, the k-th is
+                 // sum_l L_lk dF/dp_l
+  Row sample_statistic;       // T, see JointSampleStatistic; infinite where it has no covariance
   std::uint8_t is_model = 0;  // bit l: sample l determines a motion, with a finite covariance
 };
 
 // What is to be known of a hypothesis.
 enum class Spread {
-  kNone,        // F alone
-  kCovariance,  // dF and sample_statistic too
+  kNone,                 // F alone
+  kCovariance,           // dF too
+  kCovarianceAndMisfit,  // sample_statistic too
 };
 
 // Fills the block from eight samples (eq::model_instantiate, eq::motion_estimate, eq::cov_p).

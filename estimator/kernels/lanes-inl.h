@@ -41,7 +41,9 @@ HWY_INLINE Mask MaskFromBits(unsigned bits) {
 struct Vec3 {
   Vec x, y, z;
 };
-HWY_INLINE Vec Dot(const Vec3& a, const Vec3& b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, a.z * b.z)); }
+HWY_INLINE Vec Dot(const Vec3& a, const Vec3& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, a.z * b.z));
+}
 HWY_INLINE Vec3 Cross(const Vec3& a, const Vec3& b) {
   return {hn::MulSub(a.y, b.z, a.z * b.y), hn::MulSub(a.z, b.x, a.x * b.z), hn::MulSub(a.x, b.y, a.y * b.x)};
 }
@@ -59,7 +61,9 @@ HWY_INLINE Vec3 Select(Mask first, const Vec3& a, const Vec3& b) {
 struct Mat3 {
   Vec3 row[3];
 };
-HWY_INLINE Vec3 operator*(const Mat3& m, const Vec3& v) { return {Dot(m.row[0], v), Dot(m.row[1], v), Dot(m.row[2], v)}; }
+HWY_INLINE Vec3 operator*(const Mat3& m, const Vec3& v) {
+  return {Dot(m.row[0], v), Dot(m.row[1], v), Dot(m.row[2], v)};
+}
 // m' v
 HWY_INLINE Vec3 TransposeTimes(const Mat3& m, const Vec3& v) {
   const Vec3 upper = Combine(m.row[0], v.x, m.row[1], v.y);

@@ -1,6 +1,6 @@
 // Householder factorization of M' (9x8, one column per constraint) for several samples side by side:
-// M' = Q R, Q = H_0 H_1 ... H_7, H_k = I + tau_k v_k v_k' with v_k zero above row k. The last column of Q is f,
-// the null vector of M; the first eight are A, and M A = R1' (R1 the upper 8x8 of R).
+// M' = Q R, Q = H_0 H_1 ... H_7, H_k = I + tau_k v_k v_k' with v_k zero above row k. The last column of Q is
+// f, the null vector of M; the first eight are A, and M A = R1' (R1 the upper 8x8 of R).
 //
 // With x the rest of column k, alpha = -sign(x_0) |x| and v = x - alpha e_0: H x = alpha e_0 for
 // tau = -2 / v'v = 1 / (alpha v_0).
@@ -19,27 +19,41 @@ HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
 struct ConstraintFactors {
-  Vec columns[8][9];      // M' on entry; then v_k from row k on, above it R
+  Vec columns[8][9];  // M' on entry; then v_k from row k on, above it R
   Vec tau[8];
-  Vec inverse_pivot[8];   // 1 / R_kk
+  Vec inverse_pivot[8];               // 1 / R_kk
   Vec smallest_pivot, largest_pivot;  // of |R_kk|
 };
+
+// sum of a_i b_i, i = k..8, in three chains: one would wait for itself.
+template <int k>
+HWY_INLINE Vec DotFrom(const Vec* a, const Vec* b) {
+  Vec sums[3] = {Set(0.0), Set(0.0), a[8] * b[8]};
+  for (int i = 7; i >= k; --i) sums[i % 3] = hn::MulAdd(a[i], b[i], sums[i % 3]);
+  return (sums[0] + sums[1]) + sums[2];
+}
 
 // b + tau_k v_k (v_k' b): H_k b.
 template <int k>
 HWY_INLINE void Reflect(const Vec* v, Vec tau, Vec* b) {
-  Vec dot = v[k] * b[k];
-  for (int i = k + 1; i < 9; ++i) dot = hn::MulAdd(v[i], b[i], dot);
-  const Vec weight = tau * dot;
+  const Vec weight = tau * DotFrom<k>(v, b);
   for (int i = k; i < 9; ++i) b[i] = hn::MulAdd(v[i], weight, b[i]);
+}
+
+// The same to m vectors: first all sums, then all updates.
+template <int k, int m>
+HWY_INLINE void ReflectAll(const Vec* v, Vec tau, Vec (&b)[m][9]) {
+  Vec weights[m];
+  for (int i = 0; i < m; ++i) weights[i] = tau * DotFrom<k>(v, b[i]);
+  for (int row = k; row < 9; ++row) {
+    for (int i = 0; i < m; ++i) b[i][row] = hn::MulAdd(v[row], weights[i], b[i][row]);
+  }
 }
 
 template <int k>
 HWY_INLINE void FactorColumn(ConstraintFactors& factors) {
   Vec* x = factors.columns[k];
-  Vec squared_norm = Square(x[k]);
-  for (int i = k + 1; i < 9; ++i) squared_norm = hn::MulAdd(x[i], x[i], squared_norm);
-  const Vec norm = hn::Sqrt(squared_norm);
+  const Vec norm = hn::Sqrt(DotFrom<k>(x, x));
   const Vec alpha = hn::CopySign(norm, hn::Neg(x[k]));
   const Vec v_0 = x[k] - alpha;
   factors.tau[k] = Set(1.0) / (alpha * v_0);
@@ -65,16 +79,20 @@ HWY_INLINE void NullVector(const ConstraintFactors& factors, Vec* f) {
   (std::make_integer_sequence<int, 8>());
 }
 
-// G'b, 8 numbers, for a 9-vector b, which is overwritten: the solution y of R1 y = (Q'b)_top, G = A R1^-T.
-HWY_INLINE void ApplyGainTransposed(const ConstraintFactors& factors, Vec* b, Vec* y) {
+// G'b, 8 numbers each, for m 9-vectors b, which are overwritten: the solution y of R1 y = (Q'b)_top, G = A
+// R1^-T. Side by side, because each alone is one long chain of dependent operations.
+template <int m>
+HWY_INLINE void ApplyGainTransposed(const ConstraintFactors& factors, Vec (&b)[m][9], Vec (*y)[8]) {
   [&]<int... k>(std::integer_sequence<int, k...>) {
-    (Reflect<k>(factors.columns[k], factors.tau[k], b), ...);
+    (ReflectAll<k>(factors.columns[k], factors.tau[k], b), ...);
   }
   (std::make_integer_sequence<int, 8>());
   for (int row = 7; row >= 0; --row) {
-    Vec rest = b[row];
-    for (int c = row + 1; c < 8; ++c) rest = hn::NegMulAdd(factors.columns[c][row], y[c], rest);
-    y[row] = rest * factors.inverse_pivot[row];
+    for (int i = 0; i < m; ++i) {
+      Vec rest = b[i][row];
+      for (int c = row + 1; c < 8; ++c) rest = hn::NegMulAdd(factors.columns[c][row], y[i][c], rest);
+      y[i][row] = rest * factors.inverse_pivot[row];
+    }
   }
 }
 

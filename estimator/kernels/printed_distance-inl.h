@@ -1,8 +1,8 @@
 // The printed point test (eq::find-inlier), delta' Sigma_delta^-1 delta with Sigma_delta 4x4, in closed form.
 //
-// In whitened coordinates (unit noise) let j, g, n2 = |j|^2 be the gradient, value and squared gradient of the
-// constraint, j_k, g_k those of its derivatives along the principal axes of the motion, H the Hessian. The
-// Sampson vector -j g / n2 depends on match and motion through z = (j, g) alone, whose covariance is
+// In whitened coordinates (unit noise) let j, g, n2 = |j|^2 be the gradient, value and squared gradient of
+// the constraint, j_k, g_k those of its derivatives along the principal axes of the motion, H the Hessian.
+// The Sampson vector -j g / n2 depends on match and motion through z = (j, g) alone, whose covariance is
 //
 //   X = [[Q, a], [a', D]],   Q = H H' + sum j_k j_k',   a = H j + sum g_k j_k,   D = n2 + sum g_k^2.
 //
@@ -15,8 +15,8 @@
 //
 //   d2 = g^2 j'Q^-1 j / p,   det Sigma_delta = g^6 det(Q) p / n2^8.
 //
-// Nothing is divided by g; Q = L diag(d) L' costs four divisions. (Cofactors would cost one, and lose all digits:
-// the eigenvalues of Q span many decades.)
+// Nothing is divided by g. Q is factored as L diag(d) L'; cofactors, or 2x2 blocks and their inverses, would
+// be cheaper and lose the digits: the eigenvalues of Q span many decades.
 #if defined(RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_
@@ -72,16 +72,17 @@ HWY_INLINE PrintedDistance EvaluatePrinted(const Model& model, const Matches& ma
     D = hn::MulAdd(d.g, d.g, D);
   }
 
-  // Q = L diag(d) L', y = L^-1 j, b = L^-1 a.
+  // Q = L diag(d) L', y = L^-1 j, b = L^-1 a; i_k = 1 / d_k. The second and fourth pivot are ratios of
+  // minors, so that two divisions run at a time.
   const Vec one = Set(1.0);
-  const Vec d0 = Q[0], i0 = one / d0;
+  const Vec d0 = Q[0], minor1 = hn::MulSub(Q[0], Q[2], Q[1] * Q[1]), i0 = one / d0, i1 = d0 * (one / minor1);
   const Vec l10 = Q[1] * i0, l20 = Q[3] * i0, l30 = Q[6] * i0;
-  const Vec d1 = hn::NegMulAdd(l10, Q[1], Q[2]), i1 = one / d1;
   const Vec s21 = hn::NegMulAdd(l10, Q[3], Q[4]), s31 = hn::NegMulAdd(l10, Q[6], Q[7]);
   const Vec l21 = s21 * i1, l31 = s31 * i1;
-  const Vec d2 = hn::NegMulAdd(l21, s21, hn::NegMulAdd(l20, Q[3], Q[5])), i2 = one / d2;
-  const Vec s32 = hn::NegMulAdd(l21, s31, hn::NegMulAdd(l20, Q[6], Q[8])), l32 = s32 * i2;
-  const Vec d3 = hn::NegMulAdd(l32, s32, hn::NegMulAdd(l31, s31, hn::NegMulAdd(l30, Q[6], Q[9]))), i3 = one / d3;
+  const Vec d2 = hn::NegMulAdd(l21, s21, hn::NegMulAdd(l20, Q[3], Q[5]));
+  const Vec s32 = hn::NegMulAdd(l21, s31, hn::NegMulAdd(l20, Q[6], Q[8]));
+  const Vec s33 = hn::NegMulAdd(l31, s31, hn::NegMulAdd(l30, Q[6], Q[9]));
+  const Vec minor3 = hn::MulSub(d2, s33, s32 * s32), i2 = one / d2, i3 = d2 * (one / minor3), l32 = s32 * i2;
   const auto solve = [&](const Vec* x, Vec* y) {
     y[0] = x[0];
     y[1] = hn::NegMulAdd(l10, y[0], x[1]);
@@ -96,14 +97,14 @@ HWY_INLINE PrintedDistance EvaluatePrinted(const Model& model, const Matches& ma
   const Vec jQj = Dot4(iy, y), rest = c.g - Dot4(iy, b), e = D - Dot4(ib, b);
   const Vec p = hn::MulAdd(e, jQj, rest * rest);
 
-  const Vec g2 = c.g * c.g, unit = one / n2;
+  const Vec g2 = c.g * c.g, unit = one / n2, unit2 = unit * unit;
   const Vec squared_distance = hn::Max(g2 * unit, Set(kLeastSquaredDistance));
   PrintedDistance distance;
   distance.numerator = g2 * jQj;
   distance.denominator = p;
-  distance.is_regular = hn::Min(hn::Min(d0, d1), hn::Min(hn::Min(d2, d3), p)) > zero;
-  distance.determinant = squared_distance * squared_distance * squared_distance * ((d0 * unit) * (d1 * unit)) *
-                         ((d2 * unit) * (d3 * unit)) * (p * unit);
+  distance.is_regular = hn::And(hn::Min(hn::Min(d0, minor1), hn::Min(d2, minor3)) > zero, p > zero);
+  distance.determinant = squared_distance * squared_distance * squared_distance *
+                         ((minor1 * unit2) * (minor3 * unit2)) * (p * unit);
   return distance;
 }
 

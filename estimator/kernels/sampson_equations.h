@@ -6,18 +6,21 @@
 
 namespace rcme {
 
-// What the kernel takes, F and its derivatives along the five coordinates of the motion (whitened coordinates), and
-// what it gives: sums, symmetric matrices as lower triangles row by row.
+// What the kernel takes, F and its derivatives along the five coordinates of the motion (whitened
+// coordinates), and what it gives: sums, symmetric matrices as lower triangles row by row.
 struct SampsonModel {
   double F[9], dF[5][9];
 };
 struct SampsonSums {
-  double cost, gradient[5], hessian[15], information[15];
+  double cost, gradient[5], hessian[15];
 };
 
-// Of sum rho(r^2) / 2 over the matches of the mask, r = g / |J| in units of sigma, at a motion. With J_k and g_k
-// the derivatives of J and g along coordinate k of the motion, dr / dp_k = (g_k - r J'J_k / |J|) / |J|.
+// Of sum rho(r^2) / 2 over the matches of the mask, r = g / |J| in units of sigma, at a motion. With J_k and
+// g_k the derivatives of J and g along coordinate k of the motion, dr / dp_k = (g_k - r J'J_k / |J|) / |J|.
 NormalEquations LinearizeSampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
                                  Loss loss);
+
+// sum g_p' g_p / var g over the matches of the mask.
+Matrix5d SampsonInformation(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose);
 
 }  // namespace rcme

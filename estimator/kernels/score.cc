@@ -44,7 +44,8 @@ HWY_INLINE void Scan(const MatchBlock* blocks, int num_matches, InlierScan* scan
   scan->num_inliers = num_inliers;
 }
 
-void ScanExact(const MatchBlock* blocks, int num_matches, const double* F, double threshold, InlierScan* scan) {
+void ScanExact(const MatchBlock* blocks, int num_matches, const double* F, double threshold,
+               InlierScan* scan) {
   const Vec limit = Set(threshold);
   Scan<false>(blocks, num_matches, scan, [&](const Matches& matches) {
     const Constraint c = EvaluateConstraint(Broadcast{F}, matches);
@@ -101,7 +102,8 @@ void SumEntropies(const double* spreads, int count, double offset, double* mean,
     const Vec spread = hn::IfThenElse(is_inlier, hn::LoadU(Tag(), spreads + i), Set(1.0));
     return hn::IfThenElseZero(is_inlier, hn::MulAdd(half, hn::Log(Tag(), spread), shift));
   };
-  HWY_ALIGN double stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice
+  HWY_ALIGN double
+      stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice
   Vec sum = Set(0.0);
   for (int i = 0; i < count; i += kLanes) {
     const Vec h = entropy(i);
@@ -194,7 +196,8 @@ void ScanKnownPose(const MatchBlocks& matches, const double* F, double threshold
   HWY_DYNAMIC_DISPATCH(ScanExact)(matches.data(), matches.num_matches(), F, threshold, scan);
 }
 
-void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, double threshold, InlierScan* scan) {
+void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, double threshold,
+                   InlierScan* scan) {
   HWY_DYNAMIC_DISPATCH(ScanPrinted)(matches.data(), matches.num_matches(), model, threshold, scan);
 }
 

@@ -12,7 +12,7 @@ struct WhitenedModel {
   double F[9];
   double dF[5][9];
 
-  WhitenedModel(const HypothesisBlock& block, int hypothesis);
+  WhitenedModel(const HypothesisBlock& block, int hypothesis);  // dF unset where the block's Spread is kNone
   // Nothing if pose_cov is not finite and positive semi-definite.
   static std::optional<WhitenedModel> From(const MatchBlocks& matches, const RelativePose& pose,
                                            const Matrix5d& pose_cov);
@@ -21,15 +21,15 @@ struct WhitenedModel {
   WhitenedModel() = default;
 };
 
-// The variance that the motion adds to g, sum_k (x2' dF_k x1)^2, as a polynomial: coefficient 6 a + b belongs to
-// the a-th monomial of image 2 and the b-th of image 1 in the order x^2, xy, x, y^2, y, 1.
+// The variance that the motion adds to g, sum_k (x2' dF_k x1)^2, as a polynomial: coefficient 6 a + b belongs
+// to the a-th monomial of image 2 and the b-th of image 1 in the order x^2, xy, x, y^2, y, 1.
 struct VariancePolynomial {
   double coefficients[36];
   explicit VariancePolynomial(const double (&dF)[5][9]);
 };
 
-// What a pass over the matches finds. Kept by the caller from hypothesis to hypothesis: no allocation after the
-// first.
+// What a pass over the matches finds. Kept by the caller from hypothesis to hypothesis: no allocation after
+// the first.
 struct InlierScan {
   explicit InlierScan(const MatchBlocks& matches)
       : inliers(matches.Empty()), spreads(inliers.size() * kBlockSize + kBlockSize) {}
@@ -42,7 +42,8 @@ struct InlierScan {
 // d2 = g^2 / n2 <= threshold, the motion taken as exact.
 void ScanKnownPose(const MatchBlocks& matches, const double* F, double threshold, InlierScan* scan);
 // d2 of printed_distance-inl.h <= threshold.
-void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, double threshold, InlierScan* scan);
+void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, double threshold,
+                   InlierScan* scan);
 // d2 = g^2 / (n2 + variance of g from the motion) <= threshold.
 void ScanRankAware(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
                    double threshold, InlierScan* scan);

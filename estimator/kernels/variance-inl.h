@@ -1,5 +1,6 @@
-// The squared residual of a match and its two variances: the noise of the match and that of the motion. The latter
-// is evaluated as one polynomial (VariancePolynomial): 36 multiplications where five bilinear forms take 45.
+// The squared residual of a match and its two variances: the noise of the match and that of the motion. The
+// latter is evaluated as one polynomial (VariancePolynomial): 36 multiplications where five bilinear forms
+// take 45.
 #if defined(RCME_ESTIMATOR_KERNELS_VARIANCE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_VARIANCE_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_VARIANCE_INL_H_
@@ -29,7 +30,8 @@ HWY_INLINE Vec EvaluateVariance(const double* coefficients, const Matches& m) {
 struct RankAwareTerms {
   Vec g2, n2, variance;
 };
-HWY_INLINE RankAwareTerms EvaluateRankAware(const double* F, const double* coefficients, const Matches& matches) {
+HWY_INLINE RankAwareTerms EvaluateRankAware(const double* F, const double* coefficients,
+                                            const Matches& matches) {
   const Constraint c = EvaluateConstraint(Broadcast{F}, matches);
   const Vec n2 = Dot4(c.gradient, c.gradient);
   return {c.g * c.g, n2, hn::Max(EvaluateVariance(coefficients, matches), Set(0.0))};

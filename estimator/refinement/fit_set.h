@@ -8,8 +8,8 @@
 
 namespace rcme {
 
-// Significance level of the fit set. Wide enough to leave the Gaussian tails in: a fit to the matches within the
-// 95 % quantile would report 0.76 of its true variance, within 99.9 % it reports 0.99.
+// Significance level of the fit set. Wide enough to leave the Gaussian tails in: a fit to the matches within
+// the 95 % quantile would report 0.76 of its true variance, within 99.9 % it reports 0.99.
 inline constexpr double kFitSignificance = 0.001;
 
 // The greatest leverage of a match in the fit set: ten times the mean. Leverage is the motion's share of the

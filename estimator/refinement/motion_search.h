@@ -25,14 +25,20 @@ struct RefinedMotion {
 // Of a cost 1/2 sum rho(r^2) at a motion, in its tangent coordinates.
 struct NormalEquations {
   double cost = 0.0;
-  Vector5d gradient = Vector5d::Zero();     // sum rho' r r_p'
-  Matrix5d hessian = Matrix5d::Zero();      // Gauss-Newton's, sum rho' r_p' r_p
-  Matrix5d information = Matrix5d::Zero();  // sum g_p' g_p / var g; its inverse becomes pose_cov
+  Vector5d gradient = Vector5d::Zero();  // sum rho' r r_p'
+  // sum max(psi', rho' / 4) r_p' r_p, psi = rho' r: Gauss-Newton's for the squared loss. With rho' in the
+  // place of psi', every step would leave a fifth of the error; psi' alone vanishes far from the optimum.
+  Matrix5d hessian = Matrix5d::Zero();
 };
 
-// The optimum from `start`. Converged when the step that is left would lower the cost by less than a billionth: it
-// is then shorter than 5e-5 standard deviations, and taken.
-RefinedMotion MinimizeOverMotion(const RelativePose& start,
-                                 const std::function<NormalEquations(const RelativePose&)>& linearize);
+struct MotionCost {
+  std::function<NormalEquations(const RelativePose&)> linearize;
+  std::function<Matrix5d(const RelativePose&)> information;  // its inverse becomes pose_cov
+  double negligible_decrease = 1e-9;                         // of the cost; see MinimizeOverMotion
+};
+
+// The optimum from `start`. Converged when the step that is left, which is taken, would lower the cost by
+// less than `negligible_decrease` d: it is sqrt(2 d) standard deviations long.
+RefinedMotion MinimizeOverMotion(const RelativePose& start, const MotionCost& cost);
 
 }  // namespace rcme

@@ -134,8 +134,8 @@ RefinedMotion RefineByReprojection(const MotionProblem& problem, std::span<const
     auto* cost = new ReprojectionCost(
         new ReprojectionError{match, problem.camera1, problem.camera2, 1.0 / problem.sigma_px});
     costs.push_back(cost);
-    bundle.AddResidualBlock(cost, loss == Loss::kCauchy ? new ceres::CauchyLoss(kCauchyScale) : nullptr, pose.data(),
-                            points.back().data());
+    bundle.AddResidualBlock(cost, loss == Loss::kCauchy ? new ceres::CauchyLoss(kCauchyScale) : nullptr,
+                            pose.data(), points.back().data());
     ordering->AddElementToGroup(points.back().data(), 0);
   }
   bundle.SetManifold(pose.data(), new MotionManifold);

@@ -14,7 +14,9 @@ RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask,
                               Loss loss) {
   if (CountIn(mask) < 5) return {.cam2_from_cam1 = start};
   return MinimizeOverMotion(
-      start, [&](const RelativePose& pose) { return LinearizeSampson(matches, mask, pose, loss); });
+      start, {[&](const RelativePose& pose) { return LinearizeSampson(matches, mask, pose, loss); },
+              [&](const RelativePose& pose) { return SampsonInformation(matches, mask, pose); },
+              loss == Loss::kSquared ? 1e-9 : 1e-4});
 }
 
 RefinedMotion RefineAllBySampson(const MotionProblem& problem, const RelativePose& start) {
