@@ -23,22 +23,34 @@ struct Visited {
   Vec spread;
 };
 
+// One block; returns its inliers and moves *spread behind what it wrote.
+template <bool has_spread, typename Visit>
+HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Visit& visit, double** spread) {
+  unsigned bits = 0;
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    const Visited visited = visit(LoadMatches(block, lane));
+    const Mask is_inlier =
+        num_matches < kBlockSize ? hn::And(visited.is_inlier, AreMatches(lane, num_matches)) : visited.is_inlier;
+    if constexpr (has_spread) *spread += hn::CompressStore(visited.spread, is_inlier, Tag(), *spread);
+    bits |= BitsOf(is_inlier) << lane;
+  }
+  return bits;
+}
+
 template <bool has_spread, typename Visit>
 HWY_INLINE void Scan(const MatchBlock* blocks, int num_matches, InlierScan* scan, const Visit& visit) {
   double* spread = scan->spreads.data();
-  const int num_blocks = static_cast<int>(scan->inliers.size());
+  std::uint8_t* inliers = scan->inliers.data();
+  const int num_full = num_matches / kBlockSize, num_left = num_matches % kBlockSize;
   int num_inliers = 0;
-  for (int b = 0; b < num_blocks; ++b) {
-    unsigned bits = 0;
-    for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-      const Visited visited = visit(LoadMatches(blocks[b], lane));
-      const Mask is_inlier = hn::And(visited.is_inlier, AreMatches(b * kBlockSize + lane, num_matches));
-      if constexpr (has_spread) {
-        spread += hn::CompressStore(visited.spread, is_inlier, Tag(), spread);
-      }
-      bits |= BitsOf(is_inlier) << lane;
-    }
-    scan->inliers[static_cast<size_t>(b)] = static_cast<std::uint8_t>(bits);
+  for (int b = 0; b < num_full; ++b) {
+    const unsigned bits = ScanBlock<has_spread>(blocks[b], kBlockSize, visit, &spread);
+    inliers[b] = static_cast<std::uint8_t>(bits);
+    num_inliers += __builtin_popcount(bits);
+  }
+  if (num_left > 0) {
+    const unsigned bits = ScanBlock<has_spread>(blocks[num_full], num_left, visit, &spread);
+    inliers[num_full] = static_cast<std::uint8_t>(bits);
     num_inliers += __builtin_popcount(bits);
   }
   scan->num_inliers = num_inliers;
