@@ -24,8 +24,9 @@ LOOKS = {  # the second part of an arm's name, or its group
     "only": dict(color=style.BLUE, marker="o"),
 }
 HANDLES = {"fast": "rcme", "reference": "its simple reference", "peer": "other libraries"}
-PEER_WORDS = {"opencv_ransac_200": "OpenCV RANSAC, 200", "opencv_usac_magsac": "OpenCV USAC_MAGSAC",
-              "opencv_usac_accurate": "OpenCV USAC_ACCURATE", "poselib_relative_pose": "PoseLib relative pose"}
+LABELS = {"opencv_ransac_200": "OpenCV RANSAC, 200", "opencv_usac_magsac": "OpenCV USAC_MAGSAC",
+          "opencv_usac_accurate": "OpenCV USAC_ACCURATE", "poselib_relative_pose": "PoseLib relative pose",
+          **{name: look.label for name, look in style.KNOWN_LOOKS.items()}}
 SERIES = {  # panel: x label, and its series with labels
     "n": ("Matches n", {"n": "pRCME, whole call", "n_scoring": "its scoring"}),
     "iterations": ("Hypotheses N", {"iterations": "pRCME, whole call"}),
@@ -60,7 +61,7 @@ def rows_of(arms, groups):
         if arm["group"] in groups:
             stage, _, variant = arm["name"].partition("/")
             variant = variant or ("peer" if arm["group"] == "peer" else "only")
-            label = PEER_WORDS.get(stage) or style.in_words(stage)
+            label = LABELS.get(stage) or style.in_words(stage)
             rows.setdefault(label, {})[variant] = arm["microseconds"]
     return rows
 

@@ -11,6 +11,7 @@
 #include "estimator/problem_check.h"
 #include "estimator/reference_matches.h"
 #include "estimator/reference_search.h"
+#include "estimator/refine_winner.h"
 #include "estimator/refinement/reprojection_mle.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "estimator/sample_consistency.h"
@@ -189,11 +190,28 @@ void RefineReprojection(const Trial& trial) {
   DoNotOptimize(RefineByReprojection(trial.data.problem, trial.inliers, trial.start, Loss::kSquared));
 }
 
+// From the winner of the loop to the estimate: cheirality, robust fit, refits, final inliers.
+template <typename Matches>
+void RefineWinnerIn(const Matches& matches, const Trial& trial) {
+  MotionEstimate estimate;
+  RefineWinner(matches, {}, trial.winner, matches.SetOf(IndicesOf(trial.support)), &estimate);
+  DoNotOptimize(estimate);
+}
+void RefineWinnerFast(const Trial& trial) {
+  RefineWinnerIn(BlockMatches(trial.data.problem, trial.blocks, RefinementError::kSampson), trial);
+}
+void RefineWinnerReference(const Trial& trial) {
+  RefineWinnerIn(ReferenceMatches(trial.data.problem, RefinementError::kReprojection), trial);
+}
+
+void FindThresholds(const Trial& trial) { DoNotOptimize(Thresholds::For(trial.data.problem, {}, 3)); }
+
 std::vector<Arm> StageArms() {
   using Reading = BlockSearch::Reading;
   const std::string stage = "stage";
   return {{stage, "check_problem", CheckProblem},
           {stage, "pack_matches", PackMatches},
+          {stage, "find_thresholds", FindThresholds},
           {stage, "draw_samples", DrawSamples},
           {stage, "instantiate/fast", InstantiateFast<Spread::kNone>},
           {stage, "instantiate/reference", InstantiateReference},
@@ -220,7 +238,9 @@ std::vector<Arm> StageArms() {
           {stage, "find_agreeing/fast", FindAgreeingFast},
           {stage, "find_agreeing/reference", FindAgreeingReference},
           {stage, "refine/fast", RefineSampson},
-          {stage, "refine/reference", RefineReprojection}};
+          {stage, "refine/reference", RefineReprojection},
+          {stage, "refine_winner/fast", RefineWinnerFast},
+          {stage, "refine_winner/reference", RefineWinnerReference}};
 }
 
 std::vector<Arm> EstimatorArms() {

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "estimator/refinement/sampson_mle.h"
+#include "stats/distributions.h"
 
 namespace rcme {
 namespace {
@@ -31,6 +32,17 @@ BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
     x1.emplace_back(static_cast<float>(match.x1_px.x()), static_cast<float>(match.x1_px.y()));
     x2.emplace_back(static_cast<float>(match.x2_px.x()), static_cast<float>(match.x2_px.y()));
   }
+  MakeHypotheses(num_matches);
+  FindWinner();
+  for (int i = 0; i < num_matches; ++i) {
+    if (data.truth.is_inlier_true[static_cast<size_t>(i)]) inliers.push_back(i);
+  }
+  inlier_mask = MaskOf(inliers, blocks);
+  start = Retract(*data.truth.cam2_from_cam1_true, Vector5d::Constant(0.01));
+  refined = RefineBySampson(blocks, inlier_mask, start, Loss::kSquared);
+}
+
+void BenchmarkTrial::MakeHypotheses(int num_matches) {
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
   for (int j = 0; j < kNumHypotheses; ++j) samples.push_back(DrawSample(num_matches, rng));
   for (const Sample& sample : samples) {
@@ -44,13 +56,19 @@ BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
     for (int lane = 0; lane < kBlockSize; ++lane) models.emplace_back(hypothesis_blocks[b], lane);
   }
   for (const WhitenedModel& model : models) variances.emplace_back(model.dF);
+}
 
-  for (int i = 0; i < num_matches; ++i) {
-    if (data.truth.is_inlier_true[static_cast<size_t>(i)]) inliers.push_back(i);
+void BenchmarkTrial::FindWinner() {
+  const double threshold = ChiSquareQuantile(1, 0.95);
+  InlierScan scan(blocks);
+  int most = -1;
+  for (size_t j = 0; j < samples.size(); ++j) {
+    ScanKnownPose(blocks, models[j].F, threshold, &scan);
+    if (scan.num_inliers <= most) continue;
+    most = scan.num_inliers;
+    winner = samples[j];
+    support = scan.inliers;
   }
-  inlier_mask = MaskOf(inliers, blocks);
-  start = Retract(*data.truth.cam2_from_cam1_true, Vector5d::Constant(0.01));
-  refined = RefineBySampson(blocks, inlier_mask, start, Loss::kSquared);
 }
 
 std::vector<BenchmarkTrial> MakeBenchmarkTrials(int num_matches, int num_trials) {

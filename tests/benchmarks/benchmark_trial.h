@@ -31,11 +31,19 @@ struct BenchmarkTrial {
   std::vector<WhitenedModel> models;
   std::vector<VariancePolynomial> variances;
 
+  // The hypothesis with most inliers by the known-pose test, and these.
+  Sample winner{};
+  MatchMask support;
+
   // The right matches, a start off the true motion by 0.01 rad in each coordinate, and the fit from there.
   std::vector<int> inliers;
   MatchMask inlier_mask;
   RelativePose start;
   RefinedMotion refined;
+
+ private:
+  void MakeHypotheses(int num_matches);
+  void FindWinner();
 };
 
 // Trials 0, 1, ... of the scene.
