@@ -39,7 +39,7 @@ struct Extent {
 
 Extent Quick() {
   Extent extent;
-  extent.num_rounds = 11;
+  extent.num_rounds = 9;
   return extent;
 }
 
