@@ -1,0 +1,161 @@
+#!/usr/bin/python3
+"""Draws what `rcme_ratios` measured: time of each stage and estimator, and cost against n, N and the number of trials.
+
+It draws what the file says: medians over interleaved rounds with their intervals, and the fitted slopes.
+"""
+
+import argparse
+import json
+import os
+import sys
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter
+
+import style
+from command_line import Parser, PlotError
+
+LOOKS = {  # the second part of an arm's name, or its group
+    "fast": dict(color=style.BLUE, marker="o"),
+    "reference": dict(color=style.VERMILLION, marker="s"),
+    "peer": dict(color=style.BLACK, marker="D"),
+    "only": dict(color=style.BLUE, marker="o"),
+}
+HANDLES = {"fast": "rcme", "reference": "its simple reference", "peer": "other libraries"}
+LABELS = {"opencv_ransac_200": "OpenCV RANSAC, 200", "opencv_usac_magsac": "OpenCV USAC_MAGSAC",
+          "opencv_usac_accurate": "OpenCV USAC_ACCURATE", "poselib_relative_pose": "PoseLib relative pose",
+          **{name: look.label for name, look in style.KNOWN_LOOKS.items()}}
+SERIES = {  # panel: x label, and its series with labels
+    "n": ("Matches n", {"n": "pRCME, whole call", "n_scoring": "its scoring"}),
+    "iterations": ("Hypotheses N", {"iterations": "pRCME, whole call"}),
+    "trials": ("Trials of a study", {"trials": "engine alone"}),
+}
+SERIES_LOOKS = (dict(color=style.BLUE, marker="o"), dict(color=style.ORANGE, marker="s"))
+
+EXAMPLE = """
+example:
+  build/release/bin/rcme_ratios --out build/benchmarks.json
+  plots/benchmarks.py build/benchmarks.json --out build/benchmarks
+draws build/benchmarks.png and build/benchmarks.pdf. scripts/benchmark does both.
+"""
+
+
+def read(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            content = json.load(file)
+    except (OSError, ValueError) as error:
+        raise PlotError(f"{path}: cannot be read as JSON ({error}).") from error
+    missing = [key for key in ("run", "ratios", "arms", "series") if key not in content]
+    if missing:
+        raise PlotError(f"{path}: has no {', '.join(missing)}; expected the output of rcme_ratios.")
+    return content
+
+
+def rows_of(arms, groups):
+    """{label: {variant: microseconds}} of the arms in the groups, in the file's order."""
+    rows = {}
+    for arm in arms:
+        if arm["group"] in groups:
+            stage, _, variant = arm["name"].partition("/")
+            variant = variant or ("peer" if arm["group"] == "peer" else "only")
+            label = LABELS.get(stage) or style.in_words(stage)
+            rows.setdefault(label, {})[variant] = arm["microseconds"]
+    return rows
+
+
+def draw_times(axes, rows):
+    """One line per stage, top down; fast and reference on the same line."""
+    for y, variants in enumerate(rows.values()):
+        for variant, time in variants.items():
+            axes.hlines(y, time["lower"], time["upper"], color=LOOKS[variant]["color"], linewidth=1.2)
+            axes.plot(time["median"], y, linestyle="none", markersize=4, markeredgecolor="white", markeredgewidth=0.4,
+                      **LOOKS[variant])
+    axes.set_xscale("log")
+    axes.set_yticks(range(len(rows)), rows)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.tick_params(axis="y", labelsize=6.5, length=0)
+    axes.xaxis.set_major_formatter(FuncFormatter(in_time))
+
+
+def in_time(microseconds, _=None):
+    """0.5 -> '0.5 us', 3000 -> '3 ms'."""
+    for unit, size in (("s", 1e6), ("ms", 1e3)):
+        if microseconds >= size:
+            return f"{microseconds / size:g} {unit}"
+    return f"{microseconds:g} \u00b5s"
+
+
+def draw_series(axes, content, panel):
+    """Points with intervals, and the fitted slope through their middle."""
+    label, series = SERIES[panel]
+    for (name, words), look in zip(series.items(), SERIES_LOOKS):
+        points = content["series"][name]
+        sizes, medians = [point["size"] for point in points], [point["median"] for point in points]
+        axes.vlines(sizes, [point["lower"] for point in points], [point["upper"] for point in points],
+                    color=look["color"], linewidth=0.9)
+        axes.plot(sizes, medians, linestyle="none", markersize=4, markeredgecolor="white", markeredgewidth=0.4, **look)
+        slope = content["ratios"][f"exponent_{name}"]
+        middle_x = geometric_mean(sizes)
+        line = [geometric_mean(medians) * (size / middle_x) ** slope for size in (sizes[0], sizes[-1])]
+        axes.plot([sizes[0], sizes[-1]], line, color=look["color"], linewidth=0.8, label=f"{words}: slope {slope:.2f}")
+    axes.set(xscale="log", yscale="log", xlabel=label)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size:,g}"))
+    axes.yaxis.set_major_formatter(FuncFormatter(in_time))
+    axes.legend(loc="upper left", fontsize=6.5, handlelength=1.4, borderaxespad=0.1)
+
+
+def geometric_mean(values):
+    product = 1.0
+    for value in values:
+        product *= value ** (1 / len(values))
+    return product
+
+
+def draw(content):
+    figure = Figure(figsize=(7.4, 7.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    rows = figure.add_gridspec(2, 1, height_ratios=(2.1, 1))
+    axes = {}
+    for row, names in zip(rows, (("stages", "estimators"), tuple(SERIES))):
+        cells = row.subgridspec(1, len(names))
+        axes.update({name: figure.add_subplot(cell) for name, cell in zip(names, cells)})
+    draw_times(axes["stages"], rows_of(content["arms"], ["stage"]))
+    draw_times(axes["estimators"], rows_of(content["arms"], ["estimator", "peer", "trial"]))
+    for panel in SERIES:
+        draw_series(axes[panel], content, panel)
+    titles = {"stages": "Stages (200 hypotheses)", "estimators": "Whole calls", "n": "Cost against n",
+              "iterations": "Cost against N", "trials": "Cost against trials"}
+    for letter, (name, title) in zip("abcde", titles.items()):
+        axes[name].set_title(f"({letter}) {title}")
+    for name in ("stages", "estimators"):
+        axes[name].set_xlabel("Time")
+    handles = [Line2D([], [], linestyle="none", label=words, **LOOKS[variant]) for variant, words in HANDLES.items()]
+    run = content["run"]
+    style.add_legend_and_caption(
+        figure, handles,
+        f"{run['problem']}; medians of {run['rounds']} interleaved rounds with distribution-free 95 % intervals; "
+        f"{run['clock']}; {run['instruction_set']}, {run['cores']} cores.")
+    return figure
+
+
+def main(argv):
+    parser = Parser(description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("result", help="what rcme_ratios wrote")
+    parser.add_argument("--out", required=True, help="path of the figure without .png or .pdf")
+    try:
+        arguments = parser.parse_args(argv)
+        folder = os.path.dirname(arguments.out) or "."
+        if not os.path.isdir(folder):
+            raise PlotError(f"--out {arguments.out}: there is no folder {folder}.")
+        print("\n".join(style.save(draw(read(arguments.result)), arguments.out)))
+    except PlotError as error:
+        print(f"benchmarks.py: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,55 @@
+// One trial's matches and all that its stages take and give, made beforehand so that each stage can be timed
+// alone.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "estimator/kernels/block_search.h"
+#include "estimator/refinement/motion_search.h"
+#include "experiments/data_source.h"
+
+namespace rcme {
+
+inline constexpr int kNumMatches = 500;
+inline constexpr int kNumHypotheses = 200;
+inline constexpr int kNumBenchmarkTrials = 8;
+
+// Scene uniform_volume, 20 % outliers, sigma 0.5 px.
+struct BenchmarkTrial {
+  BenchmarkTrial(int num_matches, std::uint32_t trial);
+
+  StreamName name;
+  TrialData data;
+  MatchBlocks blocks;
+  std::vector<cv::Point2f> x1, x2;  // for OpenCV: in the type it works with
+
+  // The hypotheses of the samples, eight at a time and one by one, and the models of the former.
+  std::vector<Sample> samples;
+  std::vector<HypothesisBlock> hypothesis_blocks;
+  std::vector<Hypothesis> hypotheses;
+  std::vector<WhitenedModel> models;
+  std::vector<VariancePolynomial> variances;
+
+  // The hypothesis with most inliers by the known-pose test, and these.
+  Sample winner{};
+  MatchMask support;
+
+  // The right matches, a start off the true motion by 0.01 rad in each coordinate, and the fit from there.
+  std::vector<int> inliers;
+  MatchMask inlier_mask;
+  RelativePose start;
+  RefinedMotion refined;
+
+ private:
+  void MakeHypotheses(int num_matches);
+  void FindWinner();
+};
+
+// Trials 0, 1, ... of the scene.
+std::vector<BenchmarkTrial> MakeBenchmarkTrials(int num_matches, int num_trials);
+const std::vector<BenchmarkTrial>& BenchmarkTrials();  // kNumBenchmarkTrials with kNumMatches matches each
+
+TrialData MakeBenchmarkData(int num_matches, std::uint32_t trial);
+
+}  // namespace rcme
