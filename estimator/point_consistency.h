@@ -91,8 +91,9 @@ class AsPrintedTest {
   Eigen::Matrix4d point_noise_;  // sigma^2 H H'
 };
 
-// The same test from the 4x4 matrix itself, as printed: Sigma_delta (sampson_covariance.h), inverted by LDL'. The
-// reference implementation's; near g = 0, where Sigma_delta is singular, it loses the digits that the closed form keeps.
+// The same test from the 4x4 matrix itself, as printed: Sigma_delta (sampson_covariance.h), inverted by LDL'.
+// The reference implementation's; near g = 0, where Sigma_delta is singular, it loses the digits that the
+// closed form keeps.
 class TextbookTest {
  public:
   static constexpr bool kNeedsCovariance = true;

@@ -39,7 +39,8 @@ Sample DrawSample(int n, RandomStream& rng) {
   Sample sample;
   for (auto end = sample.begin();;) {
     while (end != sample.end()) *end++ = static_cast<int>(rng.IntegerBelow(static_cast<std::uint32_t>(n)));
-    if (!HasDuplicates(sample)) return sample;  // what was drawn again is drawn anew, the others keep their places
+    if (!HasDuplicates(sample))
+      return sample;  // what was drawn again is drawn anew, the others keep their places
     end = KeepFirstOfEach(&sample);
   }
 }

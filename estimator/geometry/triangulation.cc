@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <vector>
 
 namespace rcme {
 
@@ -28,9 +29,9 @@ RelativePose SelectPoseByCheirality(std::span<const RelativePose> poses,
       return IsInFrontOfBothCameras(pose, camera1.Ray(match.x1_px), camera2.Ray(match.x2_px));
     });
   };
-  return *std::max_element(poses.begin(), poses.end(), [&](const RelativePose& a, const RelativePose& b) {
-    return count_in_front(a) < count_in_front(b);
-  });
+  std::vector<std::ptrdiff_t> counts;
+  for (const RelativePose& pose : poses) counts.push_back(count_in_front(pose));
+  return poses[static_cast<size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin())];
 }
 
 }  // namespace rcme

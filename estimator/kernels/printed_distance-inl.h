@@ -65,6 +65,7 @@ HWY_INLINE PrintedDistance EvaluatePrinted(const Model& model, const Matches& ma
   Vec a[4] = {hn::MulAdd(A00, j[2], A10 * j[3]), hn::MulAdd(A01, j[2], A11 * j[3]),
               hn::MulAdd(A00, j[0], A01 * j[1]), hn::MulAdd(A10, j[0], A11 * j[1])};
   Vec D = n2;
+#pragma GCC unroll 5
   for (int k = 0; k < 5; ++k) {
     const Constraint d = EvaluateConstraint(model.dF(k), matches);
     AddOuterProduct(d.gradient, Q);

@@ -29,8 +29,9 @@ HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Vi
   unsigned bits = 0;
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
     const Visited visited = visit(LoadMatches(block, lane));
-    const Mask is_inlier =
-        num_matches < kBlockSize ? hn::And(visited.is_inlier, AreMatches(lane, num_matches)) : visited.is_inlier;
+    const Mask is_inlier = num_matches < kBlockSize
+                               ? hn::And(visited.is_inlier, AreMatches(lane, num_matches))
+                               : visited.is_inlier;
     if constexpr (has_spread) *spread += hn::CompressStore(visited.spread, is_inlier, Tag(), *spread);
     bits |= BitsOf(is_inlier) << lane;
   }

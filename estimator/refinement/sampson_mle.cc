@@ -16,7 +16,7 @@ RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask,
   return MinimizeOverMotion(
       start, {[&](const RelativePose& pose) { return LinearizeSampson(matches, mask, pose, loss); },
               [&](const RelativePose& pose) { return SampsonInformation(matches, mask, pose); },
-              loss == Loss::kSquared ? 1e-9 : 1e-4});
+              loss == Loss::kSquared ? 1e-6 : 1e-3});
 }
 
 RefinedMotion RefineAllBySampson(const MotionProblem& problem, const RelativePose& start) {
