@@ -33,6 +33,9 @@ struct Fit {
   typename Matches::Set fitted;
 };
 
+// From the support to the matches that agree. Five matches determine a motion exactly: their residuals and
+// the variances of these are zero, rounding would decide whether they agree, and nothing speaks for the
+// motion.
 template <typename Matches>
 Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& support,
                          const RelativePose& start) {
@@ -41,6 +44,10 @@ Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& su
     typename Matches::Set selected = matches.SelectFitSet(fit.motion, fit.fitted);
     if (refit > 0 && selected == fit.fitted) break;
     fit.fitted = std::move(selected);
+    if (matches.Count(fit.fitted) <= 5) {
+      fit.motion.converged = false;
+      break;
+    }
     fit.motion = matches.Refine(fit.fitted, fit.motion.cam2_from_cam1, Loss::kSquared);
   }
   return fit;

@@ -22,8 +22,8 @@ HWY_INLINE void AddTriangle(const Vec* a, Vec weight, Vec* sums) {
 
 HWY_INLINE double Total(Vec sum) { return hn::GetLane(hn::SumOfLanes(Tag(), sum)); }
 
-// Calls visit(matches, constraint, 1 / |J|^2, block) for every vector of matches; 1 / |J|^2 is zero where
-// unused.
+// Calls visit(matches, constraint, 1 / |J|^2, i) for every vector of matches, the i-th; 1 / |J|^2 is zero
+// where unused.
 template <typename Visit>
 HWY_INLINE void ForEach(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                         const Visit& visit) {
@@ -34,12 +34,12 @@ HWY_INLINE void ForEach(const MatchBlocks& matches, const MatchMask& mask, const
       const Matches m = LoadMatches(matches[b], lane);
       const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
       const Vec n2 = hn::IfThenElse(is_used, Dot4(c.gradient, c.gradient), Set(1.0));
-      visit(m, c, hn::IfThenElseZero(is_used, Set(1.0) / n2), b);
+      visit(m, c, hn::IfThenElseZero(is_used, Set(1.0) / n2), (b * kBlockSize + lane) / kLanes);
     }
   }
 }
 
-// sum log x of numbers x >= 1, one logarithm for eight of them; each up to 1e38.
+// sum log x of numbers x >= 1, one logarithm for eight vectors of them, i = 0, 1, ...; each up to 1e38.
 class LogSum {
  public:
   HWY_INLINE LogSum() : product_(Set(1.0)), sum_(Set(0.0)) {}
@@ -69,7 +69,7 @@ HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const Sam
   Vec squares = zero, gradient[5] = {zero, zero, zero, zero, zero}, hessian[15];
   for (Vec& sum : hessian) sum = zero;
   LogSum logs;
-  ForEach(matches, mask, model, [&](const Matches& m, const Constraint& c, Vec inverse_n2, int block) {
+  ForEach(matches, mask, model, [&](const Matches& m, const Constraint& c, Vec inverse_n2, int i) {
     const Vec u = c.g * inverse_n2, r2 = c.g * u;
     Vec e[5];
     for (int k = 0; k < 5; ++k) {
@@ -80,7 +80,7 @@ HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const Sam
     if constexpr (loss == Loss::kCauchy) {
       // rho = c2 log(1 + r2 / c2), w = rho' = 1 / (1 + r2 / c2), psi' = 2 w^2 - w.
       const Vec ratio = hn::MulAdd(r2, inverse_c2, one), w = one / ratio;
-      logs.Add(ratio, block);
+      logs.Add(ratio, i);
       weight = weight * w;
       curvature = curvature * hn::Max(hn::MulSub(w + w, w, w), Set(0.25) * w);
     } else {

@@ -1,0 +1,97 @@
+// The same bytes from every call and from any number of threads, on one instruction set.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <thread>
+
+#include "estimator/estimator_registry.h"
+#include "simulator/observe.h"
+#include "simulator/scenes/uniform_volume.h"
+
+namespace rcme {
+namespace {
+
+constexpr std::uint32_t kNumTrials = 12;
+
+MotionProblem MakeProblem(std::uint32_t trial) {
+  UniformVolume model;
+  FindParameter(model.Parameters(), "num_matches").SetFromText("120");
+  RandomStream scene_rng({1, 9, trial, 1}), noise_rng({1, 9, trial, 2}), outlier_rng({1, 9, trial, 3});
+  const Scene scene = model.Generate(scene_rng);
+  return {Observe(scene, {0.5}, {0.3}, noise_rng, outlier_rng).matches, scene.camera1, scene.camera2, 0.5};
+}
+
+// Every number of an estimate, as bits.
+std::vector<std::uint64_t> BitsOf(const MotionEstimate& e) {
+  std::vector<std::uint64_t> bits;
+  const auto add = [&bits](double value) { bits.push_back(std::bit_cast<std::uint64_t>(value)); };
+  for (const RelativePose& pose : {e.cam2_from_cam1, e.initial_pose}) {
+    for (const double x : pose.R.reshaped()) add(x);
+    for (const double x : pose.t) add(x);
+  }
+  for (const double x : e.pose_cov.reshaped()) add(x);
+  for (const double x : {e.mean_entropy, e.z_statistic}) add(x);
+  for (const int i : e.inliers) add(i);
+  const LoopCounts& c = e.counts;
+  for (const int i :
+       {static_cast<int>(e.status), e.num_support, e.num_consistent_before, e.num_consistent_after,
+        static_cast<int>(e.failed_by_kappa), c.num_hypotheses, c.num_degenerate_samples,
+        c.num_inconsistent_samples, c.num_poor_inlier_sets, c.num_too_small_inlier_sets, c.num_candidates}) {
+    add(i);
+  }
+  return bits;
+}
+
+class Determinism : public testing::TestWithParam<std::tuple<std::string, Reading, Implementation>> {
+ protected:
+  std::unique_ptr<MotionEstimator> Make() const {
+    RansacOptions options;
+    options.reading = std::get<Reading>(GetParam());
+    options.implementation = std::get<Implementation>(GetParam());
+    return FindEstimator(std::get<std::string>(GetParam())).make(options);
+  }
+  static std::vector<std::uint64_t> Estimate(const MotionEstimator& estimator, std::uint32_t trial) {
+    RandomStream rng({1, 9, trial, 4});
+    return BitsOf(estimator.Estimate(MakeProblem(trial), rng));
+  }
+};
+
+TEST_P(Determinism, TheSameBytesFromRepeatedCallsAndFromSeveralThreadsAtOnce) {
+  const std::unique_ptr<MotionEstimator> estimator = Make();
+  std::vector<std::vector<std::uint64_t>> first;
+  for (std::uint32_t trial = 0; trial < kNumTrials; ++trial) first.push_back(Estimate(*estimator, trial));
+  EXPECT_NE(first[0], first[1]) << "bits that never change test nothing";
+  for (std::uint32_t trial = kNumTrials; trial-- > 0;) {  // in another order, from another estimator
+    EXPECT_EQ(Estimate(*Make(), trial), first[trial]) << trial;
+  }
+  constexpr std::uint32_t kNumThreads = 4;
+  std::vector<std::vector<std::uint64_t>> found(kNumThreads * kNumTrials);
+  {
+    std::vector<std::jthread> threads;
+    for (std::uint32_t t = 0; t < kNumThreads; ++t) {
+      threads.emplace_back([&, t] {
+        for (std::uint32_t i = 0; i < kNumTrials; ++i) {
+          const std::uint32_t trial = (i + 3 * t) % kNumTrials;  // different ones at a time
+          found[t * kNumTrials + trial] = Estimate(*estimator, trial);
+        }
+      });
+    }
+  }
+  for (size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], first[i % kNumTrials]) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, Determinism,
+                         testing::Combine(testing::Values("standard", "prcme", "rcme"),
+                                          testing::Values(Reading::kAsPrinted, Reading::kRankAware),
+                                          testing::Values(Implementation::kFast, Implementation::kReference)),
+                         [](const auto& instance) {
+                           return std::get<0>(instance.param) + "_" +
+                                  (std::get<1>(instance.param) == Reading::kAsPrinted ? "printed"
+                                                                                      : "rank_aware") +
+                                  "_" +
+                                  (std::get<2>(instance.param) == Implementation::kFast ? "fast"
+                                                                                        : "reference");
+                         });
+
+}  // namespace
+}  // namespace rcme
