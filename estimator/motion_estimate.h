@@ -13,7 +13,7 @@ enum class MotionStatus {
   kNoCandidate,         // the paper's "Detect-fail": the candidate set is empty
   kTooFewMatches,       // fewer distinct matches than a minimal sample needs
   kDegenerateMatches,   // the matches cannot determine a motion (collinear, or every sample is singular)
-  kRefinementDiverged,  // the refinement found no finite optimum, or no five matches agree with it
+  kRefinementDiverged,  // the refinement found no finite optimum, or no more than five matches agree with it
   kInvalidInput,        // NaN or infinite coordinates, a singular camera, a noise level that is not positive
 };
 

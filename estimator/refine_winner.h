@@ -39,6 +39,7 @@ struct Fit {
 template <typename Matches>
 Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& support,
                          const RelativePose& start) {
+  if (matches.Count(support) <= 5) return {{.cam2_from_cam1 = start}, support};
   Fit<Matches> fit{matches.Refine(support, start, Loss::kCauchy), support};
   for (int refit = 0; refit < kMaxRefits && fit.motion.converged; ++refit) {
     typename Matches::Set selected = matches.SelectFitSet(fit.motion, fit.fitted);

@@ -30,7 +30,7 @@ LABELS = {"opencv_ransac_200": "OpenCV RANSAC, 200", "opencv_usac_magsac": "Open
 SERIES = {  # panel: x label, and its series with labels
     "n": ("Matches n", {"n": "pRCME, whole call", "n_scoring": "its scoring"}),
     "iterations": ("Hypotheses N", {"iterations": "pRCME, whole call"}),
-    "trials": ("Trials of a study", {"trials": "engine alone"}),
+    "trials": ("Trials of a study", {"trials": "rcme, all cores"}),
 }
 SERIES_LOOKS = (dict(color=style.BLUE, marker="o"), dict(color=style.ORANGE, marker="s"))
 
