@@ -82,7 +82,7 @@ HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const Sam
       const Vec ratio = hn::MulAdd(r2, inverse_c2, one), w = one / ratio;
       logs.Add(ratio, i);
       weight = weight * w;
-      curvature = curvature * hn::Max(hn::MulSub(w + w, w, w), Set(0.25) * w);
+      curvature = curvature * hn::Max(hn::MulSub(w + w, w, w), Set(0.7) * w);
     } else {
       squares = squares + r2;
     }

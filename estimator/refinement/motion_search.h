@@ -26,8 +26,9 @@ struct RefinedMotion {
 struct NormalEquations {
   double cost = 0.0;
   Vector5d gradient = Vector5d::Zero();  // sum rho' r r_p'
-  // sum max(psi', rho' / 4) r_p' r_p, psi = rho' r: Gauss-Newton's for the squared loss. With rho' in the
+  // sum max(psi', 0.7 rho') r_p' r_p, psi = rho' r: Gauss-Newton's for the squared loss. With rho' in the
   // place of psi', every step would leave a fifth of the error; psi' alone vanishes far from the optimum.
+  // From the winners of 100 trials 0.25 took 9.4 evaluations, 0.5 5.6, 0.7 4.8, 0.8 5.0, 1 6.1.
   Matrix5d hessian = Matrix5d::Zero();
 };
 

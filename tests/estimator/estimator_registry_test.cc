@@ -30,11 +30,12 @@ Pair MakePair(int num_matches, double sigma_px, double outlier_ratio, std::uint3
           scene.cam2_from_cam1_true};
 }
 
-class EstimatorContract : public testing::TestWithParam<std::tuple<EstimatorEntry, Reading>> {
+class EstimatorContract : public testing::TestWithParam<std::tuple<EstimatorEntry, Reading, Implementation>> {
  protected:
   void SetUp() override {
     RansacOptions options;
     options.reading = std::get<Reading>(GetParam());
+    options.implementation = std::get<Implementation>(GetParam());
     estimator_ = std::get<EstimatorEntry>(GetParam()).make(options);
   }
   MotionEstimate Estimate(const MotionProblem& problem, std::uint32_t trial = 0) const {
@@ -113,11 +114,14 @@ TEST_P(EstimatorContract, SurvivesHostileMatches) {
 
 INSTANTIATE_TEST_SUITE_P(Registry, EstimatorContract,
                          testing::Combine(testing::ValuesIn(EstimatorRegistry()),
-                                          testing::Values(Reading::kAsPrinted, Reading::kRankAware)),
+                                          testing::Values(Reading::kAsPrinted, Reading::kRankAware),
+                                          testing::Values(Implementation::kFast, Implementation::kReference)),
                          [](const auto& c) {
                            const bool is_printed = std::get<Reading>(c.param) == Reading::kAsPrinted;
+                           const bool is_fast = std::get<Implementation>(c.param) == Implementation::kFast;
                            return std::get<EstimatorEntry>(c.param).name +
-                                  (is_printed ? "_as_printed" : "_rank_aware");
+                                  (is_printed ? "_as_printed" : "_rank_aware") +
+                                  (is_fast ? "_fast" : "_reference");
                          });
 
 TEST(FindEstimator, AnUnknownNameListsTheKnownOnes) {

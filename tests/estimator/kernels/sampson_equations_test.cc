@@ -61,13 +61,13 @@ double Cost(const Case& c, const RelativePose& pose, Loss loss) {
   for (const double r : Residuals(c, pose)) sum += 0.5 * Rho(r, loss);
   return sum;
 }
-// max(psi', rho' / 4), by numeric differentiation of the loss.
+// max(psi', 0.7 rho'), by numeric differentiation of the loss.
 double Curvature(double r, Loss loss) {
   const double h = 1e-3;
   const double second =
       (Rho(r + h, loss) - 2.0 * Rho(r, loss) + Rho(r - h, loss)) / (2.0 * h * h);  // of rho / 2
   const double first = (Rho(r + h, loss) - Rho(r - h, loss)) / (4.0 * h);          // psi
-  return std::max(second, std::abs(r) > 1e-6 ? 0.25 * first / r : 0.25);
+  return std::max(second, std::abs(r) > 1e-6 ? 0.7 * first / r : 0.7);
 }
 
 NormalEquations Linearize(const Case& c, Loss loss) {
