@@ -7,8 +7,6 @@
 #include <limits>
 #include <numbers>
 
-#include "estimator/uncertainty/sampson_covariance.h"
-
 namespace rcme {
 namespace {
 
@@ -140,21 +138,6 @@ double AsPrintedTest::Distance(const Correspondence& match, PointResidual* resid
 
 double AsPrintedTest::EntropyOfLogDeterminant(double log_det_cov) {
   return 0.5 * (4.0 * (kLogTwoPi + 1.0) + log_det_cov);
-}
-
-double TextbookTest::Distance(const Correspondence& match, PointResidual* residual) const {
-  const Eigen::Vector4d delta = SampsonVector(model_.F, match);
-  const Eigen::Matrix4d cov =
-      CovarianceOfSampsonVector(model_.F, model_.dF_whitened, Matrix5d::Identity(), sigma_px_, match);
-  const Eigen::LDLT<Eigen::Matrix4d> ldlt(cov);
-  const Eigen::Vector4d pivots = ldlt.vectorD();
-  if (ldlt.info() != Eigen::Success || !(pivots.minCoeff() > 0.0)) {
-    residual->d2 = std::numeric_limits<double>::infinity();
-    return residual->d2;
-  }
-  residual->d2 = delta.dot(ldlt.solve(delta));
-  residual->log_det_cov = pivots.array().log().sum();
-  return residual->d2;
 }
 
 MatchResidual EvaluateResidual(const UncertainFundamental& model, const Correspondence& match) {

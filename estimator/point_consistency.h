@@ -1,9 +1,8 @@
-// Does a match agree with a motion? Tests with one shape: built once per hypothesis, then called per
+// Does a match agree with a motion? Three tests with one shape: built once per hypothesis, then called per
 // match.
 //
 //   KnownPoseTest   the motion is taken as exact: g^2 / |J|^2 <= sigma^2 chi2_1 (Hartley & Zisserman, 4.7.1)
 //   AsPrintedTest   eq::find-inlier read literally: delta' Sigma_delta^-1 delta <= chi2_3, in closed form
-//   TextbookTest    the same with the 4x4 matrix
 //   RankAwareTest   the residual has one dimension: g^2 / (|J|^2 s2) <= chi2_1
 //
 // Distance returns d2, the squared Mahalanobis distance; Entropy and NegativeLogLikelihood take what it left
@@ -89,25 +88,6 @@ class AsPrintedTest {
   double sigma2_;
   Eigen::Matrix4d H_;            // Hessian of g
   Eigen::Matrix4d point_noise_;  // sigma^2 H H'
-};
-
-// The same test from the 4x4 matrix itself, as printed: Sigma_delta (sampson_covariance.h), inverted by LDL'.
-// The reference implementation's; near g = 0, where Sigma_delta is singular, it loses the digits that the
-// closed form keeps.
-class TextbookTest {
- public:
-  static constexpr bool kNeedsCovariance = true;
-  static constexpr int kDegreesOfFreedom = AsPrintedTest::kDegreesOfFreedom;
-  TextbookTest(const UncertainFundamental& model, double sigma_px) : model_(model), sigma_px_(sigma_px) {}
-  double Distance(const Correspondence& match, PointResidual* residual) const;
-  double Entropy(const PointResidual& residual) const {
-    return AsPrintedTest::EntropyOfLogDeterminant(residual.log_det_cov);
-  }
-  double NegativeLogLikelihood(const PointResidual&) const { return 0.0; }
-
- private:
-  UncertainFundamental model_;
-  double sigma_px_;
 };
 
 class RankAwareTest {

@@ -43,7 +43,7 @@ enum class RefinementError {
 // Two implementations of the same mathematics; they agree to rounding.
 enum class Implementation {
   kFast,       // eight hypotheses, eight matches at a time, closed forms: kernels/
-  kReference,  // one by one, textbook matrices: the oracle of the tests
+  kReference,  // one by one, small matrices: the oracle of the tests
 };
 
 // Options of the RANSAC family (standard, prcme, rcme). Defaults are the paper's where it gives a value.

@@ -9,7 +9,7 @@ namespace {
 // Each sample point on its own, as printed (eq::sample-p-test).
 struct PerPointSampleTest {
   static constexpr bool kTestsSample = true;
-  static bool Passes(const MotionProblem& problem, const Hypothesis& hypothesis, const TextbookTest& test,
+  static bool Passes(const MotionProblem& problem, const Hypothesis& hypothesis, const AsPrintedTest& test,
                      const Thresholds& thresholds) {
     return EverySamplePointFits(problem, hypothesis, test, thresholds.point);
   }
@@ -61,8 +61,8 @@ RcmeEstimator::RcmeEstimator(const RansacOptions& options, SampleTest sample_tes
 MotionEstimate RcmeEstimator::Estimate(const MotionProblem& problem, RandomStream& rng) const {
   const bool tests_sample = sample_test_ == SampleTest::kOn;
   if (options_.reading == Reading::kAsPrinted) {
-    return tests_sample ? RunPipeline<RcmePipeline<TextbookTest, PerPointSampleTest>>(problem, options_, rng)
-                        : RunPipeline<RcmePipeline<TextbookTest, NoSampleTest>>(problem, options_, rng);
+    return tests_sample ? RunPipeline<RcmePipeline<AsPrintedTest, PerPointSampleTest>>(problem, options_, rng)
+                        : RunPipeline<RcmePipeline<AsPrintedTest, NoSampleTest>>(problem, options_, rng);
   }
   return tests_sample ? RunPipeline<RcmePipeline<RankAwareTest, JointSampleTest>>(problem, options_, rng)
                       : RunPipeline<RcmePipeline<RankAwareTest, NoSampleTest>>(problem, options_, rng);
