@@ -4,32 +4,17 @@
 
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "stats/portable_math.h"
 #include "stats/random.h"
+#include "tests/test_support/every_target.h"
 
 namespace rcme {
 namespace {
-
-class OnEveryTarget : public testing::Test {
- protected:
-  // The baseline, AVX2 and AVX-512, as far as the machine has them.
-  static void Run(const std::function<void()>& check) {
-    for (const std::int64_t target : {HWY_SCALAR, HWY_AVX2, HWY_AVX3}) {
-      if (target != HWY_SCALAR && (hwy::SupportedTargets() & target) == 0) continue;
-      SCOPED_TRACE(hwy::TargetName(target));
-      hwy::GetChosenTarget().Update(target);
-      check();
-    }
-  }
-  void TearDown() override { hwy::GetChosenTarget().Update(hwy::SupportedTargets()); }
-};
 
 std::vector<std::uint64_t> BitsOf(const std::vector<double>& values) {
   std::vector<std::uint64_t> bits;
