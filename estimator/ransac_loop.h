@@ -3,12 +3,15 @@
 // A pipeline names the decisions (estimators/standard.cc and estimators/rcme.cc are the worked examples):
 //
 //   struct Pipeline {
-//     using PointTest = ...;              // point_consistency.h: is a match an inlier, with what entropy
-//     static constexpr bool kTestsSample;                                            // eq::sample-p-test,
-//     and static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);   // what it is static
-//     bool InlierSetIsGood(z, options, thresholds);                           // eq::inlier-quality-test
-//     static bool IsBetter(score_a, score_b, options);                               //
-//     eq::model_select_entropy
+//     // point_consistency.h: is a match an inlier, with what entropy
+//     using PointTest = ...;
+//     // eq::sample-p-test: whether there is one, and what it is
+//     static constexpr bool kTestsSample;
+//     static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);
+//     // eq::inlier-quality-test
+//     static bool InlierSetIsGood(z, options, thresholds);
+//     // eq::model_select_entropy
+//     static bool IsBetter(score_a, score_b, options);
 //   };
 //
 // A search makes the hypotheses and scores them: reference_search.h one by one, kernels/block_search.h eight

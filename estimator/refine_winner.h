@@ -5,12 +5,17 @@
 //   struct Matches {
 //     using Set = ...;
 //     const MotionProblem& problem() const;
-//     RelativePose SelectPose(projection, set) const;         // cheirality
+//     // cheirality
+//     RelativePose SelectPose(projection, set) const;
 //     RefinedMotion Refine(set, start, loss) const;
+//     // refinement/fit_set.h
 //     Set FindAgreeing(motion, fitted, significance_level) const;
-//     Set SelectFitSet(motion, fitted) const;                 // refinement/fit_set.h
-//     int CountConsistent(set, pose, threshold) const;        // squared Sampson distance / sigma^2 <
-//     threshold Set SetOf(sorted indices) const; std::vector<int> IndicesOf(set) const; int Count(set) const;
+//     Set SelectFitSet(motion, fitted) const;
+//     // squared Sampson distance over sigma^2 below the threshold
+//     int CountConsistent(set, pose, threshold) const;
+//     Set SetOf(sorted_indices) const;
+//     std::vector<int> IndicesOf(set) const;
+//     int Count(set) const;
 //   };
 #pragma once
 
