@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "experiments/real_data/match_folder.h"
 #include "experiments/simulated_data.h"
 #include "parameters/input_error.h"
@@ -17,13 +19,27 @@ std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
                           "noise standard deviation that the estimators are told")};
 }
 
-std::string SceneNameIn(const Settings& settings) {
-  std::string scene;
+// The keys that choose by name, with the field of the choice.
+const std::vector<std::pair<std::string, std::string Choices::*>>& ChoiceKeys() {
+  static const std::vector<std::pair<std::string, std::string Choices::*>> keys = {
+      {"scene", &Choices::scene},
+      {"cameras", &Choices::cameras},
+      {"motion", &Choices::motion},
+      {"noise", &Choices::noise},
+      {"outliers", &Choices::outliers}};
+  return keys;
+}
+
+Choices ChoicesIn(const Settings& settings) {
+  Choices choices;
   for (const auto& [key, value] : settings) {
-    if (key == "scene") scene = value;
+    for (const auto& [name, field] : ChoiceKeys()) {
+      if (key == name) choices.*field = value;
+    }
   }
-  if (scene.empty()) throw InputError("data: key 'scene' is missing; `rcme list scenes` shows what there is");
-  return scene;
+  if (choices.scene.empty())
+    throw InputError("data: key 'scene' is missing; `rcme list scenes` shows what there is");
+  return choices;
 }
 
 [[noreturn]] void ThrowUnknownScene(const std::string& scene) {
@@ -32,28 +48,40 @@ std::string SceneNameIn(const Settings& settings) {
   throw InputError(fmt::format("scene: '{}' is not allowed; give one of: {}", scene, fmt::join(names, ", ")));
 }
 
-// The scene's parameters: of a folder of match files, or of a simulation.
+// The parameters of the settings' choices: of a folder of match files, or of a simulation.
 struct Configured {
   MatchFolderSettings folder;
   std::shared_ptr<SimulatedData> simulated;  // null: a folder
 
-  explicit Configured(const std::string& scene) {
-    if (scene == kMatchFilesScene) return;
-    const SceneEntry* entry = FindScene(scene);
-    if (!entry) ThrowUnknownScene(scene);
-    simulated = std::make_shared<SimulatedData>(entry->make());
-  }
-  std::vector<Parameter> AllParameters() { return simulated ? simulated->Parameters() : Parameters(folder); }
-
-  void Apply(const Settings& settings) {
+  explicit Configured(const Settings& settings) {
+    const Choices choices = ChoicesIn(settings);
+    if (choices.scene != kMatchFilesScene) {
+      const bool is_known = std::ranges::count(SceneRegistry(), choices.scene, &SceneEntry::name) > 0;
+      if (!is_known) ThrowUnknownScene(choices.scene);
+      simulated = std::make_shared<SimulatedData>(choices);
+    }
     const std::vector<Parameter> parameters = AllParameters();
     for (const auto& [key, value] : settings) {
-      if (key != "scene") FindParameter(parameters, key).SetFromText(value);
+      const bool is_applied = key == "scene" || (simulated && IsChoice(key));
+      if (!is_applied) FindParameter(parameters, key).SetFromText(value);
     }
+  }
+
+  std::vector<Parameter> AllParameters() { return simulated ? simulated->Parameters() : Parameters(folder); }
+
+  Settings ChosenNames() const {
+    if (!simulated) return {{"scene", kMatchFilesScene}};
+    Settings names;
+    for (const auto& [name, field] : ChoiceKeys()) names.emplace_back(name, simulated->choices().*field);
+    return names;
   }
 };
 
 }  // namespace
+
+bool IsChoice(const std::string& key) {
+  return std::ranges::any_of(ChoiceKeys(), [&](const auto& choice) { return choice.first == key; });
+}
 
 RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose) {
   trial_name.purpose = static_cast<std::uint32_t>(purpose);
@@ -61,32 +89,28 @@ RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose) {
 }
 
 DataSources MakeDataSources(const Settings& settings) {
-  Configured configured(SceneNameIn(settings));
-  configured.Apply(settings);
+  const Configured configured(settings);
   if (configured.simulated) return {"", {{"", configured.simulated}}};
   return {"pair_scene", LoadMatchFolder(configured.folder)};
 }
 
 std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings) {
-  Configured configured(SceneNameIn(settings));
-  configured.Apply(settings);
+  const Configured configured(settings);
   if (!configured.simulated) throw InputError(fmt::format("scene: {} is not simulated", kMatchFilesScene));
   return configured.simulated;
 }
 
 Settings ResolveSettings(const Settings& settings) {
-  const std::string scene = SceneNameIn(settings);
-  Configured configured(scene);
-  configured.Apply(settings);
-  Settings resolved = {{"scene", scene}};
+  Configured configured(settings);
+  Settings resolved = configured.ChosenNames();
   for (const Parameter& parameter : configured.AllParameters()) {
     resolved.emplace_back(parameter.name(), parameter.Value());
   }
   return resolved;
 }
 
-std::vector<SettingHelp> DescribeSettings(const std::string& scene) {
-  Configured configured(scene);
+std::vector<SettingHelp> DescribeSettings(const Settings& settings) {
+  Configured configured(settings);
   std::vector<SettingHelp> help;
   for (const Parameter& p : configured.AllParameters()) {
     help.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});

@@ -27,8 +27,9 @@ RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose);
 
 struct Truth {
   std::optional<RelativePose> cam2_from_cam1_true;
-  bool is_direction_known = true;    // false: score the rotation alone
-  std::vector<bool> is_inlier_true;  // per match; empty: unknown
+  bool is_direction_known = true;     // false: score the rotation alone
+  std::vector<bool> is_inlier_true;   // per match; empty: unknown
+  std::vector<bool> is_undetectable;  // per match: wrong, but on the true epipolar line; empty: none known
 };
 
 // A problem for the estimators and the truth for the score, kept apart from here on.
@@ -66,11 +67,16 @@ DataSources MakeDataSources(const Settings& settings);
 // Every parameter of the scene with its value, `scene` first. Throws InputError that names key and value.
 Settings ResolveSettings(const Settings& settings);
 
-// Every key a `data:` block of this scene may hold, with its default, as `name, value, allowed, doc` rows.
+// The keys of a `data:` block that choose a part of the simulation by name; the choice decides which other
+// keys there are.
+bool IsChoice(const std::string& key);
+
+// Every key a `data:` block with these settings may hold, with its value, as `name, value, allowed, doc`
+// rows.
 struct SettingHelp {
   std::string name, value, unit, allowed, doc;
 };
-std::vector<SettingHelp> DescribeSettings(const std::string& scene);
+std::vector<SettingHelp> DescribeSettings(const Settings& settings);
 
 // The scene name that stands for a folder of match files.
 inline constexpr const char* kMatchFilesScene = "match_files";

@@ -2,21 +2,21 @@
 
 #include <fmt/format.h>
 
+#include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
-#include "simulator/scene_registry.h"
 
 namespace rcme {
 
 SampleFamily::SampleFamily(int num_points, double baseline_m, double sigma_px)
-    : model_(FindScene("uniform_volume")->make()), sigma_px_(sigma_px) {
-  const std::vector<Parameter> parameters = model_->Parameters();
+    : scenes_("uniform_volume"), sigma_px_(sigma_px) {
+  const std::vector<Parameter> parameters = scenes_.Parameters();
   FindParameter(parameters, "num_matches").SetFromText(fmt::format("{}", num_points + 1));
   FindParameter(parameters, "baseline_m").SetFromText(fmt::format("{}", baseline_m));
 }
 
 Scene SampleFamily::MakeScene(const StreamName& name) const {
   RandomStream scene_rng = StreamFor(name, StreamPurpose::kScene);
-  return model_->Generate(scene_rng);
+  return scenes_.Generate(scene_rng);
 }
 
 ObservedSample SampleFamily::Observe(const Scene& scene, const StreamName& name,
@@ -33,7 +33,7 @@ ObservedSample SampleFamily::ObserveWith(double noise_px, const Scene& scene, co
                                          RandomStream& noise_rng) const {
   RandomStream order_rng = StreamFor(name, StreamPurpose::kOutliers);  // no outliers: the order alone
   Observation observation =
-      rcme::Observe(scene, NoiseModel{noise_px}, OutlierModel{0.0}, noise_rng, order_rng);
+      rcme::Observe(scene, *MakeGaussianNoise(noise_px), OutlierModel(0.0), noise_rng, order_rng);
   ObservedSample sample;
   sample.fresh_match = observation.matches.back();
   observation.matches.pop_back();

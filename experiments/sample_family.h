@@ -2,11 +2,9 @@
 // uniform volume with another baseline, m matches to estimate from and one fresh match.
 #pragma once
 
-#include <memory>
-
 #include "estimator/motion_problem.h"
 #include "experiments/data_source.h"
-#include "simulator/scene.h"
+#include "simulator/scene_generator.h"
 
 namespace rcme {
 
@@ -31,7 +29,7 @@ class SampleFamily {
   ObservedSample ObserveWith(double noise_px, const Scene& scene, const StreamName& name,
                              RandomStream& noise_rng) const;
 
-  std::unique_ptr<SceneModel> model_;
+  SceneGenerator scenes_;
   double sigma_px_;
 };
 

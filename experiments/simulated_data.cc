@@ -1,12 +1,32 @@
 #include "experiments/simulated_data.h"
 
-#include "simulator/observe.h"
+#include "simulator/noise_registry.h"
+#include "simulator/outlier_registry.h"
 
 namespace rcme {
+namespace {
+
+Choices WithDefaults(Choices choices) {
+  if (choices.noise.empty()) choices.noise = "gaussian";
+  if (choices.outliers.empty()) choices.outliers = "uniform";
+  return choices;
+}
+
+}  // namespace
+
+SimulatedData::SimulatedData(const Choices& choices)
+    : choices_(WithDefaults(choices)),
+      scenes_(choices.scene, choices.cameras, choices.motion),
+      noise_(FindEntry(NoiseRegistry(), "noise", choices_.noise).make()),
+      outliers_(FindEntry(OutlierRegistry(), "outliers", choices_.outliers).make()) {
+  choices_.cameras = scenes_.cameras();
+  choices_.motion = scenes_.motion();
+}
 
 std::vector<Parameter> SimulatedData::Parameters() {
-  std::vector<Parameter> all = scene_->Parameters();
-  for (const std::vector<Parameter>& more : {rcme::Parameters(noise_), rcme::Parameters(outliers_)}) {
+  std::vector<Parameter> all = scenes_.Parameters();
+  for (const std::vector<Parameter>& more :
+       {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(told_)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   return all;
@@ -14,17 +34,19 @@ std::vector<Parameter> SimulatedData::Parameters() {
 
 Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
   RandomStream scene_rng = StreamFor(trial_name, StreamPurpose::kScene);
-  return scene_->Generate(scene_rng);
+  return scenes_.Generate(scene_rng);
 }
 
 TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_name) const {
   RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise);
   RandomStream outlier_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
-  Observation observation = Observe(scene, noise_, outliers_, noise_rng, outlier_rng);
+  Observation observation = Observe(scene, *noise_, outliers_, noise_rng, outlier_rng);
 
   TrialData data;
-  data.problem = {std::move(observation.matches), scene.camera1, scene.camera2, noise_.sigma_px};
-  data.truth = {scene.cam2_from_cam1_true, true, std::move(observation.is_inlier_true)};
+  data.problem = {std::move(observation.matches), told_.CameraTold(scene.camera1),
+                  told_.CameraTold(scene.camera2), told_.SigmaTold(noise_->sigma_px())};
+  data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
+                std::move(observation.is_undetectable)};
   data.origin = "simulated";
   return data;
 }

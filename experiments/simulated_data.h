@@ -3,16 +3,26 @@
 #include <memory>
 
 #include "experiments/data_source.h"
+#include "simulator/calibration_error.h"
 #include "simulator/noise_model.h"
+#include "simulator/observe.h"
 #include "simulator/outlier_model.h"
-#include "simulator/scene.h"
+#include "simulator/scene_generator.h"
 
 namespace rcme {
 
-// Simulated pairs: a scene, noise, outliers. The estimators are told the true sigma and nothing else.
+// What a study chooses by name; each choice brings parameters of its own. Empty: the scene's usual cameras
+// and motion, gaussian noise, uniform outliers.
+struct Choices {
+  std::string scene, cameras, motion, noise, outliers;
+};
+
+// Simulated pairs: a scene, noise, outliers. The estimators are told sigma and the cameras, and nothing else.
 class SimulatedData : public DataSource {
  public:
-  explicit SimulatedData(std::unique_ptr<SceneModel> scene) : scene_(std::move(scene)) {}
+  // Throws InputError that lists what is allowed.
+  explicit SimulatedData(const Choices& choices);
+  const Choices& choices() const { return choices_; }  // none empty
   std::vector<Parameter> Parameters();
 
   int NumTrials(int trials) const override { return trials; }
@@ -25,9 +35,11 @@ class SimulatedData : public DataSource {
   TrialData MakeFrom(const Scene& scene, const StreamName& trial_name) const;
 
  private:
-  std::unique_ptr<SceneModel> scene_;
-  NoiseModel noise_;
+  Choices choices_;
+  SceneGenerator scenes_;
+  std::unique_ptr<NoiseModel> noise_;
   OutlierModel outliers_;
+  CalibrationError told_;
 };
 
 // Simulated data for the settings, `scene` among them. Throws InputError that names key and value.

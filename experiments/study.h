@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,22 +25,45 @@ struct EstimatorSpec {
 
 inline constexpr size_t kMaxConditions = 100'000;  // of a study
 
-// One data setting and the values it takes; conditions are all combinations of all factors (full factorial).
+// One data setting and the values it takes.
 struct Factor {
   std::string key;
   std::vector<std::string> levels;
+};
+
+enum class Design {
+  kFullFactorial,  // all combinations of all factors
+  kOneAtATime,     // the values in `data`, and each level of each factor with the other factors as in `data`
+};
+
+// What a reader of a simulation study wants to know (Morris, White & Crowther 2019), in the study's own
+// words.
+struct Ademp {
+  std::string aims, data, estimands, methods, performance;
 };
 
 // A simulation study: what is varied, what is compared, how often, from which seed.
 struct Study {
   std::string name;
   std::string description;
+  std::optional<Ademp> ademp;
   std::uint64_t seed = 1;
   int trials = 100;  // per condition; for a folder of pairs, passes over each pair
-  Settings data;     // fixed settings, `scene` among them
+  Settings data;     // fixed settings
+  Design design = Design::kFullFactorial;
   std::vector<Factor> factors;
   std::vector<EstimatorSpec> estimators;
   FailureBounds failure;
 };
+
+// The parts of an Ademp with their keys, in order.
+std::vector<std::pair<std::string, std::string*>> Parts(Ademp& ademp);
+
+// One row per condition, one level per factor, the first factor slowest. Throws InputError: more than
+// kMaxConditions; a one-at-a-time design whose `data` lacks a factor's base value.
+std::vector<std::vector<std::string>> DesignRows(const Study& study);
+
+// The settings of a condition: those of `data`, then its levels.
+Settings SettingsOf(const Study& study, const std::vector<std::string>& levels);
 
 }  // namespace rcme

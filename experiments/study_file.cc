@@ -99,6 +99,12 @@ void ReadFactors(const Place& place, const YAML::Node& node, Study* study) {
   }
 }
 
+Parameter DesignParameter(Design* design) {
+  return Parameter::Choice<Design>(
+      "design", design, {{"full_factorial", Design::kFullFactorial}, {"one_at_a_time", Design::kOneAtATime}},
+      "which combinations of the factors' levels are run");
+}
+
 EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
   EstimatorSpec spec;
   for (const auto& [key, value] : Entries(place, node, "estimators", {"name", "label", "options"})) {
@@ -133,29 +139,66 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
   }
 }
 
-// Data settings are checked by making the sources once with the fixed settings, and once with each level of
-// each factor.
+// A study's settings with the first level of every factor: enough to know which keys there are.
+Settings FirstSettings(const Study& study) {
+  std::vector<std::string> levels;
+  for (const Factor& factor : study.factors) levels.push_back(factor.levels.front());
+  return SettingsOf(study, levels);
+}
+
+// Data settings are checked one by one, each with the study's choices, so that an error names its line; then
+// each level of each factor.
 void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
   const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
     const YAML::Node map = root[block];
     return map && map.IsMap() && map[key] ? map[key] : root;
   };
-  const auto scene =
-      std::find_if(study.data.begin(), study.data.end(), [](const auto& s) { return s.first == "scene"; });
-  if (scene == study.data.end())
+  const Settings first = FirstSettings(study);
+  if (std::ranges::count(first, "scene", &Settings::value_type::first) == 0)
     place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
-  for (const auto& setting : study.data) {
-    place.At(line_of("data", setting.first), [&] { ResolveSettings({*scene, setting}); });
+  Settings choices;
+  for (const auto& setting : first) {
+    if (!IsChoice(setting.first)) continue;
+    choices.push_back(setting);
+    place.At(line_of(root["data"][setting.first] ? "data" : "factors", setting.first),
+             [&] { ResolveSettings(choices); });
+  }
+  const auto resolve = [](Settings settings, const std::string& key, const std::string& value) {
+    settings.emplace_back(key, value);
+    ResolveSettings(settings);
+  };
+  for (const auto& [key, value] : study.data) {
+    place.At(line_of("data", key), [&, key = key, value = value] { resolve(choices, key, value); });
   }
   for (const Factor& factor : study.factors) {
-    if (factor.key == "scene") {
-      place.Fail(line_of("factors", factor.key),
-                 "factors: 'scene' cannot be a factor; write one study per scene");
-    }
+    const YAML::Node line = line_of("factors", factor.key);
     for (const std::string& level : factor.levels) {
-      place.At(line_of("factors", factor.key), [&] { ResolveSettings({*scene, {factor.key, level}}); });
+      if (factor.key == "scene" && level == kMatchFilesScene)
+        place.Fail(line,
+                   "factors: scene: match_files is no simulated scene; write a study of its own for it");
+      place.At(line, [&] { resolve(IsChoice(factor.key) ? first : choices, factor.key, level); });
     }
   }
+  place.At(root["factors"] ? root["factors"] : root, [&] { DesignRows(study); });
+}
+
+Ademp ReadAdemp(const Place& place, const YAML::Node& node) {
+  Ademp ademp;
+  std::set<std::string> known;
+  for (const auto& [key, text] : Parts(ademp)) known.insert(key);
+  const auto entries = Entries(place, node, "ademp", known);
+  for (const auto& [key, text] : Parts(ademp)) {
+    const auto entry = std::ranges::find(entries, key, &std::pair<std::string, YAML::Node>::first);
+    if (entry == entries.end()) place.Fail(node, fmt::format("ademp: key '{}' is missing", key));
+    *text = Scalar(place, entry->second, key);
+  }
+  return ademp;
+}
+
+Design ReadDesign(const Place& place, const YAML::Node& node) {
+  Design design = Design::kFullFactorial;
+  place.At(node, [&] { DesignParameter(&design).SetFromText(Scalar(place, node, "design")); });
+  return design;
 }
 
 YAML::Node ParseYaml(const std::string& yaml, const std::string& path) {
@@ -169,6 +212,13 @@ YAML::Node ParseYaml(const std::string& yaml, const std::string& path) {
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}:{}: not valid YAML: {}", path, error.mark.line + 1, error.msg));
   }
+}
+
+// Every data parameter with its value; where a factor chooses a part of the simulation, so that the
+// parameters differ from condition to condition, only those that were given.
+Settings WrittenData(const Study& study) {
+  if (std::ranges::none_of(study.factors, IsChoice, &Factor::key)) return ResolveSettings(study.data);
+  return study.data;
 }
 
 }  // namespace
@@ -189,9 +239,9 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
   const YAML::Node root = ParseYaml(yaml, path);
   Study study;
   study.name = std::filesystem::path(path).stem().string();
-  for (const auto& [key, node] :
-       Entries(place, root, "study",
-               {"name", "description", "seed", "trials", "data", "factors", "estimators", "failure"})) {
+  for (const auto& [key, node] : Entries(place, root, "study",
+                                         {"name", "description", "ademp", "seed", "trials", "data", "design",
+                                          "factors", "estimators", "failure"})) {
     if (key == "name") study.name = Scalar(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
@@ -204,6 +254,8 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
         study.data.emplace_back(setting, Scalar(place, value, setting));
       }
     }
+    if (key == "ademp") study.ademp = ReadAdemp(place, node);
+    if (key == "design") study.design = ReadDesign(place, node);
     if (key == "factors") ReadFactors(place, node, &study);
     if (key == "estimators") ReadEstimators(place, node, &study);
     if (key == "failure") {
@@ -245,9 +297,9 @@ void Override(Study* study, const std::string& key, const std::string& value) {
     FindParameter(Parameters(option_names), option);  // throws: it is no option
   } else {
     const auto is_key = [&](const auto& setting) { return setting.first == key; };
-    const auto scene = std::find_if(study->data.begin(), study->data.end(),
-                                    [](const auto& s) { return s.first == "scene"; });
-    ResolveSettings({*scene, {key, value}});
+    Settings settings = FirstSettings(*study);
+    settings.emplace_back(key, value);
+    ResolveSettings(settings);
     std::erase_if(study->data, is_key);
     study->data.emplace_back(key, value);
     std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
@@ -260,12 +312,21 @@ std::string ToYaml(const Study& study) {
   out << YAML::BeginMap;
   out << YAML::Key << "name" << YAML::Value << study.name;
   out << YAML::Key << "description" << YAML::Value << study.description;
+  if (study.ademp) {
+    Ademp ademp = *study.ademp;
+    out << YAML::Key << "ademp" << YAML::Value << YAML::BeginMap;
+    for (const auto& [key, text] : Parts(ademp)) out << YAML::Key << key << YAML::Value << *text;
+    out << YAML::EndMap;
+  }
   out << YAML::Key << "seed" << YAML::Value << study.seed;
   out << YAML::Key << "trials" << YAML::Value << study.trials;
   out << YAML::Key << "data" << YAML::Value << YAML::BeginMap;
-  for (const auto& [key, value] : ResolveSettings(study.data))
-    out << YAML::Key << key << YAML::Value << value;
+  for (const auto& [key, value] : WrittenData(study)) out << YAML::Key << key << YAML::Value << value;
   out << YAML::EndMap;
+  if (study.design != Design::kFullFactorial) {
+    Design design = study.design;
+    out << YAML::Key << "design" << YAML::Value << DesignParameter(&design).Value();
+  }
   if (!study.factors.empty()) {
     out << YAML::Key << "factors" << YAML::Value << YAML::BeginMap;
     for (const Factor& factor : study.factors) out << YAML::Key << factor.key << YAML::Value << factor.levels;

@@ -2,11 +2,13 @@
 //
 //   name: failure_vs_outliers
 //   description: one sentence or more
+//   ademp: {aims: ..., data: ..., estimands: ..., methods: ..., performance: ...}
 //   seed: 1
 //   trials: 400                       # per condition
 //   data: {scene: uniform_volume, num_matches: 500, sigma_px: 0.5}
+//   design: full_factorial            # or one_at_a_time; see study.h
 //   factors:
-//     outlier_ratio: [0.0, 0.2, 0.4]  # any data key; several factors: all combinations
+//     outlier_ratio: [0.0, 0.2, 0.4]  # any data key, also cameras, motion, noise, outliers, scene
 //   estimators:
 //     - {name: standard}
 //     - {name: rcme, label: rcme_rank_aware, options: {reading: rank_aware}}

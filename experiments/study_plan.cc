@@ -2,37 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "estimator/estimator_registry.h"
 #include "experiments/study_file.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
 
-// All combinations of the factors' levels, the first factor slowest.
-std::vector<std::vector<std::string>> Combinations(const std::vector<Factor>& factors) {
-  std::vector<std::vector<std::string>> rows = {{}};
-  for (const Factor& factor : factors) {
-    std::vector<std::vector<std::string>> longer;
-    if (rows.size() * factor.levels.size() > kMaxConditions) {
-      throw InputError(fmt::format("factors: more than {} combinations of levels", kMaxConditions));
+// Where a factor chooses a part of the simulation, ToYaml cannot write out the parameters of every choice.
+std::string ResolvedConditions(const StudyPlan& plan) {
+  const bool has_choice = std::ranges::any_of(plan.study.factors, IsChoice, &Factor::key);
+  std::string text;
+  for (const Condition& condition : plan.conditions) {
+    if (!has_choice) continue;
+    text += fmt::format("# condition {}:", condition.index);
+    for (const auto& [key, value] : ResolveSettings(SettingsOf(plan.study, condition.levels))) {
+      text += fmt::format(" {} {},", key, value);
     }
-    for (const std::vector<std::string>& row : rows) {
-      for (const std::string& level : factor.levels) {
-        longer.push_back(row);
-        longer.back().push_back(level);
-      }
-    }
-    rows = std::move(longer);
+    text += "\n";
   }
-  return rows;
+  return text;
 }
 
 std::string Identity(const StudyPlan& plan) {
   Study same = plan.study;
   same.trials = 1;  // more trials extend a run
   same.description.clear();
-  std::string identity = ToYaml(same);
+  same.ademp.reset();
+  std::string identity = ToYaml(same) + ResolvedConditions(plan);
   for (const Condition& condition : plan.conditions) {
     const std::string data = condition.source->Identity();
     if (!data.empty()) identity += fmt::format("# condition {}: {}\n", condition.index, data);
@@ -52,10 +50,8 @@ StudyPlan MakePlan(const Study& study) {
   StudyPlan plan;
   plan.study = study;
   for (const Factor& factor : study.factors) plan.factor_names.push_back(factor.key);
-  for (const std::vector<std::string>& levels : Combinations(study.factors)) {
-    Settings settings = study.data;
-    for (size_t f = 0; f < levels.size(); ++f) settings.emplace_back(study.factors[f].key, levels[f]);
-    const DataSources made = MakeDataSources(settings);
+  for (const std::vector<std::string>& levels : DesignRows(study)) {
+    const DataSources made = MakeDataSources(SettingsOf(study, levels));
     const bool is_first = plan.conditions.empty();
     if (is_first && !made.implied_factor.empty()) plan.factor_names.push_back(made.implied_factor);
     for (const auto& [level, source] : made.sources) {

@@ -3,20 +3,31 @@
 #include <span>
 #include <vector>
 
+#include "estimator/geometry/correspondence.h"
 #include "parameters/parameter.h"
 #include "stats/random.h"
 
 namespace rcme {
 
-// Gaussian, independent, equal in both coordinates of both images (assumption a.2).
-struct NoiseModel {
-  double sigma_px = 0.5;  // standard deviation per coordinate
-
-  void Fill(std::span<double> noise_px, RandomStream& rng) const {
-    rng.FillNormal(noise_px);
-    for (double& e : noise_px) e *= sigma_px;
-  }
+// A law of detection noise: the plug-in contract of simulator/noise. Configured once, then const and shared
+// by threads.
+//
+// Every law has the key sigma_px, and scales itself so that sigma_px is the root mean square of the noise
+// over the four coordinates of a match: laws differ in shape, not in power.
+class NoiseModel {
+ public:
+  virtual ~NoiseModel() = default;
+  // The parameters by name, sigma_px among them; valid as long as the model lives.
+  virtual std::vector<Parameter> Parameters() = 0;
+  virtual double sigma_px() const = 0;
+  // Adds noise to exact matches, independent from match to match.
+  virtual void AddTo(std::span<Correspondence> matches, RandomStream& rng) const = 0;
 };
-std::vector<Parameter> Parameters(NoiseModel& noise);
+
+// The key sigma_px that every law has.
+inline Parameter SigmaParameter(double* sigma_px) {
+  return Parameter::Real("sigma_px", sigma_px, {1e-9, 1000.0}, "px",
+                         "standard deviation of the noise per coordinate (root mean square)");
+}
 
 }  // namespace rcme

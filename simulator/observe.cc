@@ -1,64 +1,48 @@
 #include "simulator/observe.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <numeric>
+#include <span>
 
 namespace rcme {
 namespace {
 
-struct Mismatch {
-  std::uint32_t point;  // index in the scene
-  Eigen::Vector2d x2_px;
-};
-
-Eigen::Vector2d DrawPixel(const Camera& camera, RandomStream& rng) {
-  return {rng.Uniform(-0.5, camera.width - 0.5), rng.Uniform(-0.5, camera.height - 0.5)};
-}
-
-// Match i of the scene is written to matches[place[i]].
-void ProjectWithNoise(const Scene& scene, const NoiseModel& noise, const std::vector<std::uint32_t>& place,
-                      RandomStream& rng, std::vector<Correspondence>* matches) {
-  constexpr size_t kBlock = 64;
-  std::array<double, 4 * kBlock> noise_px;
-  const size_t n = place.size();
-  for (size_t first = 0; first < n; first += kBlock) {
-    const size_t end = std::min(n, first + kBlock);
-    noise.Fill(std::span(noise_px).first(4 * (end - first)), rng);
-    const double* e = noise_px.data();
-    for (size_t i = first; i < end; ++i, e += 4) {
-      const Eigen::Vector3d& point = scene.points_in_cam1[i];
-      Correspondence& match = (*matches)[place[i]];
-      match.x1_px = scene.camera1.Project(point) + Eigen::Vector2d(e[0], e[1]);
-      match.x2_px = scene.camera2.Project(scene.InCamera2(point)) + Eigen::Vector2d(e[2], e[3]);
-    }
+std::vector<Correspondence> ExactMatches(const Scene& scene) {
+  std::vector<Correspondence> matches;
+  matches.reserve(scene.points_in_cam1.size());
+  for (const Eigen::Vector3d& point : scene.points_in_cam1) {
+    matches.push_back({scene.camera1.Project(point), scene.camera2.Project(scene.InCamera2(point))});
   }
+  return matches;
 }
 
 }  // namespace
 
 Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierModel& outliers,
                     RandomStream& noise_rng, RandomStream& outlier_rng) {
-  // A random order; the first matches in it become mismatches, then the list is read in a second random
-  // order.
   const size_t n = scene.points_in_cam1.size();
+  std::vector<Correspondence> matches = ExactMatches(scene);  // in the order of the points
+  noise.AddTo(matches, noise_rng);
+
+  // A random order; the first matches in it become wrong, then the list is read in a second random order.
+  const OutlierModel::Drawn drawn = outliers.DrawCount(static_cast<int>(n), outlier_rng);
+  const auto num_outliers = static_cast<size_t>(drawn.num_outliers);
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   outlier_rng.Shuffle(std::span(order));
-  std::vector<Mismatch> mismatches(static_cast<size_t>(outliers.CountOf(static_cast<int>(n))));
-  for (size_t k = 0; k < mismatches.size(); ++k) {
-    mismatches[k] = {order[k], DrawPixel(scene.camera2, outlier_rng)};
-  }
+  std::vector<bool> is_inlier(n, true), is_undetectable(n, false);
+  for (size_t k = 0; k < num_outliers; ++k) is_inlier[order[k]] = false;
+  const std::span<const std::uint32_t> all(order);
+  outliers.law->Replace(all.first(num_outliers), {scene, all.subspan(num_outliers), matches, is_undetectable},
+                        outlier_rng);
   outlier_rng.Shuffle(std::span(order));
-  std::vector<std::uint32_t> place(n);  // of every point in the list
-  for (size_t k = 0; k < n; ++k) place[order[k]] = static_cast<std::uint32_t>(k);
 
-  Observation observation{std::vector<Correspondence>(n), std::vector<bool>(n, true)};
-  ProjectWithNoise(scene, noise, place, noise_rng, &observation.matches);
-  for (const Mismatch& mismatch : mismatches) {
-    observation.matches[place[mismatch.point]].x2_px = mismatch.x2_px;
-    observation.is_inlier_true[place[mismatch.point]] = false;
+  Observation observation{std::vector<Correspondence>(n), std::vector<bool>(n), std::vector<bool>(n),
+                          drawn.weight};
+  for (size_t k = 0; k < n; ++k) {
+    observation.matches[k] = matches[order[k]];
+    observation.is_inlier_true[k] = is_inlier[order[k]];
+    observation.is_undetectable[k] = is_undetectable[order[k]];
   }
   return observation;
 }

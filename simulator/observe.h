@@ -13,6 +13,8 @@ namespace rcme {
 struct Observation {
   std::vector<Correspondence> matches;
   std::vector<bool> is_inlier_true;
+  std::vector<bool> is_undetectable;  // wrong, but on the true epipolar line: no epipolar test can tell it
+  double weight = 1.0;                // of the trial (outlier_model.h)
 };
 
 // Noise and outliers each draw from a stream of their own, so that the noise of a match does not depend on

@@ -1,18 +1,34 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "parameters/parameter.h"
+#include "simulator/outlier_law.h"
 
 namespace rcme {
 
-// Uniform mismatches: of n matches exactly round(outlier_ratio n) have their point in image 2 replaced by a
-// uniform one.
+// How many matches are wrong, and how they come about.
 struct OutlierModel {
-  double outlier_ratio = 0.2;
+  enum class Count { kExact, kBernoulli };
 
-  int CountOf(int num_matches) const;
+  explicit OutlierModel(double ratio = 0.2);  // uniform mismatches
+  explicit OutlierModel(std::shared_ptr<OutlierLaw> outlier_law, double ratio = 0.2)
+      : outlier_ratio(ratio), law(std::move(outlier_law)) {}
+
+  double outlier_ratio = 0.2;
+  Count count = Count::kExact;
+  std::shared_ptr<OutlierLaw> law;
+
+  // The number of wrong matches of a trial, and the trial's weight: the probability of that number under the
+  // model, divided by that under the law it was drawn from. It is 1 unless the number is tilted.
+  struct Drawn {
+    int num_outliers = 0;
+    double weight = 1.0;
+  };
+  Drawn DrawCount(int num_matches, RandomStream& rng) const;
 };
+// Those of the law included.
 std::vector<Parameter> Parameters(OutlierModel& outliers);
 
 }  // namespace rcme

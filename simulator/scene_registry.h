@@ -1,23 +1,15 @@
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "simulator/scene.h"
+#include "simulator/registry.h"
+#include "simulator/scene_model.h"
 
 namespace rcme {
 
-// One line per scene; studies, `rcme list` and the contract tests read this table.
-struct SceneEntry {
-  std::string name;
-  std::string doc;
-  std::function<std::unique_ptr<SceneModel>()> make;  // with default parameters
+// A scene comes with the cameras and the motion that it is usually seen with; a study may choose others.
+struct SceneEntry : RegistryEntry<SceneModel> {
+  std::string cameras = "pinhole";
+  std::string motion = "general";
 };
 const std::vector<SceneEntry>& SceneRegistry();
-
-// The entry called `name`, or null.
-const SceneEntry* FindScene(const std::string& name);
 
 }  // namespace rcme

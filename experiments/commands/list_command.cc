@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 
 #include "estimator/estimator_registry.h"
 #include "experiments/claims/claim_table.h"
@@ -11,6 +12,10 @@
 #include "experiments/study_file.h"
 #include "experiments/summary_output.h"
 #include "parameters/input_error.h"
+#include "simulator/camera_registry.h"
+#include "simulator/motion_registry.h"
+#include "simulator/noise_registry.h"
+#include "simulator/outlier_registry.h"
 #include "simulator/scene_registry.h"
 
 namespace rcme {
@@ -32,20 +37,52 @@ Rows ListOptions() {
   return rows;
 }
 
-Rows ListScenes() {
-  Rows rows = {{"scene", "what it is"}};
-  for (const SceneEntry& entry : SceneRegistry()) rows.push_back({entry.name, entry.doc});
-  rows.push_back({kMatchFilesScene, "real pairs from a folder of match files"});
+template <typename Entry>
+Rows ListRegistry(const std::string& heading, const std::vector<Entry>& registry) {
+  Rows rows = {{heading, "what it is"}};
+  for (const Entry& entry : registry) rows.push_back({entry.name, entry.doc});
   return rows;
 }
 
-Rows ListSettings() {
-  Rows rows = {{"scene", "data key", "default", "unit", "allowed", "what it is"}};
-  for (const auto& scene : ListScenes()) {
-    if (scene[0] == "scene") continue;  // the heading
-    for (const SettingHelp& s : DescribeSettings(scene[0])) {
-      rows.push_back({scene[0], s.name, s.value, s.unit, s.allowed, s.doc});
+Rows ListScenes() {
+  Rows rows = {{"scene", "cameras", "motion", "what it is"}};
+  for (const SceneEntry& entry : SceneRegistry())
+    rows.push_back({entry.name, entry.cameras, entry.motion, entry.doc});
+  rows.push_back({kMatchFilesScene, "-", "-", "real pairs from a folder of match files"});
+  return rows;
+}
+
+Rows ListCameras() { return ListRegistry("cameras", CameraRegistry()); }
+Rows ListMotions() { return ListRegistry("motion", MotionRegistry()); }
+Rows ListNoise() { return ListRegistry("noise", NoiseRegistry()); }
+Rows ListOutliers() { return ListRegistry("outliers", OutlierRegistry()); }
+
+// The keys that a choice brings, beside those that every simulation has.
+template <typename Entry>
+void AddSettings(const std::string& key, const std::vector<Entry>& registry, Rows* rows) {
+  for (const Entry& entry : registry) {
+    const auto model = entry.make();
+    for (const Parameter& p : model->Parameters()) {
+      rows->push_back({key + ": " + entry.name, p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
     }
+  }
+}
+
+Rows ListSettings() {
+  Rows rows = {{"with", "data key", "default", "unit", "allowed", "what it is"}};
+  AddSettings("scene", SceneRegistry(), &rows);
+  for (const SettingHelp& s : DescribeSettings({{"scene", kMatchFilesScene}})) {
+    rows.push_back({std::string("scene: ") + kMatchFilesScene, s.name, s.value, s.unit, s.allowed, s.doc});
+  }
+  AddSettings("cameras", CameraRegistry(), &rows);
+  AddSettings("motion", MotionRegistry(), &rows);
+  AddSettings("noise", NoiseRegistry(), &rows);
+  AddSettings("outliers", OutlierRegistry(), &rows);
+  std::set<std::string> listed;
+  for (const std::vector<std::string>& row : rows) listed.insert(row[1]);
+  for (const SettingHelp& s : DescribeSettings({{"scene", SceneRegistry().front().name}})) {
+    if (listed.count(s.name) == 0)
+      rows.push_back({"any simulation", s.name, s.value, s.unit, s.allowed, s.doc});
   }
   return rows;
 }
@@ -88,14 +125,16 @@ Rows ListStudies() {
 void AddListCommand(CLI::App& app) {
   using Lister = std::function<Rows()>;
   static const std::vector<std::pair<std::string, Lister>> kLists = {
-      {"estimators", ListEstimators}, {"options", ListOptions},       {"scenes", ListScenes},
-      {"settings", ListSettings},     {"quantities", ListQuantities}, {"claims", ListClaims},
-      {"studies", ListStudies}};
+      {"estimators", ListEstimators}, {"options", ListOptions},   {"scenes", ListScenes},
+      {"cameras", ListCameras},       {"motions", ListMotions},   {"noise", ListNoise},
+      {"outliers", ListOutliers},     {"settings", ListSettings}, {"quantities", ListQuantities},
+      {"claims", ListClaims},         {"studies", ListStudies}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
   CLI::App* command = app.add_subcommand(
       "list",
-      "What there is: estimators and their options, scenes and their settings, quantities, claims, studies");
+      "What there is: estimators and their options; scenes, cameras, motions, noise and outliers with their "
+      "settings; quantities, claims, studies");
   auto what = std::make_shared<std::string>();
   command->add_option("what", *what, "one list; default: all but studies")->check(CLI::IsMember(names));
   command->callback([what] {

@@ -5,8 +5,9 @@
 
 #include <random>
 
+#include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
-#include "simulator/scene_registry.h"
+#include "simulator/scene_generator.h"
 
 namespace rcme {
 namespace {
@@ -60,9 +61,9 @@ void BM_NewStreamAndOneWord(benchmark::State& state) {
 }
 
 Scene DrawScene(std::uint32_t trial) {
-  static const std::unique_ptr<SceneModel> model = FindScene("uniform_volume")->make();
+  static const SceneGenerator model("uniform_volume");
   RandomStream rng({1, 0, trial, 1});
-  return model->Generate(rng);
+  return model.Generate(rng);
 }
 
 void BM_DrawScene(benchmark::State& state) {
@@ -73,7 +74,8 @@ void BM_Observe(benchmark::State& state) {
   const Scene scene = DrawScene(0);
   for (std::uint32_t trial = 0; auto _ : state) {
     RandomStream noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial++, 3});
-    benchmark::DoNotOptimize(Observe(scene, {0.5}, {0.2}, noise_rng, outlier_rng));
+    benchmark::DoNotOptimize(
+        Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(0.2), noise_rng, outlier_rng));
   }
 }
 

@@ -5,8 +5,9 @@
 #include <thread>
 
 #include "estimator/estimator_registry.h"
+#include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
-#include "simulator/scenes/uniform_volume.h"
+#include "simulator/scene_generator.h"
 
 namespace rcme {
 namespace {
@@ -14,11 +15,12 @@ namespace {
 constexpr std::uint32_t kNumTrials = 12;
 
 MotionProblem MakeProblem(std::uint32_t trial) {
-  UniformVolume model;
+  SceneGenerator model("uniform_volume");
   FindParameter(model.Parameters(), "num_matches").SetFromText("120");
   RandomStream scene_rng({1, 9, trial, 1}), noise_rng({1, 9, trial, 2}), outlier_rng({1, 9, trial, 3});
   const Scene scene = model.Generate(scene_rng);
-  return {Observe(scene, {0.5}, {0.3}, noise_rng, outlier_rng).matches, scene.camera1, scene.camera2, 0.5};
+  return {Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(0.3), noise_rng, outlier_rng).matches,
+          scene.camera1, scene.camera2, 0.5};
 }
 
 // Every number of an estimate, as bits.

@@ -9,8 +9,9 @@
 #include <limits>
 
 #include "parameters/input_error.h"
+#include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
-#include "simulator/scenes/uniform_volume.h"
+#include "simulator/scene_generator.h"
 
 namespace rcme {
 namespace {
@@ -21,12 +22,13 @@ struct Pair {
 };
 
 Pair MakePair(int num_matches, double sigma_px, double outlier_ratio, std::uint32_t trial) {
-  UniformVolume model;
+  SceneGenerator model("uniform_volume");
   FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
   RandomStream scene_rng({1, 0, trial, 1}), noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
   const Scene scene = model.Generate(scene_rng);
-  return {{Observe(scene, {sigma_px}, {outlier_ratio}, noise_rng, outlier_rng).matches, scene.camera1,
-           scene.camera2, sigma_px},
+  return {{Observe(scene, *MakeGaussianNoise(sigma_px), OutlierModel(outlier_ratio), noise_rng, outlier_rng)
+               .matches,
+           scene.camera1, scene.camera2, sigma_px},
           scene.cam2_from_cam1_true};
 }
 

@@ -22,7 +22,9 @@
 #include "estimator/reference_search.h"
 #include "estimator/refine_winner.h"
 #include "estimator/sample_consistency.h"
+#include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
+#include "simulator/scene_generator.h"
 #include "simulator/scene_registry.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
@@ -60,12 +62,13 @@ MotionProblem MakeProblem(std::uint32_t trial) {
   };
   const double outlier_ratio = kOutlierRatios[next(4)], sigma_px = kSigmasPx[next(3)];
   const int num_matches = kNumMatches[next(3)];
-  const std::unique_ptr<SceneModel> model = SceneRegistry()[next(SceneRegistry().size())].make();
-  FindParameter(model->Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
+  SceneGenerator model(SceneRegistry()[next(SceneRegistry().size())].name);
+  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
   RandomStream scene_rng({1, 7, trial, 1}), noise_rng({1, 7, trial, 2}), outlier_rng({1, 7, trial, 3});
-  const Scene scene = model->Generate(scene_rng);
-  return {Observe(scene, {sigma_px}, {outlier_ratio}, noise_rng, outlier_rng).matches, scene.camera1,
-          scene.camera2, sigma_px};
+  const Scene scene = model.Generate(scene_rng);
+  return {Observe(scene, *MakeGaussianNoise(sigma_px), OutlierModel(outlier_ratio), noise_rng, outlier_rng)
+              .matches,
+          scene.camera1, scene.camera2, sigma_px};
 }
 
 RandomStream SamplingStream(std::uint32_t trial) { return RandomStream({1, 7, trial, 4}); }

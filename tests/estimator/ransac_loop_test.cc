@@ -10,8 +10,9 @@
 
 #include "estimator/kernels/block_search.h"
 #include "estimator/reference_search.h"
+#include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
-#include "simulator/scenes/uniform_volume.h"
+#include "simulator/scene_generator.h"
 #include "stats/distributions.h"
 
 namespace {
@@ -47,11 +48,12 @@ struct BareReference : BarePipeline {
 };
 
 MotionProblem MakeProblem(int num_matches) {
-  UniformVolume model;
+  SceneGenerator model("uniform_volume");
   FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
   RandomStream scene_rng({1, 0, 0, 1}), noise_rng({1, 0, 0, 2}), outlier_rng({1, 0, 0, 3});
   const Scene scene = model.Generate(scene_rng);
-  return {Observe(scene, {0.5}, {0.2}, noise_rng, outlier_rng).matches, scene.camera1, scene.camera2, 0.5};
+  return {Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(0.2), noise_rng, outlier_rng).matches,
+          scene.camera1, scene.camera2, 0.5};
 }
 
 // Allocations of the loop alone; `run` makes a search and runs the loop with it.

@@ -7,7 +7,8 @@
 #include <numeric>
 #include <set>
 
-#include "simulator/scenes/uniform_volume.h"
+#include "simulator/noise/noise_laws.h"
+#include "simulator/scene_generator.h"
 #include "stats/distributions.h"
 #include "stats/goodness_of_fit.h"
 
@@ -15,7 +16,7 @@ namespace rcme {
 namespace {
 
 Scene MakeScene(int num_matches, std::uint32_t trial = 0) {
-  UniformVolume model;
+  SceneGenerator model("uniform_volume");
   FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
   RandomStream rng({1, 0, trial, 1});
   return model.Generate(rng);
@@ -23,7 +24,7 @@ Scene MakeScene(int num_matches, std::uint32_t trial = 0) {
 
 Observation ObserveScene(const Scene& scene, double sigma_px, double outlier_ratio, std::uint32_t trial = 0) {
   RandomStream noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
-  return Observe(scene, {sigma_px}, {outlier_ratio}, noise_rng, outlier_rng);
+  return Observe(scene, *MakeGaussianNoise(sigma_px), OutlierModel(outlier_ratio), noise_rng, outlier_rng);
 }
 
 // The exact projections, sorted by x1: observations come shuffled.

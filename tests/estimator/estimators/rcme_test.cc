@@ -6,22 +6,25 @@
 #include <opencv2/calib3d.hpp>
 
 #include "estimator/estimators/standard.h"
+#include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
-#include "simulator/scenes/uniform_volume.h"
+#include "simulator/scene_generator.h"
 
 namespace rcme {
 namespace {
 
 MotionProblem MakeProblem(double outlier_ratio, std::uint32_t trial, RelativePose* pose_true = nullptr) {
-  const UniformVolume model;
+  const SceneGenerator model("uniform_volume");
   RandomStream scene_rng({1, 0, trial, 1}), noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
   const Scene scene = model.Generate(scene_rng);
   if (pose_true) *pose_true = scene.cam2_from_cam1_true;
-  return {Observe(scene, {0.5}, {outlier_ratio}, noise_rng, outlier_rng).matches, scene.camera1,
-          scene.camera2, 0.5};
+  return {
+      Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(outlier_ratio), noise_rng, outlier_rng).matches,
+      scene.camera1, scene.camera2, 0.5};
 }
 
-MotionEstimate RunOn(const MotionEstimator& estimator, const MotionProblem& problem, std::uint32_t trial = 0) {
+MotionEstimate RunOn(const MotionEstimator& estimator, const MotionProblem& problem,
+                     std::uint32_t trial = 0) {
   RandomStream rng({1, 0, trial, 4});
   return estimator.Estimate(problem, rng);
 }

@@ -1,9 +1,10 @@
-#include "simulator/scenes/uniform_volume.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "parameters/input_error.h"
+#include "simulator/cameras/camera_models.h"
+#include "simulator/motions/motions.h"
+#include "simulator/scene_generator.h"
 #include "stats/goodness_of_fit.h"
 
 namespace rcme {
@@ -11,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-void Set(UniformVolume& model, const std::string& name, const std::string& value) {
+void Set(SceneGenerator& model, const std::string& name, const std::string& value) {
   FindParameter(model.Parameters(), name).SetFromText(value);
 }
 
@@ -19,7 +20,7 @@ void Set(UniformVolume& model, const std::string& name, const std::string& value
 // unconditional one. Kolmogorov-Smirnov at 1e-4 from 20,000 points; a coordinate with 3 % of its range
 // missing (D = 0.03) would give sqrt(n) D = 4.2, p < 1e-14.
 TEST(UniformVolume, ImageAndDepthAreUniform) {
-  UniformVolume model;
+  SceneGenerator model("uniform_volume");
   Set(model, "num_matches", "20000");
   Set(model, "max_rotation_deg", "0");
   Set(model, "baseline_m", "1e-9");
@@ -41,29 +42,19 @@ TEST(UniformVolume, ImageAndDepthAreUniform) {
   EXPECT_LT(TestKolmogorovSmirnov(depth, uniform).p_value, 1e-10);
 }
 
-// Angle uniform up to the bound, direction uniform on the sphere (each coordinate uniform on [-1, 1]); 2,000
-// motions.
-TEST(UniformVolume, MotionsFollowTheirLaw) {
-  const GeneralMotion motion{10.0, 0.5};
-  std::vector<double> angles, tx, tz;
-  for (std::uint32_t trial = 0; trial < 2000; ++trial) {
-    RandomStream rng({1, 0, trial, 1});
-    const RelativePose pose = motion.Draw(rng);
-    angles.push_back(VectorFromRotation(pose.R).norm() * 180.0 / 3.14159265358979 / 10.0);
-    tx.push_back(0.5 * (pose.t.x() + 1.0));
-    tz.push_back(0.5 * (pose.t.z() + 1.0));
-  }
-  const auto uniform = [](double u) { return std::clamp(u, 0.0, 1.0); };
-  EXPECT_GT(TestKolmogorovSmirnov(angles, uniform).p_value, 1e-4);
-  EXPECT_GT(TestKolmogorovSmirnov(tx, uniform).p_value, 1e-4);
-  EXPECT_GT(TestKolmogorovSmirnov(tz, uniform).p_value, 1e-4);
-}
+struct MotionBounds {
+  const char *max_rotation_deg, *baseline_m;
+};
 
 // The points of the model with its default cameras, one candidate after the other.
-std::vector<Eigen::Vector3d> DrawPointByPoint(size_t num_matches, const GeneralMotion& motion,
+std::vector<Eigen::Vector3d> DrawPointByPoint(size_t num_matches, const MotionBounds& bounds,
                                               RandomStream& rng) {
-  const Camera camera = CameraPair().Make();
-  const RelativePose pose = motion.Draw(rng);
+  const Camera camera = MakePinhole()->Make().first;
+  const std::unique_ptr<MotionModel> motion_model = MakeGeneralMotion();
+  FindParameter(motion_model->Parameters(), "max_rotation_deg").SetFromText(bounds.max_rotation_deg);
+  FindParameter(motion_model->Parameters(), "baseline_m").SetFromText(bounds.baseline_m);
+  const Motion motion = motion_model->Draw(1.0, rng);
+  const RelativePose& pose = motion.cam2_from_cam1;
   std::vector<Eigen::Vector3d> points;
   while (points.size() < num_matches) {
     const double y_px = rng.Uniform(-0.5, camera.height - 0.5);
@@ -79,12 +70,12 @@ std::vector<Eigen::Vector3d> DrawPointByPoint(size_t num_matches, const GeneralM
 // To the bit, whether most candidates are accepted or (at 25 deg) few. A candidate within rounding error of
 // the image border may be judged otherwise; among these 100,000 there is none.
 TEST(UniformVolume, IsThePlainLoopOverCandidates) {
-  for (const GeneralMotion& motion : {GeneralMotion{10.0, 0.5}, GeneralMotion{25.0, 1.0}}) {
+  for (const MotionBounds& motion : {MotionBounds{"10", "0.5"}, MotionBounds{"25", "1"}}) {
     for (const int num_matches : {1, 7, 128, 129, 500}) {
-      UniformVolume model;
+      SceneGenerator model("uniform_volume");
       Set(model, "num_matches", std::to_string(num_matches));
-      Set(model, "max_rotation_deg", std::to_string(motion.max_rotation_deg));
-      Set(model, "baseline_m", std::to_string(motion.baseline_m));
+      Set(model, "max_rotation_deg", motion.max_rotation_deg);
+      Set(model, "baseline_m", motion.baseline_m);
       for (std::uint32_t trial = 0; trial < 40; ++trial) {
         RandomStream rng({1, 0, trial, 1}), plain_rng({1, 0, trial, 1});
         ASSERT_EQ(model.Generate(rng).points_in_cam1,
@@ -95,7 +86,7 @@ TEST(UniformVolume, IsThePlainLoopOverCandidates) {
 }
 
 TEST(UniformVolume, AnImpossibleRequestNamesTheKeysAndEnds) {
-  UniformVolume model;
+  SceneGenerator model("uniform_volume");
   Set(model, "focal_px", "1000000");  // the disparity is 60,000 px and more
   RandomStream rng({1, 0, 0, 1});
   try {
@@ -108,7 +99,7 @@ TEST(UniformVolume, AnImpossibleRequestNamesTheKeysAndEnds) {
 }
 
 TEST(UniformVolume, AnEmptyDepthRangeIsAnError) {
-  UniformVolume model;
+  SceneGenerator model("uniform_volume");
   Set(model, "min_depth_m", "9");
   RandomStream rng({1, 0, 0, 1});
   EXPECT_THROW(model.Generate(rng), InputError);

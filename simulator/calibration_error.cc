@@ -1,0 +1,28 @@
+#include "simulator/calibration_error.h"
+
+#include <cmath>
+
+namespace rcme {
+
+double CalibrationError::SigmaTold(double sigma_true_px) const {
+  return std::isnan(sigma_told_px) ? sigma_true_px : sigma_told_px;
+}
+
+Camera CalibrationError::CameraTold(Camera camera_true) const {
+  camera_true.fx *= 1.0 + focal_error;
+  camera_true.fy *= 1.0 + focal_error;
+  camera_true.cx += principal_point_error_px;
+  camera_true.cy += principal_point_error_px;
+  return camera_true;
+}
+
+std::vector<Parameter> Parameters(CalibrationError& error) {
+  return {Parameter::RealOrWord("sigma_told_px", &error.sigma_told_px, {1e-9, 1000.0}, "true", "px",
+                                "standard deviation of the noise that the estimators are told"),
+          Parameter::Real("focal_error", &error.focal_error, {-0.9, 9.0}, "",
+                          "relative error of the focal lengths that the estimators are told"),
+          Parameter::Real("principal_point_error_px", &error.principal_point_error_px, {-1e5, 1e5}, "px",
+                          "error of the principal points (x and y) that the estimators are told")};
+}
+
+}  // namespace rcme

@@ -1,0 +1,21 @@
+// The camera pairs that camera_registry lists.
+#pragma once
+
+#include <memory>
+
+#include "simulator/camera_model.h"
+
+namespace rcme {
+
+// Ideal cameras with the principal point in the middle; both equal, or each with its own size and focal
+// length.
+std::unique_ptr<CameraModel> MakePinhole();
+std::unique_ptr<CameraModel> MakeTwoPinholes();
+
+// Published calibrations of real cameras (after rectification or undistortion).
+std::unique_ptr<CameraModel> MakeKitti();
+std::unique_ptr<CameraModel> MakeEuroc();
+std::unique_ptr<CameraModel> MakeOffice();
+std::unique_ptr<CameraModel> MakeEurocAndOffice();
+
+}  // namespace rcme

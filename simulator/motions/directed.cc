@@ -1,0 +1,61 @@
+#include <cmath>
+#include <numbers>
+
+#include "simulator/motions/motions.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+// Camera 2 stands in the direction of an axis of camera 1, uniform in a cone around it.
+class DirectedMotion : public MotionModel {
+ public:
+  DirectedMotion(const Eigen::Vector3d& axis, bool is_either_way)
+      : axis_(axis), is_either_way_(is_either_way) {}
+
+  std::vector<Parameter> Parameters() override {
+    std::vector<Parameter> all = {
+        Parameter::Real("max_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
+                        "bound of the rotation angle, uniform from 0, about any axis"),
+        Parameter::Real("max_deviation_deg", &max_deviation_deg_, {0.0, 90.0}, "deg",
+                        "half opening angle of the cone around the axis in which camera 2 stands, uniform")};
+    const std::vector<Parameter> more = rcme::Parameters(baseline_);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+    const Eigen::Matrix3d R = DrawRotation(max_rotation_deg_ * kRadPerDeg, rng);
+    const Eigen::Vector3d axis = is_either_way_ && rng.Uniform() < 0.5 ? Eigen::Vector3d(-axis_) : axis_;
+    // Uniform on the cap: the height is uniform.
+    const double height = rng.Uniform(std::cos(max_deviation_deg_ * kRadPerDeg), 1.0);
+    const Eigen::Vector3d sideways = DrawSideways(axis, rng);
+    const Eigen::Vector3d centre2_in_cam1 = height * axis + std::sqrt(1.0 - height * height) * sideways;
+    return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length(typical_depth_m)};
+  }
+
+ private:
+  // Uniform on the circle of unit vectors normal to `axis`.
+  static Eigen::Vector3d DrawSideways(const Eigen::Vector3d& axis, RandomStream& rng) {
+    const Eigen::Matrix<double, 3, 2> B = DirectionBasis(axis);
+    const double angle = rng.Uniform(0.0, 2.0 * std::numbers::pi);
+    return std::cos(angle) * B.col(0) + std::sin(angle) * B.col(1);
+  }
+
+  Eigen::Vector3d axis_;
+  bool is_either_way_;
+  double max_rotation_deg_ = 5.0, max_deviation_deg_ = 5.0;
+  Baseline baseline_;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionModel> MakeForwardMotion() {
+  return std::make_unique<DirectedMotion>(Eigen::Vector3d::UnitZ(), false);
+}
+std::unique_ptr<MotionModel> MakeSidewaysMotion() {
+  return std::make_unique<DirectedMotion>(Eigen::Vector3d::UnitX(), true);
+}
+
+}  // namespace rcme

@@ -1,0 +1,38 @@
+#include <numbers>
+
+#include "simulator/motions/motions.h"
+
+namespace rcme {
+namespace {
+
+class GeneralMotion : public MotionModel {
+ public:
+  explicit GeneralMotion(const Baseline& baseline) : baseline_(baseline) {}
+
+  std::vector<Parameter> Parameters() override {
+    std::vector<Parameter> all = {Parameter::Real("max_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
+                                                  "bound of the rotation angle, uniform from 0")};
+    const std::vector<Parameter> more = rcme::Parameters(baseline_);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+    const Eigen::Matrix3d R = DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng);
+    return {{R, DrawDirection(rng)}, baseline_.Length(typical_depth_m)};
+  }
+
+ private:
+  double max_rotation_deg_ = 10.0;
+  Baseline baseline_;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionModel> MakeGeneralMotion() { return std::make_unique<GeneralMotion>(Baseline()); }
+
+std::unique_ptr<MotionModel> MakeVanishingBaseline() {
+  return std::make_unique<GeneralMotion>(Baseline{0.5, 0.05});
+}
+
+}  // namespace rcme

@@ -1,0 +1,40 @@
+#include <numbers>
+
+#include "simulator/motions/motions.h"
+
+namespace rcme {
+namespace {
+
+// Yaw with the full standard deviation, pitch and roll with half of it; the camera moves across its view (x
+// and y) more than along it (z).
+class HandHeld : public MotionModel {
+ public:
+  HandHeld() { baseline_.baseline_m = 0.2; }
+
+  std::vector<Parameter> Parameters() override {
+    std::vector<Parameter> all = {
+        Parameter::Real("rotation_sd_deg", &rotation_sd_deg_, {0.0, 60.0}, "deg",
+                        "standard deviation of the yaw; pitch and roll have half of it")};
+    const std::vector<Parameter> more = rcme::Parameters(baseline_);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+    const double sd = rotation_sd_deg_ * std::numbers::pi / 180.0;
+    const double yaw = sd * rng.Normal(), pitch = 0.5 * sd * rng.Normal(), roll = 0.5 * sd * rng.Normal();
+    const Eigen::Matrix3d R = RotationFromVector({pitch, yaw, roll});
+    const double x = rng.Normal(), y = 0.6 * rng.Normal(), z = 0.5 * rng.Normal();
+    return {{R, Eigen::Vector3d(x, y, z).normalized()}, baseline_.Length(typical_depth_m)};
+  }
+
+ private:
+  double rotation_sd_deg_ = 4.0;
+  Baseline baseline_;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionModel> MakeHandHeld() { return std::make_unique<HandHeld>(); }
+
+}  // namespace rcme

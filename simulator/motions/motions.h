@@ -1,0 +1,27 @@
+// The motions that motion_registry lists, one file each.
+#pragma once
+
+#include <memory>
+
+#include "simulator/motion_model.h"
+
+namespace rcme {
+
+// Rotation about a uniform axis, translation in a uniform direction.
+std::unique_ptr<MotionModel> MakeGeneralMotion();
+// The same with a baseline that is next to nothing.
+std::unique_ptr<MotionModel> MakeVanishingBaseline();
+// Along the optical axis, or across it, give or take a few degrees.
+std::unique_ptr<MotionModel> MakeForwardMotion();
+std::unique_ptr<MotionModel> MakeSidewaysMotion();
+// Around a point in front of camera 1, looking at it all the time.
+std::unique_ptr<MotionModel> MakeOrbit();
+// A car on a flat road: a circular arc with one yaw angle, which gives the direction too.
+std::unique_ptr<MotionModel> MakeAckermann();
+// No translation at all (Type A): the direction is not defined.
+std::unique_ptr<MotionModel> MakePureRotation();
+// A camera in the hand, and one in a car on a real road: arc, pitch, roll.
+std::unique_ptr<MotionModel> MakeHandHeld();
+std::unique_ptr<MotionModel> MakeVehicle();
+
+}  // namespace rcme

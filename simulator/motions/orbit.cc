@@ -1,0 +1,40 @@
+#include <cmath>
+#include <numbers>
+
+#include "simulator/motions/motions.h"
+
+namespace rcme {
+namespace {
+
+// Camera 2 looks at the same point on the optical axis of camera 1, from the same distance. The angle of the
+// orbit and the baseline give the distance: baseline = 2 distance sin(angle / 2).
+class Orbit : public MotionModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    std::vector<Parameter> all = {Parameter::Real("orbit_deg", &orbit_deg_, {1e-6, 120.0}, "deg",
+                                                  "angle of the orbit, to either side; horizontal")};
+    const std::vector<Parameter> more = rcme::Parameters(baseline_);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+    const double side = rng.Uniform() < 0.5 ? -1.0 : 1.0;
+    const double angle = side * orbit_deg_ * std::numbers::pi / 180.0;
+    // The chord runs sideways and half the angle towards the point; seen from camera 2, which has turned the
+    // other way by the whole angle, camera 1 lies sideways and half the angle towards the point too.
+    const Eigen::Matrix3d R = RotationFromVector({0.0, angle, 0.0});
+    const Eigen::Vector3d centre2_in_cam1(std::cos(0.5 * angle) * side, 0.0, std::abs(std::sin(0.5 * angle)));
+    return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length(typical_depth_m)};
+  }
+
+ private:
+  double orbit_deg_ = 6.0;
+  Baseline baseline_;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionModel> MakeOrbit() { return std::make_unique<Orbit>(); }
+
+}  // namespace rcme

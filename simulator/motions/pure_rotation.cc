@@ -1,0 +1,26 @@
+#include <numbers>
+
+#include "simulator/motions/motions.h"
+
+namespace rcme {
+namespace {
+
+class PureRotation : public MotionModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {Parameter::Real("max_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
+                            "bound of the rotation angle, uniform from 0, about any axis")};
+  }
+  Motion Draw(double, RandomStream& rng) const override {
+    return {{DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng), Eigen::Vector3d::UnitX()}, 0.0};
+  }
+
+ private:
+  double max_rotation_deg_ = 10.0;
+};
+
+}  // namespace
+
+std::unique_ptr<MotionModel> MakePureRotation() { return std::make_unique<PureRotation>(); }
+
+}  // namespace rcme

@@ -1,0 +1,34 @@
+// Tables of what there is to simulate: one line per scene, motion, camera pair, noise and outlier law.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "parameters/input_error.h"
+
+namespace rcme {
+
+template <typename Model>
+struct RegistryEntry {
+  std::string name;
+  std::string doc;
+  std::function<std::unique_ptr<Model>()> make;  // with default parameters
+};
+
+// The entry called `name`. Throws InputError that names `key` and lists what is allowed.
+template <typename Entry>
+const Entry& FindEntry(const std::vector<Entry>& registry, const std::string& key, const std::string& name) {
+  const auto entry = std::ranges::find(registry, name, &Entry::name);
+  if (entry != registry.end()) return *entry;
+  std::vector<std::string> names;
+  for (const Entry& known : registry) names.push_back(known.name);
+  throw InputError(
+      fmt::format("{}: '{}' is not allowed; give one of: {}", key, name, fmt::join(names, ", ")));
+}
+
+}  // namespace rcme

@@ -1,0 +1,124 @@
+#include "simulator/scene_generator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "simulator/camera_registry.h"
+#include "simulator/motion_registry.h"
+#include "simulator/scene_registry.h"
+#include "simulator/split_by_shares.h"
+
+namespace rcme {
+namespace {
+
+// Draws per point, after which a scene counts as impossible: both images see less than about 1 % of the
+// world.
+constexpr size_t kMaxDrawsPerPoint = 100;
+constexpr size_t kMinDraws = 10'000;
+
+using Clearances = std::array<double, PointBlock::kSize>;  // negative if the image does not show the point
+
+// An image shows a point (x, y, z) with z > 0 if |fx x / z + cx - (width - 1) / 2| <= width / 2, y likewise.
+// Times 2 z / width: |a| <= c and |b| <= c, where (a, b, c) = clip_from_cam (x, y, z).
+Eigen::Matrix3d ClipFromCam(const Camera& camera) {
+  Eigen::Matrix3d clip_from_cam = Eigen::Matrix3d::Identity();
+  clip_from_cam.row(0) << 2.0 * camera.fx, 0.0, 2.0 * camera.cx - (camera.width - 1);
+  clip_from_cam.row(1) << 0.0, 2.0 * camera.fy, 2.0 * camera.cy - (camera.height - 1);
+  clip_from_cam.row(0) /= camera.width;
+  clip_from_cam.row(1) /= camera.height;
+  return clip_from_cam;
+}
+
+// For points in camera 1's frame, (a, b, c) = A point + t.
+void MeasureClearance(const Eigen::Matrix3d& A, const Eigen::Vector3d& t, const PointBlock& points,
+                      Clearances* clearance) {
+  for (size_t i = 0; i < PointBlock::kSize; ++i) {
+    const double x = points.x_m[i], y = points.y_m[i], z = points.z_m[i];
+    const double a = A(0, 0) * x + A(0, 1) * y + A(0, 2) * z + t.x();
+    const double b = A(1, 0) * x + A(1, 1) * y + A(1, 2) * z + t.y();
+    const double c = A(2, 0) * x + A(2, 1) * y + A(2, 2) * z + t.z();
+    (*clearance)[i] = c - std::max(std::abs(a), std::abs(b));
+  }
+}
+
+}  // namespace
+
+SceneGenerator::SceneGenerator(const std::string& scene, const std::string& cameras,
+                               const std::string& motion)
+    : scene_name_(scene) {
+  const SceneEntry& entry = FindEntry(SceneRegistry(), "scene", scene);
+  cameras_name_ = cameras.empty() ? entry.cameras : cameras;
+  motion_name_ = motion.empty() ? entry.motion : motion;
+  scene_ = entry.make();
+  cameras_ = FindEntry(CameraRegistry(), "cameras", cameras_name_).make();
+  motion_ = FindEntry(MotionRegistry(), "motion", motion_name_).make();
+  std::vector<std::string> names;
+  for (const Parameter& parameter : Parameters()) names.push_back(parameter.name());
+  keys_ = fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<Parameter> SceneGenerator::Parameters() {
+  std::vector<Parameter> all = {
+      Parameter::Integer("num_matches", &num_matches_, {1, 1e6}, "matches per pair, outliers included")};
+  for (const std::vector<Parameter>& more :
+       {scene_->Parameters(), cameras_->Parameters(), motion_->Parameters()}) {
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+Scene SceneGenerator::Generate(RandomStream& rng) const {
+  Scene scene;
+  std::tie(scene.camera1, scene.camera2) = cameras_->Make();
+  const Motion motion = motion_->Draw(scene_->TypicalDepth(), rng);
+  scene.cam2_from_cam1_true = motion.cam2_from_cam1;
+  scene.baseline_m = motion.baseline_m;
+  const std::unique_ptr<const World> world = scene_->DrawWorld(scene, rng);
+  scene.repeat_steps_m = world->RepeatSteps();
+  const std::vector<int> counts = SplitByShares(num_matches_, world->PartShares());
+  for (size_t part = 0; part < counts.size(); ++part) {
+    DrawPart(*world, part, static_cast<size_t>(counts[part]), rng, &scene);
+  }
+  return scene;
+}
+
+void SceneGenerator::DrawPart(const World& world, size_t part, size_t num_points, RandomStream& rng,
+                              Scene* scene) const {
+  const Eigen::Matrix3d clip_from_cam1 = ClipFromCam(scene->camera1),
+                        clip_from_cam2 = ClipFromCam(scene->camera2);
+  const Eigen::Matrix3d A2 = clip_from_cam2 * scene->cam2_from_cam1_true.R;
+  const Eigen::Vector3d t2 = clip_from_cam2 * (scene->baseline_m * scene->cam2_from_cam1_true.t);
+  // Every candidate is written behind the accepted ones, and stays there if both images see it: no branch.
+  std::vector<Eigen::Vector3d>& points = scene->points_in_cam1;
+  size_t num_accepted = points.size();
+  const size_t num_wanted = num_accepted + num_points;
+  points.resize(num_wanted + PointBlock::kSize);
+  PointBlock candidates;
+  Clearances clearance1, clearance2;
+  const size_t max_draws = std::max(kMinDraws, kMaxDrawsPerPoint * num_points);
+  size_t num_draws = 0;
+  for (; num_accepted < num_wanted && num_draws < max_draws; num_draws += PointBlock::kSize) {
+    world.DrawCandidates(part, rng, &candidates);
+    MeasureClearance(clip_from_cam1, Eigen::Vector3d::Zero(), candidates, &clearance1);
+    MeasureClearance(A2, t2, candidates, &clearance2);
+    for (size_t i = 0; i < PointBlock::kSize; ++i) {
+      points[num_accepted] = {candidates.x_m[i], candidates.y_m[i], candidates.z_m[i]};
+      num_accepted += std::min(clearance1[i], clearance2[i]) >= 0.0;
+      if (num_accepted >= points.size()) break;
+    }
+  }
+  if (num_accepted < num_wanted) {
+    throw InputError(
+        fmt::format("{}: both images see only {} of {} points drawn on part {} of the scene, {} are needed; "
+                    "make the motion "
+                    "smaller or the scene larger. What decides: {}",
+                    scene_name_, num_accepted + num_points - num_wanted, num_draws, part, num_points, keys_));
+  }
+  points.resize(num_wanted);
+}
+
+}  // namespace rcme

@@ -1,0 +1,43 @@
+// Draws the scene of a trial: motion, world, and points that both cameras see.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulator/camera_model.h"
+#include "simulator/motion_model.h"
+#include "simulator/scene.h"
+#include "simulator/scene_model.h"
+
+namespace rcme {
+
+// Const and shared by threads once its parameters are set.
+class SceneGenerator {
+ public:
+  // By the names of their registries; no name: the one the scene is usually seen with. Throws InputError that
+  // lists what is allowed.
+  explicit SceneGenerator(const std::string& scene, const std::string& cameras = "",
+                          const std::string& motion = "");
+
+  const std::string& cameras() const { return cameras_name_; }
+  const std::string& motion() const { return motion_name_; }
+
+  // num_matches and the parameters of scene, cameras and motion.
+  std::vector<Parameter> Parameters();
+  // One scene, from a stream of its own, of which more may be drawn than is used. Throws InputError that
+  // names the keys if the parameters admit no such scene.
+  Scene Generate(RandomStream& rng) const;
+
+ private:
+  void DrawPart(const World& world, size_t part, size_t num_points, RandomStream& rng, Scene* scene) const;
+
+  std::string scene_name_, cameras_name_, motion_name_;
+  std::unique_ptr<SceneModel> scene_;
+  std::unique_ptr<CameraModel> cameras_;
+  std::unique_ptr<MotionModel> motion_;
+  std::string keys_;  // all of them, for messages
+  int num_matches_ = 500;
+};
+
+}  // namespace rcme

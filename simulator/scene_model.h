@@ -1,0 +1,66 @@
+// How a family of scenes lays out its points: the plug-in contract of simulator/scenes.
+//
+// A trial draws the motion first, then a world (where this trial's clusters, planes or walls are), then
+// points of that world, block after block, until enough of them are seen in both images. A world may consist
+// of several parts; each gets its exact share of the points.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "parameters/parameter.h"
+#include "simulator/view_pair.h"
+#include "stats/random.h"
+
+namespace rcme {
+
+// Candidate points in camera 1's frame (m), as arrays for the check of what the cameras see.
+struct PointBlock {
+  static constexpr size_t kSize = 128;
+  std::array<double, kSize> x_m, y_m, z_m;
+
+  void Set(size_t i, const Eigen::Vector3d& point_in_cam1) {
+    x_m[i] = point_in_cam1.x();
+    y_m[i] = point_in_cam1.y();
+    z_m[i] = point_in_cam1.z();
+  }
+};
+
+// One world, drawn for one trial.
+class World {
+ public:
+  virtual ~World() = default;
+  // The share of the points that each part of the world gets; they sum to 1.
+  virtual std::vector<double> PartShares() const { return {1.0}; }
+  // Fills the block with independent candidates on a part. They may lie behind a camera or outside its image:
+  // only those that both see are kept.
+  virtual void DrawCandidates(size_t part, RandomStream& rng, PointBlock* block) const = 0;
+  // See Scene::repeat_steps_m.
+  virtual std::vector<Eigen::Vector3d> RepeatSteps() const { return {}; }
+};
+
+// For worlds that draw their candidates one by one.
+class PointwiseWorld : public World {
+ public:
+  void DrawCandidates(size_t part, RandomStream& rng, PointBlock* block) const final {
+    for (size_t i = 0; i < PointBlock::kSize; ++i) block->Set(i, DrawCandidate(part, rng));
+  }
+
+ protected:
+  virtual Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const = 0;
+};
+
+// A family of worlds with its parameters. Configured once, then const and shared by threads.
+class SceneModel {
+ public:
+  virtual ~SceneModel() = default;
+  // The parameters by name; valid as long as the model lives.
+  virtual std::vector<Parameter> Parameters() = 0;
+  // The depth (m) that stands for the scene where a baseline is given as parallax.
+  virtual double TypicalDepth() const = 0;
+  // Throws InputError that names the keys if the parameters contradict each other or admit no world in view.
+  virtual std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const = 0;
+};
+
+}  // namespace rcme

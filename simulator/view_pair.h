@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "estimator/geometry/camera.h"
+#include "estimator/geometry/pose.h"
+
+namespace rcme {
+
+// Two cameras and the motion between them, with its length.
+struct ViewPair {
+  Camera camera1, camera2;
+  RelativePose cam2_from_cam1_true;  // |t| = 1; t means nothing where the baseline is zero
+  double baseline_m = 0.0;           // length of the translation
+
+  // A pure rotation has no direction of translation.
+  bool IsDirectionDefined() const { return baseline_m > 0.0; }
+
+  Eigen::Vector3d InCamera2(const Eigen::Vector3d& point_in_cam1) const {
+    return cam2_from_cam1_true.R * point_in_cam1 + baseline_m * cam2_from_cam1_true.t;
+  }
+
+  // Whether both images show the point.
+  bool Sees(const Eigen::Vector3d& point_in_cam1) const {
+    const Eigen::Vector3d in_cam2 = InCamera2(point_in_cam1);
+    return point_in_cam1.z() > 0.0 && in_cam2.z() > 0.0 &&
+           camera1.IsInImage(camera1.Project(point_in_cam1)) && camera2.IsInImage(camera2.Project(in_cam2));
+  }
+};
+
+}  // namespace rcme
