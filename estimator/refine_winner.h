@@ -38,6 +38,18 @@ struct Fit {
   typename Matches::Set fitted;
 };
 
+// Cheirality was decided at the hypothesis, which may be so far off that most matches seemed to lie in front
+// of the cameras for the wrong one of the four motions of E. Decided again at the optimum; E is the same for
+// all four.
+template <typename Matches>
+RefinedMotion DecideCheiralityAgain(const Matches& matches, const typename Matches::Set& support,
+                                    const RefinedMotion& motion) {
+  const RelativePose& pose = motion.cam2_from_cam1;
+  const RelativePose chosen = matches.SelectPose(ProjectToEssential(EssentialFromPose(pose)), support);
+  const bool is_same = chosen.t.dot(pose.t) > 0.0 && RotationAngleBetween(chosen.R, pose.R) < 0.5;
+  return is_same ? motion : matches.Refine(support, chosen, Loss::kCauchy);
+}
+
 // From the support to the matches that agree. Five matches determine a motion exactly: their residuals and
 // the variances of these are zero, rounding would decide whether they agree, and nothing speaks for the
 // motion.
@@ -46,6 +58,7 @@ Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& su
                          const RelativePose& start) {
   if (matches.Count(support) <= 5) return {{.cam2_from_cam1 = start}, support};
   Fit<Matches> fit{matches.Refine(support, start, Loss::kCauchy), support};
+  if (fit.motion.converged) fit.motion = DecideCheiralityAgain(matches, support, fit.motion);
   for (int refit = 0; refit < kMaxRefits && fit.motion.converged; ++refit) {
     typename Matches::Set selected = matches.SelectFitSet(fit.motion, fit.fitted);
     if (refit > 0 && selected == fit.fitted) break;

@@ -1,15 +1,13 @@
 #include "experiments/audit.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "experiments/claims/decide_check.h"
+#include "experiments/for_each_index.h"
 #include "experiments/progress.h"
 #include "parameters/input_error.h"
 
@@ -40,10 +38,6 @@ bool IsNamed(const Claim& claim, const std::string& name) {
   return claim.id == name || claim.id.starts_with(name + ".");
 }
 
-int NumThreads(const AuditOptions& options) {
-  return options.num_threads > 0 ? options.num_threads : tbb::info::default_concurrency();
-}
-
 // Seconds on all threads that the check takes if no verdict stops it.
 double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
   constexpr std::uint32_t kLeastTimed = 4;
@@ -65,7 +59,7 @@ std::vector<double> WorkPerCheck(const std::vector<Claim>& claims, const AuditOp
   for (const Claim& claim : claims) {
     for (size_t i = 0; i < claim.checks.size(); ++i) {
       const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, 0.0};
-      work.push_back(WorkOf(claim.checks[i], run, NumThreads(options)));
+      work.push_back(WorkOf(claim.checks[i], run, NumThreads(options.num_threads)));
     }
   }
   return work;
@@ -88,9 +82,6 @@ std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector
 }
 
 Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<size_t>(NumThreads(options)));
-  tbb::task_arena arena(NumThreads(options));
   Audit audit{options, CountTargets(all), 0.0, SelectClaims(all, options.only), {}};
   audit.confidence = 1.0 - kAuditErrorRate / std::max(audit.num_targets, 1);
 
@@ -105,8 +96,9 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   for (const Claim& claim : audit.claims) {
     ClaimResult result;
     for (size_t i = 0; i < claim.checks.size(); ++i) {
-      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, audit.confidence};
-      arena.execute([&] { result.checks.push_back(DecideCheck(claim.checks[i], run)); });
+      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, audit.confidence,
+                         options.num_threads};
+      result.checks.push_back(DecideCheck(claim.checks[i], run));
       const auto seconds_before = static_cast<std::int64_t>(done_work);
       done_work += work[next++];
       progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);

@@ -8,6 +8,7 @@
 
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
+#include "simulator/severity/severity.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -19,7 +20,8 @@ enum class StreamPurpose : std::uint32_t {
   kOutliers = 3,
   kSampling = 4,
   kMonteCarlo = 5,
-  kCheck = 6
+  kCheck = 6,
+  kSeverity = 7
 };
 
 // The stream of a trial for a purpose.
@@ -36,7 +38,9 @@ struct Truth {
 struct TrialData {
   MotionProblem problem;
   Truth truth;
-  std::string origin;  // for people: the scene or the file it came from
+  std::string origin;   // for people: the scene or the file it came from
+  double weight = 1.0;  // of the trial, where its number of outliers is drawn by importance (outlier_model.h)
+  Severity severity;    // unknown for real pairs
 };
 
 // All trials of one condition. Const and shared by threads.

@@ -19,44 +19,66 @@
 namespace rcme {
 namespace {
 
-constexpr const char* kFormat = "rcme results 1";
+constexpr const char* kFormat = "rcme results 2";
 constexpr std::chrono::milliseconds kCommitInterval{500};
 using Clock = std::chrono::steady_clock;
 
+// The two tables of records; everything about them follows from the fields.
+template <typename Record>
+struct Table;
+template <>
+struct Table<ProblemRecord> {
+  static constexpr const char* kName = "problems";
+  static constexpr const char* kKey = "condition, trial";
+  static void Visit(auto& record, auto&& visit) { VisitProblemFields(record, visit); }
+};
+template <>
+struct Table<TrialRecord> {
+  static constexpr const char* kName = "trials";
+  static constexpr const char* kKey = "condition, trial, estimator";
+  static void Visit(auto& record, auto&& visit) { VisitFields(record, visit); }
+};
+
 // "condition, trial, ..." with `make(name, field)` for each column.
-template <typename Make>
+template <typename Record, typename Make>
 std::string JoinFields(Make make) {
-  TrialRecord record;
+  Record record;
   std::vector<std::string> parts;
-  VisitFields(record, [&](const char* name, const auto& field) { parts.push_back(make(name, field)); });
+  Table<Record>::Visit(record,
+                       [&](const char* name, const auto& field) { parts.push_back(make(name, field)); });
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string CreateTrialsTable() {
-  const std::string columns = JoinFields([](const char* name, const auto& field) {
+template <typename Record>
+std::string CreateTable() {
+  const std::string columns = JoinFields<Record>([](const char* name, const auto& field) {
     using Field = std::decay_t<decltype(field)>;
     const char* type = std::is_same_v<Field, double>         ? "REAL"
                        : std::is_same_v<Field, MotionStatus> ? "TEXT NOT NULL"
                                                              : "INTEGER NOT NULL";
     return fmt::format("{} {}", name, type);
   });
-  return fmt::format("CREATE TABLE trials ({}, PRIMARY KEY (condition, trial, estimator)) WITHOUT ROWID",
-                     columns);
+  return fmt::format("CREATE TABLE {} ({}, PRIMARY KEY ({})) WITHOUT ROWID", Table<Record>::kName, columns,
+                     Table<Record>::kKey);
 }
 
-std::string InsertTrial() {
-  return fmt::format("INSERT INTO trials VALUES ({})",
-                     JoinFields([](const char*, const auto&) { return "?"; }));
+template <typename Record>
+std::string InsertInto() {
+  return fmt::format("INSERT INTO {} VALUES ({})", Table<Record>::kName,
+                     JoinFields<Record>([](const char*, const auto&) { return "?"; }));
 }
 
-std::string SelectTrials(const std::string& where) {
-  return fmt::format("SELECT {} FROM trials {} ORDER BY condition, trial, estimator",
-                     JoinFields([](const char* name, const auto&) { return std::string(name); }), where);
+template <typename Record>
+std::string SelectFrom(const std::string& where) {
+  return fmt::format("SELECT {} FROM {} {} ORDER BY {}",
+                     JoinFields<Record>([](const char* name, const auto&) { return std::string(name); }),
+                     Table<Record>::kName, where, Table<Record>::kKey);
 }
 
-void Bind(SQLite::Statement& statement, const TrialRecord& record) {
+template <typename Record>
+void Bind(SQLite::Statement& statement, const Record& record) {
   int column = 1;
-  VisitFields(record, [&](const char*, const auto& field) {
+  Table<Record>::Visit(record, [&](const char*, const auto& field) {
     using Field = std::decay_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, MotionStatus>) {
       statement.bindNoCopy(column, StatusName(field));
@@ -76,10 +98,11 @@ MotionStatus StatusFromName(const std::string& name) {
   throw InputError(fmt::format("status '{}' is unknown to this version of rcme", name));
 }
 
-TrialRecord ReadRecord(SQLite::Statement& row) {
-  TrialRecord record;
+template <typename Record>
+Record ReadRecord(SQLite::Statement& row) {
+  Record record;
   int index = 0;
-  VisitFields(record, [&](const char*, auto& field) {
+  Table<Record>::Visit(record, [&](const char*, auto& field) {
     const SQLite::Column column = row.getColumn(index++);
     using Field = std::decay_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, MotionStatus>) {
@@ -164,7 +187,8 @@ struct ResultStore::Connection {
         "CREATE TABLE conditions (condition INTEGER, factor TEXT, level TEXT, PRIMARY KEY (condition, "
         "factor))");
     database.exec("CREATE TABLE estimators (estimator INTEGER PRIMARY KEY, label TEXT NOT NULL)");
-    database.exec(CreateTrialsTable());
+    database.exec(CreateTable<ProblemRecord>());
+    database.exec(CreateTable<TrialRecord>());
     SetValue("format", kFormat);
     SetValue("identity", plan.identity);
     for (const Condition& condition : plan.conditions) {
@@ -184,7 +208,7 @@ struct ResultStore::Connection {
   void AdoptIfEmpty(const StudyPlan& plan) {
     if (Value("identity") == plan.identity) return;
     if (database.execAndGet("SELECT count(*) FROM (SELECT 1 FROM trials LIMIT 1)").getInt() > 0) return;
-    for (const char* table : {"run", "conditions", "estimators", "trials"}) {
+    for (const char* table : {"run", "conditions", "estimators", "problems", "trials"}) {
       database.exec(fmt::format("DROP TABLE {}", table));
     }
     Create(plan);
@@ -208,20 +232,27 @@ struct ResultStore::Connection {
     try {
       action();
     } catch (...) {
-      insert->tryReset();
+      insert_problem->tryReset();
+      insert_trial->tryReset();
       transaction.reset();
       throw;
     }
   }
 
-  void Add(const std::vector<TrialRecord>& records) {
+  template <typename Record>
+  static void InsertAll(const std::vector<Record>& records, SQLite::Statement* insert) {
+    for (const Record& record : records) {
+      Bind(*insert, record);
+      insert->exec();
+      insert->reset();
+    }
+  }
+
+  void Add(const std::vector<ProblemRecord>& problems, const std::vector<TrialRecord>& records) {
     if (!transaction) transaction.emplace(database);
     OrRollBack([&] {
-      for (const TrialRecord& record : records) {
-        Bind(*insert, record);
-        insert->exec();
-        insert->reset();
-      }
+      InsertAll(problems, &*insert_problem);
+      InsertAll(records, &*insert_trial);
     });
     if (Clock::now() - last_commit > kCommitInterval) Commit();
   }
@@ -235,7 +266,7 @@ struct ResultStore::Connection {
 
   std::string path;
   SQLite::Database database;
-  std::optional<SQLite::Statement> insert;
+  std::optional<SQLite::Statement> insert_problem, insert_trial;
   std::optional<SQLite::Transaction> transaction;
   Clock::time_point last_commit = Clock::now();
 };
@@ -276,7 +307,8 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
                       path, FirstDifference(identity, plan.identity)));
     }
     connection->SetValue("study", plan.study_yaml);
-    connection->insert.emplace(database, InsertTrial());
+    connection->insert_problem.emplace(database, InsertInto<ProblemRecord>());
+    connection->insert_trial.emplace(database, InsertInto<TrialRecord>());
     return ResultStore(std::move(connection));
   } catch (const SQLite::Exception& error) {
     throw InputError(fmt::format("{}: {}", path, Connection::Reason(error)));
@@ -316,9 +348,8 @@ StudyPlan ResultStore::Plan() const {
 
 std::vector<TrialRange> ResultStore::MissingTrials(std::uint32_t condition, std::uint32_t num_trials) {
   return connection_->Guarded([&] {
-    SQLite::Statement query(
-        connection_->database,
-        "SELECT trial FROM trials WHERE condition = ? AND trial < ? AND estimator = 0 ORDER BY trial");
+    SQLite::Statement query(connection_->database,
+                            "SELECT trial FROM problems WHERE condition = ? AND trial < ? ORDER BY trial");
     query.bind(1, condition);
     query.bind(2, num_trials);
     std::vector<TrialRange> missing;
@@ -333,28 +364,62 @@ std::vector<TrialRange> ResultStore::MissingTrials(std::uint32_t condition, std:
   });
 }
 
-void ResultStore::Add(const std::vector<TrialRecord>& records) {
-  connection_->Guarded([&] { connection_->Add(records); });
+void ResultStore::Add(const std::vector<ProblemRecord>& problems, const std::vector<TrialRecord>& records) {
+  connection_->Guarded([&] { connection_->Add(problems, records); });
 }
 
 void ResultStore::Commit() {
   connection_->Guarded([&] { connection_->Commit(); });
 }
 
+void ResultStore::NoteStoppingRule(const std::string& rule) {
+  connection_->Guarded([&] { connection_->SetValue("stopping rule", rule); });
+}
+
+std::string ResultStore::StoppingRule() const {
+  return connection_->Guarded([&] { return connection_->Value("stopping rule").value_or(""); });
+}
+
 void ResultStore::ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const {
   connection_->Guarded([&] {
-    SQLite::Statement query(connection_->database, SelectTrials(""));
-    while (query.executeStep()) visit(ReadRecord(query));
+    SQLite::Statement query(connection_->database, SelectFrom<TrialRecord>(""));
+    while (query.executeStep()) visit(ReadRecord<TrialRecord>(query));
+  });
+}
+
+void ResultStore::ForEachTrial(
+    const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&)>& visit,
+    std::optional<std::uint32_t> condition) const {
+  connection_->Guarded([&] {
+    const std::string where = condition ? fmt::format("WHERE condition = {}", *condition) : "";
+    SQLite::Statement problems(connection_->database, SelectFrom<ProblemRecord>(where));
+    SQLite::Statement trials(connection_->database, SelectFrom<TrialRecord>(where));
+    bool has_trial = trials.executeStep();
+    std::vector<TrialRecord> records;
+    while (problems.executeStep()) {
+      const ProblemRecord problem = ReadRecord<ProblemRecord>(problems);
+      const auto is_of_problem = [&](const TrialRecord& record) {
+        return record.condition == problem.condition && record.trial == problem.trial;
+      };
+      records.clear();
+      for (; has_trial; has_trial = trials.executeStep()) {
+        const TrialRecord record = ReadRecord<TrialRecord>(trials);
+        if (!is_of_problem(record)) break;
+        records.push_back(record);
+      }
+      visit(problem, records);
+    }
   });
 }
 
 std::vector<TrialRecord> ResultStore::RecordsOf(std::uint32_t condition, std::uint32_t trial) const {
   return connection_->Guarded([&] {
-    SQLite::Statement query(connection_->database, SelectTrials("WHERE condition = ? AND trial = ?"));
+    SQLite::Statement query(connection_->database,
+                            SelectFrom<TrialRecord>("WHERE condition = ? AND trial = ?"));
     query.bind(1, condition);
     query.bind(2, trial);
     std::vector<TrialRecord> records;
-    while (query.executeStep()) records.push_back(ReadRecord(query));
+    while (query.executeStep()) records.push_back(ReadRecord<TrialRecord>(query));
     return records;
   });
 }

@@ -2,13 +2,15 @@
 // again.
 //
 // Tables: run (key, value: format, study, identity), conditions (condition, factor, level), estimators
-// (estimator, label), trials (one row per condition, trial and estimator, columns as in trial_fields.h).
+// (estimator, label), problems (one row per condition and trial), trials (one row per condition, trial and
+// estimator; columns of both as in trial_fields.h).
 // Unknown numbers are NULL.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,12 +45,22 @@ class ResultStore {
 
   // Adds the records of whole trials; they reach the disk within about half a second, all records of a call
   // or none.
-  void Add(const std::vector<TrialRecord>& records);
+  void Add(const std::vector<ProblemRecord>& problems, const std::vector<TrialRecord>& records);
   // Writes what has been added.
   void Commit();
 
+  // How many trials a condition has may depend on their outcomes (run_until.h). Noted before the first trial
+  // of such a run and for good: intervals that look once no longer hold.
+  void NoteStoppingRule(const std::string& rule);
+  // Empty: the number of trials was fixed beforehand.
+  std::string StoppingRule() const;
+
   // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
   void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;
+  // Calls `visit` for every trial, ordered by condition and trial; its records are ordered by estimator. Only
+  // the trials of one condition, if it is given.
+  void ForEachTrial(const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&)>& visit,
+                    std::optional<std::uint32_t> condition = std::nullopt) const;
   // The records of one trial, ordered by estimator.
   std::vector<TrialRecord> RecordsOf(std::uint32_t condition, std::uint32_t trial) const;
 

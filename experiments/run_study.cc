@@ -48,13 +48,14 @@ class RecordBuffer {
   explicit RecordBuffer(ResultStore* store) : store_(store) {}
 
   // The records of a whole trial.
-  void Add(const std::vector<TrialRecord>& records) {
+  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     const Clock::time_point now = Clock::now();
     size_t num_waiting = 0;
     {
       const std::lock_guard lock(waiting_mutex_);
-      waiting_.insert(waiting_.end(), records.begin(), records.end());
-      num_waiting = waiting_.size();
+      waiting_.problems.push_back(problem);
+      waiting_.trials.insert(waiting_.trials.end(), records.begin(), records.end());
+      num_waiting = waiting_.trials.size();
       if (now < next_write_ && num_waiting < kMaxWaiting) return;
     }
     std::unique_lock writing(writing_mutex_, std::try_to_lock);
@@ -77,19 +78,25 @@ class RecordBuffer {
   void Write() {
     {
       const std::lock_guard lock(waiting_mutex_);
-      written_.clear();
-      written_.swap(waiting_);
+      written_.problems.clear();
+      written_.trials.clear();
+      std::swap(written_, waiting_);
       next_write_ = Clock::now() + kWriteInterval;
     }
-    store_->Add(written_);
+    store_->Add(written_.problems, written_.trials);
   }
+
+  struct Records {
+    std::vector<ProblemRecord> problems;
+    std::vector<TrialRecord> trials;
+  };
 
   ResultStore* store_;
   std::mutex waiting_mutex_;  // of waiting_ and next_write_
-  std::vector<TrialRecord> waiting_;
+  Records waiting_;
   Clock::time_point next_write_ = Clock::now() + kWriteInterval;
   std::mutex writing_mutex_;  // of written_
-  std::vector<TrialRecord> written_;
+  Records written_;
 };
 
 }  // namespace
@@ -100,9 +107,11 @@ RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
   Progress progress("trials", plan.NumTrials(), plan.NumTrials() - trials.size());
   RecordBuffer buffer(store);
   try {
-    ForEachIndex(trials.size(), num_threads, &progress, [&](std::int64_t index) {
+    ForEachIndex(trials.size(), num_threads, [&](std::int64_t index) {
       const auto [condition, trial] = trials[index];
-      buffer.Add(RunTrial(plan, *condition, trial).records);
+      const TrialResult result = RunTrial(plan, *condition, trial);
+      buffer.Add(result.problem, result.records);
+      progress.Advance(1);
     });
   } catch (...) {
     buffer.Flush();  // the trials before the error are good

@@ -29,6 +29,9 @@ std::vector<Parameter> SimulatedData::Parameters() {
        {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(told_)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
+  all.push_back(Parameter::Choice<bool>("severity", &measures_severity_,
+                                        {{"measured", true}, {"skipped", false}},
+                                        "whether each trial's severity is measured and stored"));
   return all;
 }
 
@@ -43,11 +46,16 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_na
   Observation observation = Observe(scene, *noise_, outliers_, noise_rng, outlier_rng);
 
   TrialData data;
+  if (measures_severity_) {
+    RandomStream severity_rng = StreamFor(trial_name, StreamPurpose::kSeverity);
+    data.severity = MeasureSeverity(scene, observation, noise_->sigma_px(), severity_rng);
+  }
   data.problem = {std::move(observation.matches), told_.CameraTold(scene.camera1),
                   told_.CameraTold(scene.camera2), told_.SigmaTold(noise_->sigma_px())};
   data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
                 std::move(observation.is_undetectable)};
   data.origin = "simulated";
+  data.weight = observation.weight;
   return data;
 }
 

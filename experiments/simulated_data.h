@@ -40,6 +40,7 @@ class SimulatedData : public DataSource {
   std::unique_ptr<NoiseModel> noise_;
   OutlierModel outliers_;
   CalibrationError told_;
+  bool measures_severity_ = true;
 };
 
 // Simulated data for the settings, `scene` among them. Throws InputError that names key and value.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "parameters/input_error.h"
+#include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
 
@@ -14,15 +15,16 @@ namespace rcme {
 namespace {
 
 // What a trial contributes to a quantity: nothing (it is not of those the quantity is about), or a number (a
-// rate: 0 or 1).
-using Contribution = std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)>;
-
+// rate: 0 or 1). `Record` is TrialRecord, for estimators, or ProblemRecord.
+template <typename Record>
 struct Quantity {
   std::string name;
   SummaryRow::Kind kind;
   std::string doc;
-  Contribution contribution;
+  std::function<std::optional<double>(const Record&, const FailureBounds&)> contribution;
 };
+using TrialQuantity = Quantity<TrialRecord>;
+using ProblemQuantity = Quantity<ProblemRecord>;
 
 std::optional<double> If(bool is_of_interest, double value) {
   return is_of_interest && !std::isnan(value) ? std::optional<double>(value) : std::nullopt;
@@ -32,18 +34,18 @@ std::optional<double> Yes(bool value) { return value ? 1.0 : 0.0; }
 
 bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
 
-Quantity StatusRate(MotionStatus status, const std::string& doc) {
+TrialQuantity StatusRate(MotionStatus status, const std::string& doc) {
   return {StatusName(status), SummaryRow::Kind::kRate, doc + ", of all trials",
           [status](const TrialRecord& r, const FailureBounds&) { return Yes(r.status == status); }};
 }
 
-const std::vector<Quantity>& Quantities() {
+const std::vector<TrialQuantity>& TrialQuantities() {
   constexpr auto kRate = SummaryRow::Kind::kRate;
   constexpr auto kMean = SummaryRow::Kind::kMean;
   using R = const TrialRecord&;
   using B = const FailureBounds&;
   static const double nees_bound = ChiSquareQuantile(5, 0.95);
-  static const std::vector<Quantity> all = {
+  static const std::vector<TrialQuantity> all = {
       {"success", kRate, "a motion within the failure bounds, of all trials",
        [](R r, B b) { return Yes(HasSucceeded(r, b)); }},
       {"failure", kRate, "a motion beyond a failure bound, of all trials",
@@ -81,27 +83,69 @@ const std::vector<Quantity>& Quantities() {
   return all;
 }
 
-// The quantities of one estimator in one condition, growing trial by trial.
+// No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
+// problem and not the estimator is to blame.
+bool IsImpossible(const ProblemRecord& problem, const FailureBounds& bounds) {
+  return problem.severity.crb_rotation_deg > bounds.max_rotation_error_deg ||
+         problem.severity.crb_direction_deg > bounds.max_direction_error_deg;
+}
+
+const std::vector<ProblemQuantity>& ProblemQuantities() {
+  static const std::vector<ProblemQuantity> all = [] {
+    std::vector<ProblemQuantity> quantities = {
+        {"impossible", SummaryRow::Kind::kRate,
+         "Cramer-Rao bound beyond a failure bound, of measured problems",
+         [](const ProblemRecord& p, const FailureBounds& b) {
+           return If(!std::isnan(p.severity.crb_rotation_deg), IsImpossible(p, b));
+         }},
+        {"num_inliers_true", SummaryRow::Kind::kMean, "true matches",
+         [](const ProblemRecord& p, const FailureBounds&) { return If(true, p.num_inliers_true); }}};
+    Severity names;
+    VisitSeverity(names, [&](const std::string& name, const double&) {
+      quantities.push_back({name, SummaryRow::Kind::kMean, "severity of the problem (simulator/severity)",
+                            [name](const ProblemRecord& p, const FailureBounds&) {
+                              double value = Severity::kUnknown;
+                              VisitSeverity(p.severity, [&](const std::string& other, const double& field) {
+                                if (other == name) value = field;
+                              });
+                              return If(true, value);
+                            }});
+    });
+    return quantities;
+  }();
+  return all;
+}
+
+// The quantities of one estimator, or of the problems, in one condition, growing trial by trial.
+template <typename Record>
 class Accumulator {
  public:
-  Accumulator() : moments_(Quantities().size()) {}
+  explicit Accumulator(const std::vector<Quantity<Record>>& quantities)
+      : quantities_(quantities), moments_(quantities.size()) {}
 
-  void Add(const TrialRecord& record, const FailureBounds& bounds) {
+  void Add(const Record& record, const FailureBounds& bounds) {
     for (size_t q = 0; q < moments_.size(); ++q) {
-      const std::optional<double> value = Quantities()[q].contribution(record, bounds);
+      const std::optional<double> value = quantities_[q].contribution(record, bounds);
       if (value) moments_[q].Add(*value);
     }
   }
 
-  SummaryRow Row(size_t q) const {
-    SummaryRow row;
-    row.quantity = Quantities()[q].name;
-    row.kind = Quantities()[q].kind;
+  void AppendRows(const SummaryRow& of_cell, IntervalKind interval_kind,
+                  std::vector<SummaryRow>* rows) const {
+    for (size_t q = 0; q < moments_.size(); ++q) rows->push_back(Row(q, interval_kind, of_cell));
+  }
+
+ private:
+  SummaryRow Row(size_t q, IntervalKind interval_kind, SummaryRow row) const {
+    row.quantity = quantities_[q].name;
+    row.kind = quantities_[q].kind;
     row.value = moments_[q].mean();
     row.n = moments_[q].n();
     if (row.kind == SummaryRow::Kind::kRate) {
       const double successes = row.n > 0 ? row.value * static_cast<double>(row.n) : 0.0;
-      row.interval = ExactBinomialInterval(std::llround(successes), row.n);
+      row.interval = interval_kind == IntervalKind::kExact
+                         ? ExactBinomialInterval(std::llround(successes), row.n)
+                         : ConfidenceSequence(std::llround(successes), row.n);
       if (row.n > 0) row.value = std::round(successes) / static_cast<double>(row.n);
     } else {
       row.standard_error = moments_[q].standard_error();
@@ -109,49 +153,76 @@ class Accumulator {
     return row;
   }
 
- private:
+  const std::vector<Quantity<Record>>& quantities_;
   std::vector<Moments> moments_;
 };
+
+// The accumulators of one condition.
+struct Cell {
+  std::vector<Accumulator<TrialRecord>> estimators;
+  Accumulator<ProblemRecord> problems{ProblemQuantities()};
+};
+
+template <typename Record>
+void AppendHelp(const std::vector<Quantity<Record>>& quantities, std::vector<QuantityHelp>* rows) {
+  for (const Quantity<Record>& q : quantities) {
+    rows->push_back({q.name, q.kind == SummaryRow::Kind::kRate ? "rate" : "mean", q.doc});
+  }
+}
 
 }  // namespace
 
 const std::vector<QuantityHelp>& SummaryQuantities() {
   static const std::vector<QuantityHelp> help = [] {
     std::vector<QuantityHelp> rows;
-    for (const Quantity& q : Quantities()) {
-      rows.push_back({q.name, q.kind == SummaryRow::Kind::kRate ? "rate" : "mean", q.doc});
-    }
+    AppendHelp(TrialQuantities(), &rows);
+    AppendHelp(ProblemQuantities(), &rows);
     return rows;
   }();
   return help;
 }
 
+std::string IntervalKindName(IntervalKind kind) {
+  return kind == IntervalKind::kExact ? "exact" : "anytime_valid";
+}
+
+std::string IntervalKindInWords(IntervalKind kind) {
+  return kind == IntervalKind::kExact ? "exact 95 % (Clopper-Pearson)"
+                                      : "anytime-valid 95 % (confidence sequence)";
+}
+
 Summary Summarize(const ResultStore& store, bool with_times) {
   const StudyPlan plan = store.Plan();
   Summary summary{plan.study.name, plan.factor_names, {}, 0, plan.NumTrials()};
+  if (!store.StoppingRule().empty()) summary.interval_kind = IntervalKind::kAnytimeValid;
   const size_t num_estimators = plan.study.estimators.size();
-  std::vector<std::vector<Accumulator>> cells(plan.conditions.size(),
-                                              std::vector<Accumulator>(num_estimators));
-  store.ForEachRecord([&](const TrialRecord& record) {
-    if (record.condition >= cells.size() || record.estimator >= num_estimators) {
-      throw InputError(fmt::format("the result file is damaged: no condition {} or estimator {} in its study",
-                                   record.condition, record.estimator));
+  const Accumulator<TrialRecord> empty(TrialQuantities());
+  std::vector<Cell> cells(plan.conditions.size(), Cell{std::vector(num_estimators, empty)});
+  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    if (problem.condition >= cells.size() || records.size() != num_estimators) {
+      throw InputError(
+          fmt::format("the result file is damaged: condition {}, trial {} does not fit its study",
+                      problem.condition, problem.trial));
     }
-    if (record.estimator == 0) ++summary.num_trials_done;
-    cells.at(record.condition).at(record.estimator).Add(record, plan.study.failure);
+    ++summary.num_trials_done;
+    Cell& cell = cells[problem.condition];
+    cell.problems.Add(problem, plan.study.failure);
+    for (size_t e = 0; e < num_estimators; ++e) cell.estimators[e].Add(records[e], plan.study.failure);
   });
   for (const Condition& condition : plan.conditions) {
+    const Cell& cell = cells[condition.index];
+    SummaryRow row;
+    row.condition = condition.index;
+    row.levels = condition.levels;
     for (size_t e = 0; e < num_estimators; ++e) {
-      for (size_t q = 0; q < Quantities().size(); ++q) {
-        SummaryRow row = cells[condition.index][e].Row(q);
-        if (row.quantity == "time_ms" && !with_times) continue;
-        row.condition = condition.index;
-        row.levels = condition.levels;
-        row.estimator = plan.study.estimators[e].label;
-        summary.rows.push_back(std::move(row));
-      }
+      row.estimator = plan.study.estimators[e].label;
+      cell.estimators[e].AppendRows(row, summary.interval_kind, &summary.rows);
     }
+    row.estimator = kSceneLabel;
+    cell.problems.AppendRows(row, summary.interval_kind, &summary.rows);
   }
+  if (!with_times)
+    std::erase_if(summary.rows, [](const SummaryRow& row) { return row.quantity == "time_ms"; });
   return summary;
 }
 

@@ -15,20 +15,32 @@ struct SummaryRow {
 
   std::uint32_t condition = 0;
   std::vector<std::string> levels;  // one per factor
-  std::string estimator;            // label
+  std::string estimator;            // label; kSceneLabel: of the problem, whoever solves it
   std::string quantity;
   Kind kind = Kind::kRate;
   double value = 0.0;           // NaN where n is 0
-  Interval interval;            // rates: exact 95 %
+  Interval interval;            // rates: 95 %, of the summary's kind
   double standard_error = 0.0;  // means: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of
 };
+
+// Stands in the place of an estimator in rows about the problems themselves.
+inline constexpr const char* kSceneLabel = "scene";
+
+// Which intervals the rates have.
+enum class IntervalKind {
+  kExact,         // Clopper-Pearson
+  kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
+};
+std::string IntervalKindName(IntervalKind kind);     // one word
+std::string IntervalKindInWords(IntervalKind kind);  // for people
 
 struct Summary {
   std::string study;
   std::vector<std::string> factor_names;
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
+  IntervalKind interval_kind = IntervalKind::kExact;
 };
 
 // A quantity of the summary, for `rcme list quantities`.
@@ -37,8 +49,8 @@ struct QuantityHelp {
 };
 const std::vector<QuantityHelp>& SummaryQuantities();
 
-// Every quantity of every estimator in every condition, from the raw trials, in one pass and constant memory.
-// Times (which no two runs share) only if asked for.
+// Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
+// one pass and constant memory. Times (which no two runs share) only if asked for.
 Summary Summarize(const ResultStore& store, bool with_times);
 
 }  // namespace rcme

@@ -34,6 +34,27 @@ std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
   return fmt::format("{:.3g} +- {:.2g}{}", row.value, row.standard_error, of);
 }
 
+// How hard the problems were: one row per condition. Empty where nothing was measured.
+std::string SeverityAsTable(const Summary& summary) {
+  const std::vector<std::string> shown = {"impossible",          "image_coverage",   "inlier_clark_evans",
+                                          "parallax_median_deg", "homography_share", "crb_rotation_deg",
+                                          "crb_direction_deg"};
+  std::vector<std::vector<std::string>> rows = {summary.factor_names};
+  rows[0].insert(rows[0].end(), shown.begin(), shown.end());
+  std::int64_t num_measured = 0;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.estimator != kSceneLabel) continue;
+    if (row.quantity == "impossible") {  // the first of each condition
+      rows.push_back(row.levels);
+      num_measured += row.n;
+    }
+    if (std::count(shown.begin(), shown.end(), row.quantity) > 0) rows.back().push_back(Cell(row, row.n));
+  }
+  if (num_measured == 0) return "";
+  return fmt::format("The problems themselves (impossible: Cramer-Rao bound beyond a failure bound)\n\n{}\n",
+                     FormatColumns(rows));
+}
+
 }  // namespace
 
 std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
@@ -75,13 +96,15 @@ std::string SummaryAsTable(const Summary& summary) {
       rows.push_back(row.levels);
       rows.back().insert(rows.back().end(), {row.estimator, fmt::format("{}", row.n)});
     }
-    if (std::count(shown.begin(), shown.end(), row.quantity) > 0)
+    if (std::count(shown.begin(), shown.end(), row.quantity) > 0 && row.estimator != kSceneLabel)
       rows.back().push_back(Cell(row, num_trials));
   }
   std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study,
                                  summary.num_trials_done, summary.num_trials_planned, FormatColumns(rows));
+  text += SeverityAsTable(summary);
+  text += fmt::format("Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n",
+                      IntervalKindInWords(summary.interval_kind));
   text +=
-      "Rates with exact 95 % (Clopper-Pearson) intervals; means of successes +- Monte-Carlo standard error;\n"
       "(n ...) where a number is not of all trials.\n"
       "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
       "flag.\n"
@@ -92,15 +115,16 @@ std::string SummaryAsTable(const Summary& summary) {
 std::string SummaryAsCsv(const Summary& summary) {
   std::string text = "study,condition,";
   for (const std::string& factor : summary.factor_names) text += CsvField(factor) + ",";
-  text += "estimator,quantity,kind,value,lower,upper,standard_error,n\n";
+  text += "estimator,quantity,kind,value,lower,upper,standard_error,n,interval\n";
   for (const SummaryRow& row : summary.rows) {
     text += fmt::format("{},{},", CsvField(summary.study), row.condition);
     for (const std::string& level : row.levels) text += CsvField(level) + ",";
     const bool is_rate = row.kind == SummaryRow::Kind::kRate;
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity,
-                        is_rate ? "rate" : "mean", Number(row.value),
-                        is_rate ? Number(row.interval.lower) : "", is_rate ? Number(row.interval.upper) : "",
-                        is_rate ? "" : Number(row.standard_error), row.n);
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity,
+                    is_rate ? "rate" : "mean", Number(row.value), is_rate ? Number(row.interval.lower) : "",
+                    is_rate ? Number(row.interval.upper) : "", is_rate ? "" : Number(row.standard_error),
+                    row.n, is_rate ? IntervalKindName(summary.interval_kind) : "");
   }
   return text;
 }
@@ -109,6 +133,7 @@ std::string SummaryAsJson(const Summary& summary) {
   nlohmann::ordered_json json = {{"study", summary.study},
                                  {"trials_done", summary.num_trials_done},
                                  {"trials_planned", summary.num_trials_planned},
+                                 {"interval", IntervalKindName(summary.interval_kind)},
                                  {"rows", nlohmann::ordered_json::array()}};
   for (const SummaryRow& row : summary.rows) {
     nlohmann::ordered_json entry = {{"condition", row.condition}};

@@ -1,5 +1,6 @@
 #include "experiments/trial.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -25,11 +26,23 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
   if (estimate.status != MotionStatus::kOk || truth.is_inlier_true.empty()) return;
-  int num_found = 0, num_true = 0;
-  for (const int index : estimate.inliers) num_found += truth.is_inlier_true[static_cast<size_t>(index)];
+  int num_found = 0, num_wrong = 0, num_true = 0;
+  for (const int index : estimate.inliers) {
+    const auto i = static_cast<size_t>(index);
+    num_found += truth.is_inlier_true[i];
+    const bool can_be_told = truth.is_undetectable.empty() || !truth.is_undetectable[i];
+    num_wrong += !truth.is_inlier_true[i] && can_be_told;
+  }
   for (const bool is_inlier : truth.is_inlier_true) num_true += is_inlier;
-  if (!estimate.inliers.empty()) record->inlier_precision = 1.0 * num_found / record->num_inliers;
+  if (num_found + num_wrong > 0) record->inlier_precision = 1.0 * num_found / (num_found + num_wrong);
   if (num_true > 0) record->inlier_recall = 1.0 * num_found / num_true;
+}
+
+ProblemRecord Describe(const TrialData& data, const StreamName& name) {
+  const std::vector<bool>& is_inlier = data.truth.is_inlier_true;
+  const double num_inliers =
+      is_inlier.empty() ? kNaN : static_cast<double>(std::count(is_inlier.begin(), is_inlier.end(), true));
+  return {name.condition, name.trial, data.weight, num_inliers, data.severity};
 }
 
 }  // namespace
@@ -68,6 +81,7 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   const StreamName name{plan.study.seed, condition.index, trial, 0};
   TrialResult result;
   result.data = condition.source->Make(name);
+  result.problem = Describe(result.data, name);
   result.estimates.reserve(plan.estimators.size());
   result.records.reserve(plan.estimators.size());
   for (size_t e = 0; e < plan.estimators.size(); ++e) {

@@ -18,7 +18,7 @@ struct TrialRecord {
   double nees = 0.0;  // of the refined motion, 5 degrees of freedom; NaN where the direction is not known
   int num_matches = 0;
   int num_inliers = 0;            // final inliers
-  double inlier_precision = 0.0;  // true ones among the final inliers
+  double inlier_precision = 0.0;  // true ones among the final inliers, wrong ones that no test can tell aside
   double inlier_recall = 0.0;     // final inliers among the true ones
   int num_support = 0;            // n_j of the winner
   double mean_entropy = 0.0;      // psi_j of the winner
@@ -27,6 +27,14 @@ struct TrialRecord {
   bool failed_by_kappa = false;
   LoopCounts counts;
   double seconds = 0.0;  // wall time of the call; the only field that is not a function of the trial's name
+};
+
+// What is kept of the problem of one trial.
+struct ProblemRecord {
+  std::uint32_t condition = 0, trial = 0;
+  double weight = 1.0;
+  double num_inliers_true = 0.0;  // NaN: unknown
+  Severity severity;
 };
 
 // A returned motion beyond a bound. False where no motion was returned, or no truth is known.
@@ -39,6 +47,7 @@ TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double 
 
 struct TrialResult {
   TrialData data;
+  ProblemRecord problem;
   std::vector<MotionEstimate> estimates;  // one per estimator of the plan
   std::vector<TrialRecord> records;
 };

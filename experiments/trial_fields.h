@@ -34,4 +34,14 @@ void VisitFields(Record& record, Visitor&& visit) {
   visit("seconds", record.seconds);
 }
 
+// The same for the record of a problem.
+template <typename Record, typename Visitor>
+void VisitProblemFields(Record& record, Visitor&& visit) {
+  visit("condition", record.condition);
+  visit("trial", record.trial);
+  visit("weight", record.weight);
+  visit("num_inliers_true", record.num_inliers_true);
+  VisitSeverity(record.severity, visit);
+}
+
 }  // namespace rcme

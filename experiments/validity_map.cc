@@ -12,6 +12,7 @@
 #include "estimator/refinement/sampson_mle.h"
 #include "experiments/covariance_score.h"
 #include "experiments/for_each_index.h"
+#include "experiments/progress.h"
 #include "stats/accuracy.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
@@ -154,9 +155,10 @@ std::string ValidityMapCsv(const ValidityMapOptions& options) {
       for (const double sigma_px : options.sigmas_px) {
         const SampleFamily family(num_points, baseline_m, sigma_px);
         std::vector<ValidityTrial> trials(static_cast<size_t>(options.trials));
-        ForEachIndex(options.trials, options.num_threads, &progress, [&](std::int64_t trial) {
+        ForEachIndex(options.trials, options.num_threads, [&](std::int64_t trial) {
           const StreamName name{options.seed, cell_index, static_cast<std::uint32_t>(trial)};
           trials[static_cast<size_t>(trial)] = RunValidityTrial(family, name);
+          progress.Advance(1);
         });
         cells.push_back({baseline_m, num_points, sigma_px, std::move(trials)});
         ++cell_index;

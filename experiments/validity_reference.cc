@@ -7,6 +7,7 @@
 
 #include "experiments/covariance_score.h"
 #include "experiments/for_each_index.h"
+#include "experiments/progress.h"
 #include "experiments/sample_family.h"
 #include "stats/consistency.h"
 #include "stats/distributions.h"
@@ -138,9 +139,10 @@ std::string ValidityReferenceCsv(const ValidityReferenceOptions& options) {
     for (const double sigma_px : options.sigmas_px) {
       const SampleFamily family(num_points, options.baseline_m, sigma_px);
       std::vector<Counts> per_sample(static_cast<size_t>(options.num_samples));
-      ForEachIndex(options.num_samples, options.num_threads, &progress, [&](std::int64_t sample) {
+      ForEachIndex(options.num_samples, options.num_threads, [&](std::int64_t sample) {
         const StreamName name{options.seed, cell, static_cast<std::uint32_t>(sample)};
         per_sample[static_cast<size_t>(sample)] = RunSample(family, name, options);
+        progress.Advance(1);
       });
       ++cell;
       const std::int64_t n = std::int64_t{options.num_samples} * options.num_draws;

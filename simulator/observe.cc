@@ -37,13 +37,14 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
                         outlier_rng);
   outlier_rng.Shuffle(std::span(order));
 
-  Observation observation{std::vector<Correspondence>(n), std::vector<bool>(n), std::vector<bool>(n),
-                          drawn.weight};
+  Observation observation{
+      std::vector<Correspondence>(n), {}, std::vector<bool>(n), std::vector<bool>(n), drawn.weight};
   for (size_t k = 0; k < n; ++k) {
     observation.matches[k] = matches[order[k]];
     observation.is_inlier_true[k] = is_inlier[order[k]];
     observation.is_undetectable[k] = is_undetectable[order[k]];
   }
+  observation.point = std::move(order);
   return observation;
 }
 

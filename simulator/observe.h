@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "estimator/geometry/correspondence.h"
@@ -12,6 +13,7 @@ namespace rcme {
 // What the two images give: noisy matches in random order, and which of them are true (for scoring alone).
 struct Observation {
   std::vector<Correspondence> matches;
+  std::vector<std::uint32_t> point;  // which point of the scene each match is of, or was of
   std::vector<bool> is_inlier_true;
   std::vector<bool> is_undetectable;  // wrong, but on the true epipolar line: no epipolar test can tell it
   double weight = 1.0;                // of the trial (outlier_model.h)

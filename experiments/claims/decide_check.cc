@@ -1,10 +1,9 @@
 #include "experiments/claims/decide_check.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/for_each_index.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
@@ -69,15 +68,11 @@ TargetResult Look(const Target& target, const Tally& tally, std::int64_t num_tri
 std::vector<Outcome> RunTrials(const Check& check, const CheckRun& run, std::int64_t begin,
                                std::int64_t end) {
   std::vector<Outcome> outcomes(static_cast<size_t>(end - begin));
-  const auto run_one = [&](std::int64_t trial) {
-    outcomes[static_cast<size_t>(trial - begin)] =
-        check.trial({run.seed, run.condition, static_cast<std::uint32_t>(trial), 0});
+  const auto run_one = [&](std::int64_t i) {
+    outcomes[static_cast<size_t>(i)] =
+        check.trial({run.seed, run.condition, static_cast<std::uint32_t>(begin + i), 0});
   };
-  if (check.is_timed) {
-    for (std::int64_t trial = begin; trial < end; ++trial) run_one(trial);
-  } else {
-    tbb::parallel_for(begin, end, run_one);
-  }
+  ForEachIndex(end - begin, check.is_timed ? 1 : run.num_threads, run_one);
   return outcomes;
 }
 

@@ -10,12 +10,13 @@ struct CheckRun {
   std::uint32_t condition = 0;  // names the check's random streams
   Budget budget = Budget::kQuick;
   double confidence = 0.95;  // of each target's interval, at all sample sizes at once
+  int num_threads = 0;       // 0: one per core
 };
 
-// Trials run in batches whose ends do not depend on the number of threads (those of the calling arena), and
-// are counted in their order: the result is a pure function of the check and the run. After each batch the
-// rates are looked at through confidence sequences, so that looking often does not inflate errors; means are
-// looked at once, after the last trial of the budget, and a check that claims a mean runs to there.
+// Trials run in batches whose ends do not depend on the number of threads and are counted in their order: the
+// result is a pure function of the check and the run. After each batch the rates are looked at through
+// confidence sequences, so that looking often does not inflate errors; means are looked at once, after the
+// last trial of the budget, and a check that claims a mean runs to there.
 CheckResult DecideCheck(const Check& check, const CheckRun& run);
 
 }  // namespace rcme

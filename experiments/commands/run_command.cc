@@ -4,8 +4,9 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/progress.h"
-#include "experiments/run_study.h"
+#include "experiments/run_until.h"
 #include "experiments/study_file.h"
+#include "experiments/summary_output.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -17,7 +18,14 @@ struct RunArguments {
   std::int64_t trials = 0;
   std::int64_t seed = -1;
   int threads = 0;
+  std::string until, until_event = "failure";
+  std::int64_t max_trials = UntilOptions{}.max_trials;
 };
+
+const std::vector<std::pair<std::string, TrialEvent>> kEvents = {
+    {"failure", TrialEvent::kFailure},
+    {"refusal", TrialEvent::kRefusal},
+    {"failure_or_refusal", TrialEvent::kFailureOrRefusal}};
 
 Study StudyFrom(const RunArguments& arguments) {
   Study study = LoadStudy(arguments.study);
@@ -42,11 +50,50 @@ StudyPlan PlanOf(const Study& study, const std::string& path) {
   }
 }
 
+// What every condition took, as a table.
+std::string SpentAsTable(const StudyPlan& plan, const std::vector<CellPrecision>& cells) {
+  std::vector<std::vector<std::string>> rows = {plan.factor_names};
+  rows[0].insert(rows[0].end(), {"trials", "widest interval", "rate", "target"});
+  for (const CellPrecision& cell : cells) {
+    rows.push_back(plan.conditions[cell.condition].levels);
+    rows.back().insert(rows.back().end(),
+                       {fmt::format("{}", cell.num_trials), plan.study.estimators[cell.estimator].label,
+                        fmt::format("{:.3f} % [{:.3f}, {:.3f}]", 100.0 * cell.rate,
+                                    100.0 * cell.interval.lower, 100.0 * cell.interval.upper),
+                        cell.is_reached ? "reached" : "not reached"});
+  }
+  return FormatColumns(rows);
+}
+
+void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, ResultStore* store) {
+  UntilOptions options;
+  options.target = PrecisionTarget::Parse(arguments.until);
+  for (const auto& [name, event] : kEvents) {
+    if (name == arguments.until_event) options.event = event;
+  }
+  options.max_trials = arguments.max_trials;
+  options.num_threads = arguments.threads;
+  const std::vector<CellPrecision> cells = RunUntil(plan, options, store);
+  std::int64_t spent = 0, num_open = 0;
+  for (const CellPrecision& cell : cells) {
+    spent += cell.num_trials;
+    num_open += !cell.is_reached;
+  }
+  fmt::print("Trials spent until {} of {} (anytime-valid 95 %): {}\n\n{}", arguments.until,
+             arguments.until_event, spent, SpentAsTable(plan, cells));
+  if (num_open > 0) {
+    fmt::print("\n{} of {} conditions did not reach it within --max-trials {}\n", num_open, cells.size(),
+               arguments.max_trials);
+  }
+}
+
 void Run(const RunArguments& arguments) {
+  if (!arguments.until.empty()) PrecisionTarget::Parse(arguments.until);  // before a file is made
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
   ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
   fmt::print(stderr, "{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name,
              plan.conditions.size(), plan.NumTrials(), plan.estimators.size(), arguments.out);
+  if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &store);
   const RunReport report = RunStudy(plan, arguments.threads, &store);
   fmt::print(stderr, "done: {} trials ({} were there already) in {}; next: rcme summarize {}\n",
              report.num_trials, report.num_trials - report.num_run_now, DurationInWords(report.seconds),
@@ -71,6 +118,21 @@ void AddRunCommand(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{2'000'000'000}));
+  CLI::Option* until =
+      command->add_option("--until", arguments->until,
+                          "add trials to each condition until every estimator's 95 % interval is narrow: "
+                          "ci=0.002 (half width) or rel=0.1 "
+                          "(half width over rate); the intervals hold although the run looks and stops");
+  command
+      ->add_option("--until-event", arguments->until_event,
+                   "whose rate: failure, refusal or failure_or_refusal")
+      ->check(CLI::IsMember({"failure", "refusal", "failure_or_refusal"}))
+      ->capture_default_str()
+      ->needs(until);
+  command->add_option("--max-trials", arguments->max_trials, "most trials per condition of --until")
+      ->check(CLI::Range(std::int64_t{100}, std::int64_t{2'000'000'000}))
+      ->capture_default_str()
+      ->needs(until);
   command->add_option("--seed", arguments->seed, "seed of all random streams")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
   command

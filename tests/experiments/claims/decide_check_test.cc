@@ -1,7 +1,6 @@
 #include "experiments/claims/decide_check.h"
 
 #include <gtest/gtest.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 
@@ -68,8 +67,9 @@ TEST(DecideCheck, EveryTrialIsCountedOnceWhateverTheThreads) {
   const Target mean = MeasuredMean("mean");
   const Check check = CountingCheck({first_half, mean}, {0, 1'000, 1'000});
   for (const int threads : {1, 2, 5}) {
-    tbb::task_arena arena(threads);
-    const CheckResult result = arena.execute([&] { return DecideCheck(check, {}); });
+    CheckRun run;
+    run.num_threads = threads;
+    const CheckResult result = DecideCheck(check, run);
     EXPECT_EQ(result.num_trials, 1'000);
     EXPECT_EQ(result.targets[0].measured, 0.5);
     EXPECT_DOUBLE_EQ(result.targets[1].measured, 499.5);
