@@ -25,6 +25,7 @@ int RunProgram(int argc, const char* const* argv) {
       "  rcme run experiments/studies/failure_vs_outliers.yaml --out run.sqlite\n"
       "  rcme summarize run.sqlite                                    rates with exact intervals\n"
       "  rcme compare run.sqlite                                      each estimator against the first\n"
+      "  rcme report run.sqlite --out report.html                     all of it on one page, with figures\n"
       "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
       "  rcme audit --out audit                                       every claim of the paper, checked\n"
       "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
@@ -34,6 +35,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddRunCommand(app);
   AddSummarizeCommand(app);
   AddCompareCommand(app);
+  AddReportCommand(app);
   AddReplayCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);
