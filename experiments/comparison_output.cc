@@ -45,9 +45,9 @@ std::string ComparisonAsTable(const Comparison& comparison) {
     text += fmt::format("\n{}: {}\n\n{}", event.name, event.doc, FormatColumns(rows));
   }
   text += fmt::format(
-      "\nCounts of trials in which the event happened to both, to one only, to neither. Difference: rate of "
-      "the\n"
-      "estimator minus rate of {}, with Tango's 95 % interval. p: McNemar's exact test of equal rates.\n"
+      "\nCounts of trials in which the event happened to both, to one only, to neither.\n"
+      "Difference: rate of the estimator minus rate of {}, with Tango's 95 % interval.\n"
+      "p: McNemar's exact test of equal rates.\n"
       "Holm p: adjusted for all tests of the same event in this table; * below 0.05.\n",
       comparison.reference);
   return text;

@@ -31,15 +31,13 @@ void AddCompareCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "compare", "Each estimator against one of them, on the same trials: does it fail more often?");
   command->footer(
-      "All estimators of a study see the same problems, so a trial is a pair. For the events failure, "
-      "refusal\n"
-      "and failure_or_refusal, in every condition: in how many trials it happened to both, to one only, to\n"
-      "neither; the difference of the rates with Tango's 95 % interval, which is narrower than the "
-      "intervals\n"
-      "of the two rates suggest, because hard trials are hard for both; and McNemar's exact p-value. One in\n"
-      "twenty of these is below 0.05 by chance alone: claim a difference by Holm's p-value, which is "
-      "adjusted\n"
-      "for all comparisons of the event in the run.\n"
+      "All estimators of a study see the same problems, so a trial is a pair. For the events failure,\n"
+      "refusal and failure_or_refusal, in every condition: in how many trials it happened to both, to one\n"
+      "only, to neither; the difference of the rates with Tango's 95 % interval, as a rule narrower than "
+      "the\n"
+      "intervals of the two rates suggest, because hard trials are hard for both; and McNemar's exact\n"
+      "p-value. Where nothing differs, up to one in twenty of these is still below 0.05: claim a difference\n"
+      "by Holm's p-value, which is adjusted for all comparisons of the event in the run.\n"
       "\n"
       "Examples:\n"
       "  rcme compare run.sqlite                                    against the study's first estimator\n"
@@ -50,7 +48,7 @@ void AddCompareCommand(CLI::App& app) {
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("--against", arguments->against,
                       "label of the reference estimator; default: the first of the study");
-  command->add_option("--format", arguments->format, "table (for people), csv or json (all digits)")
+  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");

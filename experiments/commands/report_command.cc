@@ -82,13 +82,11 @@ void AddReportCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "report", "One page of one or more runs: what was asked, every number, figures, how to do it again");
   command->footer(
-      "The page is one HTML file that needs nothing else: no network, no further files, no scripts. For "
-      "each\n"
-      "run it holds the study in words and in full, the rates with exact 95 % intervals and n, every "
-      "quantity\n"
-      "of `rcme summarize`, the paired comparisons of `rcme compare`, figures, and for every condition the\n"
-      "commands that give the same numbers again. Equal runs give equal bytes. Needs Python with matplotlib\n"
-      "and pandas.\n"
+      "The page is one HTML file that needs nothing else: no network, no further files, no scripts. For\n"
+      "each run it holds the study in words and in full, the rates with exact 95 % intervals and n, every\n"
+      "quantity of `rcme summarize`, the paired comparisons of `rcme compare`, figures, and for every\n"
+      "condition the commands that give the same numbers again. Equal runs give equal bytes. Needs Python\n"
+      "with matplotlib and pandas.\n"
       "\n"
       "Examples:\n"
       "  rcme report run.sqlite --out report.html\n"
