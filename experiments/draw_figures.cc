@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <filesystem>
 
 extern char** environ;
@@ -14,21 +13,27 @@ extern char** environ;
 namespace rcme {
 namespace {
 
+// Whether a Python has what the scripts need, without the second that loading it would take.
+constexpr const char* kHasPackages =
+    "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('matplotlib', 'pandas'))))";
+
 // The plots of the source tree this was built from, else the installed ones.
-std::filesystem::path ScriptPath(const std::string& script) {
+std::string ScriptPath(const std::string& script) {
   const std::filesystem::path in_source = std::filesystem::path(RCME_SOURCE_PLOTS) / script;
-  return std::filesystem::exists(in_source) ? in_source
-                                            : std::filesystem::path(RCME_INSTALLED_PLOTS) / script;
+  const std::filesystem::path installed = std::filesystem::path(RCME_INSTALLED_PLOTS) / script;
+  return (std::filesystem::exists(in_source) ? in_source : installed).string();
 }
 
-bool RunsWell(const char* python, std::string script, std::string folder) {
-  std::string name = python;
-  std::array<char*, 4> arguments = {name.data(), script.data(), folder.data(), nullptr};
-  posix_spawn_file_actions_t to_nowhere;  // what the script prints are the names of its figures
+// Whether a program of PATH ends with exit code 0. Its standard output goes nowhere.
+bool RunsWell(std::vector<std::string> command) {
+  std::vector<char*> words;
+  for (std::string& word : command) words.push_back(word.data());
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t to_nowhere;
   posix_spawn_file_actions_init(&to_nowhere);
   posix_spawn_file_actions_addopen(&to_nowhere, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
-  const int error = posix_spawnp(&child, python, &to_nowhere, nullptr, arguments.data(), environ);
+  const int error = posix_spawnp(&child, words[0], &to_nowhere, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&to_nowhere);
   if (error != 0) return false;
   int status = 0;
@@ -37,14 +42,21 @@ bool RunsWell(const char* python, std::string script, std::string folder) {
 
 }  // namespace
 
-void DrawFigures(const std::string& script, const std::string& folder) {
-  const std::string path = ScriptPath(script).string();
+ScriptEnd RunPlotScript(const std::string& script, const std::vector<std::string>& arguments) {
   // Debian's own Python first: another one may stand before it on PATH, without matplotlib.
   for (const char* python : {"/usr/bin/python3", "python3"}) {
-    if (RunsWell(python, path, folder)) return;
+    if (!RunsWell({python, "-c", kHasPackages})) continue;
+    std::vector<std::string> command = {python, ScriptPath(script)};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return RunsWell(std::move(command)) ? ScriptEnd::kDone : ScriptEnd::kFailed;
   }
+  return ScriptEnd::kNoPython;
+}
+
+void DrawFigures(const std::string& script, const std::string& folder) {
+  if (RunPlotScript(script, {folder}) == ScriptEnd::kDone) return;
   fmt::print(stderr, "the figures were not drawn; with matplotlib and pandas installed: python3 {} {}\n",
-             path, folder);
+             ScriptPath(script), folder);
 }
 
 }  // namespace rcme

@@ -37,6 +37,14 @@ void WriteFileWhole(const std::string& path, const std::string& text) {
   throw InputError(fmt::format("{}: cannot be written: {}", path, reason));
 }
 
+void PrintOrWrite(const std::string& path, const std::string& text) {
+  if (path.empty()) {
+    fmt::print("{}", text);
+  } else {
+    WriteFileWhole(path, text);
+  }
+}
+
 void MakeResultFolder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);

@@ -8,6 +8,9 @@ namespace rcme {
 // or pipe is written directly. Throws InputError that names the path and the reason.
 void WriteFileWhole(const std::string& path, const std::string& text);
 
+// The same, or to standard output where `path` is empty.
+void PrintOrWrite(const std::string& path, const std::string& text);
+
 // Makes a folder for results, with its parents, before the work whose results go there. Throws InputError
 // that names the path and the reason if that fails or the folder cannot be written to.
 void MakeResultFolder(const std::string& path);

@@ -24,6 +24,8 @@ int RunProgram(int argc, const char* const* argv) {
       "  rcme list studies                                            what there is to run\n"
       "  rcme run experiments/studies/failure_vs_outliers.yaml --out run.sqlite\n"
       "  rcme summarize run.sqlite                                    rates with exact intervals\n"
+      "  rcme compare run.sqlite                                      each estimator against the first\n"
+      "  rcme report run.sqlite --out report.html                     all of it on one page, with figures\n"
       "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
       "  rcme audit --out audit                                       every claim of the paper, checked\n"
       "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
@@ -32,6 +34,8 @@ int RunProgram(int argc, const char* const* argv) {
   app.get_formatter()->column_width(34);
   AddRunCommand(app);
   AddSummarizeCommand(app);
+  AddCompareCommand(app);
+  AddReportCommand(app);
   AddReplayCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);

@@ -16,18 +16,6 @@ constexpr std::int64_t kFirstLook = 100;
 
 std::int64_t NextLook(std::int64_t num_trials) { return num_trials + num_trials / 2; }
 
-bool HasHappened(TrialEvent event, const TrialRecord& record, const FailureBounds& bounds) {
-  switch (event) {
-    case TrialEvent::kFailure:
-      return HasFailed(record, bounds);
-    case TrialEvent::kRefusal:
-      return record.status != MotionStatus::kOk;
-    case TrialEvent::kFailureOrRefusal:
-      return !HasSucceeded(record, bounds);
-  }
-  return false;
-}
-
 // How far an interval is from the target: at most 1 where it is reached.
 double Excess(const PrecisionTarget& target, double rate, const Interval& interval) {
   const double half_width = 0.5 * (interval.upper - interval.lower);
@@ -48,7 +36,7 @@ CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64
           throw InputError(
               "--until: the trials of this study are weighted (tilted_to); give --trials instead");
         for (size_t e = 0; e < records.size(); ++e)
-          num_events[e] += HasHappened(options.event, records[e], plan.study.failure);
+          num_events[e] += options.event.has_happened(records[e], plan.study.failure);
       },
       condition.index);
   CellPrecision worst;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "experiments/run_study.h"
+#include "experiments/trial_event.h"
 #include "stats/intervals.h"
 
 namespace rcme {
@@ -23,9 +24,6 @@ struct PrecisionTarget {
   static PrecisionTarget Parse(const std::string& text);
 };
 
-// Events whose rate can be asked for, per estimator.
-enum class TrialEvent { kFailure, kRefusal, kFailureOrRefusal };
-
 // What one condition took.
 struct CellPrecision {
   std::uint32_t condition = 0;
@@ -38,8 +36,8 @@ struct CellPrecision {
 
 struct UntilOptions {
   PrecisionTarget target;
-  TrialEvent event = TrialEvent::kFailure;
-  std::int64_t max_trials = 1'000'000;  // per condition
+  TrialEvent event = TrialEvents().front();  // failure
+  std::int64_t max_trials = 1'000'000;       // per condition
   int num_threads = 0;
 };
 

@@ -6,21 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/field_text.h"
+
 namespace rcme {
 namespace {
-
-std::string Number(double x) { return std::isnan(x) ? std::string() : fmt::format("{:.8g}", x); }
-
-std::string CsvField(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-nlohmann::ordered_json JsonNumber(double x) {
-  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
-}
 
 // "12.34 % [10.10, 14.80]" or "1.23 +- 0.04"; with its n where that is not all of the trials.
 std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
@@ -120,11 +109,11 @@ std::string SummaryAsCsv(const Summary& summary) {
     text += fmt::format("{},{},", CsvField(summary.study), row.condition);
     for (const std::string& level : row.levels) text += CsvField(level) + ",";
     const bool is_rate = row.kind == SummaryRow::Kind::kRate;
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity,
-                    is_rate ? "rate" : "mean", Number(row.value), is_rate ? Number(row.interval.lower) : "",
-                    is_rate ? Number(row.interval.upper) : "", is_rate ? "" : Number(row.standard_error),
-                    row.n, is_rate ? IntervalKindName(summary.interval_kind) : "");
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity, is_rate ? "rate" : "mean",
+        CsvNumber(row.value), is_rate ? CsvNumber(row.interval.lower) : "",
+        is_rate ? CsvNumber(row.interval.upper) : "", is_rate ? "" : CsvNumber(row.standard_error), row.n,
+        is_rate ? IntervalKindName(summary.interval_kind) : "");
   }
   return text;
 }

@@ -114,6 +114,16 @@ def looks_of(estimators):
     return looks
 
 
+def equal_looks_of(estimators):
+    """The same with marks of one size, for figures in which they stand side by side and none covers another."""
+    return {name: replace(look, marker_size=4.6 * size_of(look.marker)) for name, look in looks_of(estimators).items()}
+
+
+def label_of(estimator):
+    """An estimator's label in words, as every legend has it."""
+    return KNOWN_LOOKS[estimator].label if estimator in KNOWN_LOOKS else estimator
+
+
 def split_unit(name):
     """'sigma_px' -> ('sigma', 'px'), 'outlier_ratio' -> ('outlier ratio', '')."""
     stem, _, last = name.rpartition("_")
@@ -133,6 +143,11 @@ def level_in_words(name, level):
     return f"{words} = {level} {unit}".rstrip()
 
 
+def letters(count):
+    """'(a) ', '(b) ', ... for the titles of so many panels; nothing for one."""
+    return (f"({letter}) " if count > 1 else "" for letter in "abcdefghijklmnopqrstuvwxyz" * 9)
+
+
 def new_figure(rows, columns):
     """A figure of paper size (two panels: 7 x 3.2 inches) and its axes as a rows x columns array."""
     width = {1: 4.6, 2: 7.0}.get(columns, 2.6 * columns)
@@ -143,21 +158,28 @@ def new_figure(rows, columns):
 
 
 def add_legend_and_caption(figure, handles, caption):
-    """Legend above the panels, caption below them in small print; a long legend makes the figure taller."""
+    """Legend, if there are handles, above the panels, caption below them in small print; a long legend makes the figure
+    taller."""
     width, height = figure.get_size_inches()
     caption = "\n".join(textwrap.wrap(caption, int(20 * width)))
     below = figure.text(0.006, 0.012, caption, fontsize=6.5, color="0.3", ha="left", va="bottom", linespacing=1.3)
-    for legend_rows in range(1, len(handles) + 1):  # as few as fit the width
-        columns = math.ceil(len(handles) / legend_rows)
-        above = figure.legend(handles=handles, loc="upper center", ncols=columns, borderaxespad=0.2)
-        if columns == 1 or above.get_window_extent().width <= figure.bbox.width:
-            break
-        above.remove()
-    height += max(0, above.get_window_extent().height / figure.dpi - 0.3)  # more than one row
-    figure.set_size_inches(width, height)
-    top = above.get_window_extent().y0 / figure.bbox.height
+    above = add_legend(figure, handles) if handles else None
+    if above:
+        height += max(0, above.get_window_extent().height / figure.dpi - 0.3)  # more than one row
+        figure.set_size_inches(width, height)
+    top = above.get_window_extent().y0 / figure.bbox.height if above else 1
     bottom = below.get_window_extent().y1 / figure.bbox.height + 0.03 / height
     figure.get_layout_engine().set(rect=(0, bottom, 1, top - bottom), w_pad=0.05, h_pad=0.04, wspace=0.03)
+
+
+def add_legend(figure, handles):
+    """At the upper edge, in as few rows as fit the width."""
+    for legend_rows in range(1, len(handles) + 1):
+        columns = math.ceil(len(handles) / legend_rows)
+        legend = figure.legend(handles=handles, loc="upper center", ncols=columns, borderaxespad=0.2)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return legend
+        legend.remove()
 
 
 def save(figure, path_without_suffix, dpi=RC["savefig.dpi"]):

@@ -15,6 +15,10 @@ from command_line import PlotError
 COLUMNS = ("study", "condition", "estimator", "quantity", "kind", "value", "lower", "upper", "standard_error", "n")
 
 
+COMPARISON_COLUMNS = ("study", "condition", "estimator", "reference", "event", "n", "both", "estimator_only",
+                      "reference_only", "neither", "risk_difference", "lower", "upper", "p_mcnemar", "p_holm")
+
+
 class Table:
     """The rows of one CSV file as text, and each row's line in the file (column `line`)."""
 
@@ -62,11 +66,20 @@ def read_table(path, columns, origin):
     return Table(path, rows)
 
 
-def read_summary(path):
-    """The Summary in the file `path`; errors as read_table."""
-    rows = read_table(path, COLUMNS, "rcme summarize RUN.sqlite --format csv").rows
+def read_with_factors(path, columns, origin):
+    rows = read_table(path, columns, origin).rows
     header = list(rows.columns)
     return Summary(path, rows, header[header.index("condition") + 1:header.index("estimator")])
+
+
+def read_summary(path):
+    """The Summary in the file `path`; errors as read_table."""
+    return read_with_factors(path, COLUMNS, "rcme summarize RUN.sqlite --format csv")
+
+
+def read_comparison(path):
+    """The same of paired comparisons: one row per (condition, estimator, event)."""
+    return read_with_factors(path, COMPARISON_COLUMNS, "rcme compare RUN.sqlite --format csv")
 
 
 def same_level(text, wanted):

@@ -9,6 +9,8 @@ namespace rcme {
 void AddRunCommand(CLI::App& app);
 void AddAuditCommand(CLI::App& app);
 void AddSummarizeCommand(CLI::App& app);
+void AddCompareCommand(CLI::App& app);
+void AddReportCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);
 void AddMatchCommand(CLI::App& app);

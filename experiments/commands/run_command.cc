@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "experiments/commands/commands.h"
@@ -22,10 +23,11 @@ struct RunArguments {
   std::int64_t max_trials = UntilOptions{}.max_trials;
 };
 
-const std::vector<std::pair<std::string, TrialEvent>> kEvents = {
-    {"failure", TrialEvent::kFailure},
-    {"refusal", TrialEvent::kRefusal},
-    {"failure_or_refusal", TrialEvent::kFailureOrRefusal}};
+std::vector<std::string> EventNames() {
+  std::vector<std::string> names;
+  for (const TrialEvent& event : TrialEvents()) names.push_back(event.name);
+  return names;
+}
 
 Study StudyFrom(const RunArguments& arguments) {
   Study study = LoadStudy(arguments.study);
@@ -68,9 +70,7 @@ std::string SpentAsTable(const StudyPlan& plan, const std::vector<CellPrecision>
 void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, ResultStore* store) {
   UntilOptions options;
   options.target = PrecisionTarget::Parse(arguments.until);
-  for (const auto& [name, event] : kEvents) {
-    if (name == arguments.until_event) options.event = event;
-  }
+  options.event = *std::ranges::find(TrialEvents(), arguments.until_event, &TrialEvent::name);
   options.max_trials = arguments.max_trials;
   options.num_threads = arguments.threads;
   const std::vector<CellPrecision> cells = RunUntil(plan, options, store);
@@ -126,7 +126,7 @@ void AddRunCommand(CLI::App& app) {
   command
       ->add_option("--until-event", arguments->until_event,
                    "whose rate: failure, refusal or failure_or_refusal")
-      ->check(CLI::IsMember({"failure", "refusal", "failure_or_refusal"}))
+      ->check(CLI::IsMember(EventNames()))
       ->capture_default_str()
       ->needs(until);
   command->add_option("--max-trials", arguments->max_trials, "most trials per condition of --until")

@@ -28,11 +28,7 @@ void AddSummarizeCommand(CLI::App& app) {
     const std::string text = arguments->format == "csv"    ? SummaryAsCsv(summary)
                              : arguments->format == "json" ? SummaryAsJson(summary)
                                                            : SummaryAsTable(summary);
-    if (arguments->out.empty()) {
-      fmt::print("{}", text);
-    } else {
-      WriteFileWhole(arguments->out, text);
-    }
+    PrintOrWrite(arguments->out, text);
   });
 }
 

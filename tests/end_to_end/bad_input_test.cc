@@ -228,8 +228,15 @@ TEST_F(BadInput, Replay) {
 }
 
 TEST(Help, IsThereForEveryCommand) {
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{}, {"run"}, {"summarize"}, {"replay"}, {"estimate"}, {"match"}, {"list"}}) {
+  for (const std::vector<std::string>& command : {std::vector<std::string>{},
+                                                  {"run"},
+                                                  {"summarize"},
+                                                  {"compare"},
+                                                  {"report"},
+                                                  {"replay"},
+                                                  {"estimate"},
+                                                  {"match"},
+                                                  {"list"}}) {
     std::vector<std::string> arguments = command;
     arguments.push_back("--help");
     const ProgramResult result = RunRcme(arguments);

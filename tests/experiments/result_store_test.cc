@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 
+#include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -94,9 +95,9 @@ TEST_F(ResultStoreTest, KeepsEveryFieldOfEveryRecord) {
   }
   {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);
-    store.Add(RecordsOfTrial(1, 2));  // in any order
-    store.Add(RecordsOfTrial(0, 4));
-    store.Add(RecordsOfTrial(0, 0));
+    AddRecords(store, RecordsOfTrial(1, 2));  // in any order
+    AddRecords(store, RecordsOfTrial(0, 4));
+    AddRecords(store, RecordsOfTrial(0, 0));
     EXPECT_EQ(Text(store), expected);  // seen before it is written
   }
   const ResultStore store = ResultStore::OpenForReading(path_);
@@ -111,7 +112,7 @@ TEST_F(ResultStoreTest, KeepsEveryFieldOfEveryRecord) {
 TEST_F(ResultStoreTest, TablesAreReadableWithoutUs) {
   {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);
-    store.Add(RecordsOfTrial(1, 2));
+    AddRecords(store, RecordsOfTrial(1, 2));
   }
   EXPECT_EQ(Query(path_, "SELECT level FROM conditions WHERE condition = 1 AND factor = 'outlier_ratio'"),
             "0.3");
@@ -127,7 +128,7 @@ TEST_F(ResultStoreTest, UnknownNumbersAreNull) {
   record.nees = std::numeric_limits<double>::infinity();
   {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);
-    store.Add({record});
+    AddRecords(store, {record});
   }
   EXPECT_EQ(Query(path_, "SELECT rotation_error_deg FROM trials"), "NULL");
   EXPECT_EQ(Query(path_, "SELECT count(*) FROM trials WHERE direction_error_deg IS NULL"), "0");
@@ -145,7 +146,7 @@ TEST_F(ResultStoreTest, EveryStatusComesBack) {
     TrialRecord record;
     record.trial = trial++;
     record.status = status;
-    store.Add({record});
+    AddRecords(store, {record});
   }
   trial = 0;
   for (const MotionStatus status : AllStatuses()) EXPECT_EQ(store.RecordsOf(0, trial++).at(0).status, status);
@@ -155,7 +156,7 @@ TEST_F(ResultStoreTest, MissingTrials) {
   ResultStore store = ResultStore::OpenForRun(path_, plan_);
   EXPECT_EQ(Missing(store, 0, 4), (Trials{0, 1, 2, 3}));
   EXPECT_EQ(Missing(store, 0, 0), Trials{});
-  for (const std::uint32_t trial : {0u, 2u, 5u}) store.Add(RecordsOfTrial(0, trial));
+  for (const std::uint32_t trial : {0u, 2u, 5u}) AddRecords(store, RecordsOfTrial(0, trial));
   EXPECT_EQ(Missing(store, 0, 7), (Trials{1, 3, 4, 6}));
   EXPECT_EQ(store.MissingTrials(0, 7).size(), 3u) << "neighbours are one range";
   EXPECT_EQ(Missing(store, 0, 6), (Trials{1, 3, 4}));
@@ -167,8 +168,8 @@ TEST_F(ResultStoreTest, MissingTrials) {
 
 TEST_F(ResultStoreTest, AddsWholeTrialsOnce) {
   ResultStore store = ResultStore::OpenForRun(path_, plan_);
-  store.Add(RecordsOfTrial(0, 0));
-  EXPECT_TRUE(ThrowsInputError([&] { store.Add(RecordsOfTrial(0, 0)); }, {path_}));
+  AddRecords(store, RecordsOfTrial(0, 0));
+  EXPECT_TRUE(ThrowsInputError([&] { AddRecords(store, RecordsOfTrial(0, 0)); }, {path_}));
 }
 
 TEST_F(ResultStoreTest, ACallThatFailsLeavesNothing) {
@@ -176,17 +177,21 @@ TEST_F(ResultStoreTest, ACallThatFailsLeavesNothing) {
   records.insert(records.end(), again.begin(), again.end());
   {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);
-    store.Add(again);
+    AddRecords(store, again);
     store.Commit();
-    EXPECT_TRUE(ThrowsInputError([&] { store.Add(records); }, {path_}));  // after its first trial is in
-    store.Add(RecordsOfTrial(0, 2));
+    EXPECT_TRUE(
+        ThrowsInputError([&] { AddRecords(store, records); }, {path_}));  // after its first trial is in
+    AddRecords(store, RecordsOfTrial(0, 2));
   }
   ResultStore store = ResultStore::OpenForRun(path_, plan_);
   EXPECT_EQ(Missing(store, 0, 4), (Trials{1, 3})) << "a part of a call was kept, or more than the call lost";
 }
 
 TEST_F(ResultStoreTest, ReopensForMoreTrialsAndAnotherDescription) {
-  { ResultStore::OpenForRun(path_, plan_).Add(RecordsOfTrial(0, 0)); }
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    AddRecords(store, RecordsOfTrial(0, 0));
+  }
   Study study = SmallStudy();
   study.trials = 50;
   study.description = "now with a description";
@@ -199,7 +204,10 @@ TEST_F(ResultStoreTest, ReopensForMoreTrialsAndAnotherDescription) {
 }
 
 TEST_F(ResultStoreTest, RefusesAnotherStudyAndSaysWhatDiffers) {
-  { ResultStore::OpenForRun(path_, plan_).Add(RecordsOfTrial(0, 0)); }
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    AddRecords(store, RecordsOfTrial(0, 0));
+  }
   const std::string bytes = ReadBytes(path_);
   const auto refuses = [&](const std::string& key, const std::string& value, const std::string& difference) {
     Study study = SmallStudy();
@@ -256,7 +264,10 @@ TEST_F(ResultStoreTest, NamesThatSqliteReadsOtherwiseAreFiles) {
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder_.path());
   for (const std::string name : {":memory:", "file:run", "file:run?mode=memory", "r\xC3\xA4n 1.sqlite"}) {
-    { ResultStore::OpenForRun(name, plan_).Add(RecordsOfTrial(0, 0)); }
+    {
+      ResultStore store = ResultStore::OpenForRun(name, plan_);
+      AddRecords(store, RecordsOfTrial(0, 0));
+    }
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_.Path(name))) << name;
     EXPECT_EQ(ResultStore::OpenForReading(name).RecordsOf(0, 0).size(), 2u) << name;
   }
@@ -274,11 +285,11 @@ TEST_F(ResultStoreTest, ReadOnlyFolder) {
 TEST_F(ResultStoreTest, ASecondRunIsRefusedWhileTheFirstGoesOn) {
   {
     ResultStore first = ResultStore::OpenForRun(path_, plan_);
-    first.Add(RecordsOfTrial(0, 0));
+    AddRecords(first, RecordsOfTrial(0, 0));
     EXPECT_TRUE(RefusesToRun(path_, {"in use by another run"}));
     EXPECT_TRUE(
         ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, {path_, "in use by another run"}));
-    first.Add(RecordsOfTrial(0, 1));
+    AddRecords(first, RecordsOfTrial(0, 1));
   }
   ResultStore second = ResultStore::OpenForRun(path_, plan_);
   EXPECT_EQ(Missing(second, 0, 3), Trials{2});
@@ -294,7 +305,7 @@ TEST_F(ResultStoreTest, NothingToRead) {
 TEST_F(ResultStoreTest, ADamagedFileIsNamed) {
   {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);
-    for (std::uint32_t trial = 0; trial < 200; ++trial) store.Add(RecordsOfTrial(0, trial));
+    for (std::uint32_t trial = 0; trial < 200; ++trial) AddRecords(store, RecordsOfTrial(0, trial));
   }
   std::filesystem::resize_file(path_, std::filesystem::file_size(path_) / 2);
   EXPECT_TRUE(ThrowsInputError(

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "experiments/summarize.h"
+#include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/peak_memory.h"
 #include "tests/test_support/small_study.h"
@@ -106,8 +107,8 @@ TEST_F(RunStudyTest, ResumingGivesTheSame) {
   {  // what a run leaves that was cut off: some trials, with gaps
     ResultStore store = ResultStore::OpenForRun(folder_.Path("resumed"), plan);
     for (const std::uint32_t trial : {0u, 1u, 7u, 13u})
-      store.Add(RunTrial(plan, plan.conditions[0], trial).records);
-    store.Add(RunTrial(plan, plan.conditions[1], 19).records);
+      AddRecords(store, RunTrial(plan, plan.conditions[0], trial).records);
+    AddRecords(store, RunTrial(plan, plan.conditions[1], 19).records);
   }
   const RunReport report = Run("resumed", plan, 2);
   EXPECT_EQ(report.num_trials, 40);
@@ -128,7 +129,7 @@ TEST_F(RunStudyTest, ThreadsAndGapsChangeNothingOfManyQuickTrials) {
   {
     ResultStore store = ResultStore::OpenForRun(folder_.Path("gaps"), plan);
     for (std::uint32_t trial = 0; trial < 50'000; trial += 7) {
-      store.Add(RunTrial(plan, plan.conditions[trial % 2], trial).records);
+      AddRecords(store, RunTrial(plan, plan.conditions[trial % 2], trial).records);
     }
   }
   EXPECT_EQ(Run("gaps", plan, 2).num_run_now, 100'000 - 7'143);

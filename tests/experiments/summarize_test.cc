@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "experiments/summary_output.h"
+#include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -73,7 +74,7 @@ class SummarizeTest : public testing::Test {
 
   void Write(const std::string& name, const std::vector<TrialRecord>& records) {
     ResultStore store = ResultStore::OpenForRun(folder_.Path(name), MakePlan(study_));
-    store.Add(records);
+    AddRecords(store, records);
   }
   Summary SummaryOf(const std::string& name, bool with_times = false) {
     return Summarize(ResultStore::OpenForReading(folder_.Path(name)), with_times);

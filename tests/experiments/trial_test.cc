@@ -108,8 +108,9 @@ TEST(RunTrial, TheEstimatorsOfAStudyDoNotDisturbEachOther) {
 
 TEST(StreamFor, PurposesShareNoNumbers) {
   std::set<std::uint64_t> words;
-  for (const StreamPurpose purpose : {StreamPurpose::kScene, StreamPurpose::kNoise, StreamPurpose::kOutliers,
-                                      StreamPurpose::kSampling, StreamPurpose::kMonteCarlo, StreamPurpose::kCheck}) {
+  for (const StreamPurpose purpose :
+       {StreamPurpose::kScene, StreamPurpose::kNoise, StreamPurpose::kOutliers, StreamPurpose::kSampling,
+        StreamPurpose::kMonteCarlo, StreamPurpose::kCheck}) {
     RandomStream rng = StreamFor({1, 2, 3, 99}, purpose);
     for (int i = 0; i < 100; ++i) words.insert(rng.Next64());
   }

@@ -171,6 +171,25 @@ class DrawnValues(FailureRateTest):
         one = self.draw(TWO_SIGMAS, ["failure"], ["sigma_px=1", "estimator=mine"]).axes
         self.assertEqual([line.get_label() for line in one[0].lines], ["mine"])
 
+    def test_words_stand_side_by_side_in_the_order_of_the_study_without_lines(self):
+        words = TABLE.replace(",0.4,1", ",student_t,1").replace(",0.0,1", ",gaussian,1").replace(",0.8,1", ",laplace,1")
+        failure = self.draw(words).axes[0]
+        self.assertEqual([label.get_text() for label in failure.get_xticklabels()], ["student_t", "gaussian", "laplace"])
+        self.assertEqual(line_of(failure, "Standard"), [(0, 0.30), (1, 0), (2, 0.60)])
+        self.assertEqual({line.get_linestyle() for line in failure.lines}, {"None"})
+        bars = {tuple(map(tuple, segment)) for lines in failure.collections for segment in lines.get_segments()}
+        self.assertIn(((0, 0.10), (0, 0.50)), bars)
+        places = [line.get_transform().transform((0, 0))[0] for line in failure.lines]
+        self.assertEqual(len(set(places)), 2)  # the two estimators do not hide each other
+        figure = self.draw(words, log_y=True)
+        self.assertIn("bars: exact", figure.texts[0].get_text().replace("\n", " "))
+
+    def test_of_one_factor_at_a_time_the_others_stay_at_their_base(self):
+        more = TABLE + 'demo,d,0.4,3,standard,failure,rate,0.9,0.8,0.95,,400\n'
+        failure, _ = self.draw(more).axes
+        self.assertEqual(line_of(failure, "Standard"), [(0.0, 0), (0.4, 0.30), (0.8, 0.60)])
+        self.assertEqual(failure.get_title("left"), "(a) Failure rate")
+
     def test_looks_differ_without_colour(self):
         names = [*style.KNOWN_LOOKS, *(f"other {number}" for number in range(6))]
         looks = style.looks_of(names)
@@ -199,7 +218,6 @@ class Refusals(FailureRateTest):
         self.assert_refused(self.run_main("--colour", "red"), "--colour", "--help")
 
     def test_values_that_cannot_be_drawn(self):
-        self.assert_refused(self.run_main(text=TABLE.replace("0.8,1", "high,1")), "line 6", "outlier_ratio", "'high'")
         self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10", "nan,0.10")), "line 2", "column value")
         self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10,0.50", "0.30,,")), "line 2", "interval")
         self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10,0.50", "30,10,50")), "line 2", "0..1")

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "experiments/commands/commands.h"
+#include "experiments/comparison_output.h"
+#include "experiments/file_output.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct CompareArguments {
+  std::string run, against, format = "table", out;
+};
+
+void RunCompare(const CompareArguments& arguments) {
+  const Comparison comparison = Compare(ResultStore::OpenForReading(arguments.run), arguments.against);
+  if (comparison.rows.empty()) {
+    throw InputError(fmt::format("{}: study '{}' has one estimator, '{}'; a comparison needs two",
+                                 arguments.run, comparison.study, comparison.reference));
+  }
+  PrintOrWrite(arguments.out, arguments.format == "csv"    ? ComparisonAsCsv(comparison)
+                              : arguments.format == "json" ? ComparisonAsJson(comparison)
+                                                           : ComparisonAsTable(comparison));
+}
+
+}  // namespace
+
+void AddCompareCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "compare", "Each estimator against one of them, on the same trials: does it fail more often?");
+  command->footer(
+      "All estimators of a study see the same problems, so a trial is a pair. For the events failure,\n"
+      "refusal and failure_or_refusal, in every condition: in how many trials it happened to both, to one\n"
+      "only, to neither; the difference of the rates with Tango's 95 % interval, as a rule narrower than "
+      "the\n"
+      "intervals of the two rates suggest, because hard trials are hard for both; and McNemar's exact\n"
+      "p-value. Where nothing differs, up to one in twenty of these is still below 0.05: claim a difference\n"
+      "by Holm's p-value, which is adjusted for all comparisons of the event in the run.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme compare run.sqlite                                    against the study's first estimator\n"
+      "  rcme compare run.sqlite --against rcme_rank_aware          against another\n"
+      "  rcme compare run.sqlite --format csv --out comparison.csv\n"
+      "  python3 plots/paired_difference.py comparison.csv --x outlier_ratio --out difference");
+  auto arguments = std::make_shared<CompareArguments>();
+  command->add_option("run", arguments->run, "result file of `rcme run`")->required();
+  command->add_option("--against", arguments->against,
+                      "label of the reference estimator; default: the first of the study");
+  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
+      ->check(CLI::IsMember({"table", "csv", "json"}))
+      ->capture_default_str();
+  command->add_option("-o,--out", arguments->out, "write here instead of standard output");
+  command->callback([arguments] { RunCompare(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+#include "experiments/commands/commands.h"
+#include "experiments/draw_figures.h"
+#include "experiments/file_output.h"
+#include "experiments/report_data.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct ReportArguments {
+  std::vector<std::string> runs;
+  std::string against, out;
+};
+
+// A folder that is gone with everything in it when this object is.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "rcme_report_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw InputError(fmt::format("{}: cannot be made", name));
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// What cannot be written at the end had better be known before the figures are drawn.
+void CheckOut(const std::string& out) {
+  const std::filesystem::path parent = std::filesystem::path(out).parent_path();
+  if (out.empty()) throw InputError("--out: '' is not allowed; give the path of a page");
+  if (std::filesystem::is_directory(out)) throw InputError(fmt::format("{}: is a folder, not a page", out));
+  if (!parent.empty() && !std::filesystem::is_directory(parent)) {
+    throw InputError(fmt::format("{}: folder '{}' does not exist", out, parent.string()));
+  }
+}
+
+std::string PageFrom(const std::string& folder) {
+  const std::string page = folder + "/report.html";
+  const ScriptEnd end = RunPlotScript("report.py", {folder, "--out", page});
+  if (end == ScriptEnd::kNoPython) {
+    throw InputError(
+        "report: needs python3 with matplotlib and pandas; on Debian: apt-get install python3-matplotlib "
+        "python3-pandas");
+  }
+  if (end == ScriptEnd::kFailed) throw InputError("report: the page was not written, for the reason above");
+  std::ostringstream text;
+  text << std::ifstream(page, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+void RunReport(const ReportArguments& arguments) {
+  CheckOut(arguments.out);
+  const ScratchFolder folder;
+  for (size_t i = 0; i < arguments.runs.size(); ++i) {
+    const std::string run_folder = fmt::format("{}/run_{:04}", folder.path(), i + 1);
+    std::filesystem::create_directory(run_folder);
+    WriteReportData(arguments.runs[i], arguments.against, run_folder);
+  }
+  WriteFileWhole(arguments.out, PageFrom(folder.path()));
+  fmt::print(stderr, "done: {}\n", arguments.out);
+}
+
+}  // namespace
+
+void AddReportCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "report", "One page of one or more runs: what was asked, every number, figures, how to do it again");
+  command->footer(
+      "The page is one HTML file that needs nothing else: no network, no further files, no scripts. For\n"
+      "each run it holds the study in words and in full, the rates with exact 95 % intervals and n, every\n"
+      "quantity of `rcme summarize`, the paired comparisons of `rcme compare`, figures, and for every\n"
+      "condition the commands that give the same numbers again. Equal runs give equal bytes. Needs Python\n"
+      "with matplotlib and pandas.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme report run.sqlite --out report.html\n"
+      "  rcme report outliers.sqlite noise.sqlite --against rcme_rank_aware --out report.html");
+  auto arguments = std::make_shared<ReportArguments>();
+  command->add_option("runs", arguments->runs, "result files of `rcme run`")->required();
+  command->add_option("--against", arguments->against,
+                      "label of the reference estimator, in every run; default: the first of each study");
+  command->add_option("-o,--out", arguments->out, "the page to write, whole or not at all")->required();
+  command->callback([arguments] { RunReport(*arguments); });
+}
+
+}  // namespace rcme

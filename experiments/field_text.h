@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace rcme {
+
+// Names and numbers as the result files hold them; what is not known is an empty field, or null.
+
+// Quoted where it has to be.
+std::string CsvField(const std::string& text);
+// Eight digits; empty for NaN.
+std::string CsvNumber(double x);
+// All digits; null for what is not finite.
+nlohmann::ordered_json JsonNumber(double x);
+
+}  // namespace rcme

@@ -1,0 +1,17 @@
+// What may happen to an estimator in a trial, by name: the events whose rates are compared and asked for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/trial.h"
+
+namespace rcme {
+
+struct TrialEvent {
+  std::string name, doc;
+  bool (*has_happened)(const TrialRecord&, const FailureBounds&);
+};
+const std::vector<TrialEvent>& TrialEvents();
+
+}  // namespace rcme

@@ -1,0 +1,187 @@
+#!/usr/bin/python3
+"""Puts the page of `rcme report` together: one HTML file that needs no other, for one or more runs.
+
+It prints what the files say and computes nothing: every rate, interval, difference and p-value is the program's.
+"""
+
+import argparse
+import base64
+import contextlib
+import os
+import re
+import shlex
+import sys
+
+import report_tables as tables
+from command_line import Parser, PlotError, check_folder, run as run_script
+from report_data import read_runs
+from report_figures import figures
+from report_html import code, definitions, details, element, joined, listed, page
+from report_style import CSS
+from style import label_of, split_unit
+
+EXAMPLE = """
+example:
+  rcme report run.sqlite --out report.html
+calls this script; by hand, with FOLDER/run_0001/ holding run.json, summary.csv and comparison.csv:
+  plots/report.py FOLDER --out report.html
+"""
+
+
+def file_name(name):
+    """A study's name as a file may be called."""
+    return re.sub("[^A-Za-z0-9._-]+", "_", name).strip("._-")[:80] or "study"
+
+
+def study_section(run):
+    """What was asked, in words and in full."""
+    facts = run.facts
+    bounds = " or ".join(map(bound_in_words, facts["failure_bounds"]))
+    parts = [element("p", facts["description"])] if facts["description"] else []
+    parts.append(definitions([
+        ("result file", code(facts["run"])), ("seed", facts["seed"]), ("trials done", tables.trials_of(facts)),
+        ("conditions", len(facts["conditions"])), ("estimators", "; ".join(map(name_and_label, facts["estimators"]))),
+        ("a failure is", f"a motion with {bounds}"), ("page made by", f"rcme {facts['rcme_version']}")]))
+    if facts.get("ademp"):
+        parts += [element("h4", "Aims, data, estimands, methods, performance"),
+                  definitions([(key, text) for key, text in facts["ademp"]])]
+    parts.append(details("The study in full (YAML)", element("pre", code(facts["study_yaml"])),
+                         element("p", study_link(run)), class_="study"))
+    return joined(parts)
+
+
+def name_and_label(label):
+    """As in tables and figures, and as the study and the commands call it."""
+    return label if label_of(label) == label else f"{label_of(label)} ({label})"
+
+
+def bound_in_words(bound):
+    """{"name": "max_rotation_error_deg", "value": "3", "unit": "deg"} -> 'rotation error > 3 deg'."""
+    words = split_unit(bound["name"])[0].removeprefix("max ")
+    return f"{words} > {bound['value']} {bound['unit']}".strip()
+
+
+def study_link(run):
+    """The study as a file to save, out of the page itself."""
+    data = base64.b64encode(run.facts["study_yaml"].encode()).decode()
+    name = f"{file_name(run.facts['name'])}.yaml"
+    return element("a", f"Save the study as {name}", href=f"data:text/yaml;base64,{data}", download=name)
+
+
+def results_section(run):
+    return joined([tables.results(run), tables.quantities(run),
+                   details("Every number", tables.every_number(run))])
+
+
+def comparison_section(run):
+    """Against the reference, a table per event; the first is open."""
+    if run.comparison is None:
+        return element("p", "The study has one estimator: there is nothing to compare.", class_="note")
+    return joined([
+        element("p", "All estimators saw the same problems, so every trial is a pair. Positive differences are more "
+                "trials with the event than ", label_of(run.facts["reference"]), " had."),
+        *(details(event["name"].replace("_", " ").capitalize(), tables.comparison(run, event), is_open=position == 0)
+          for position, event in enumerate(run.facts["events"]))])
+
+
+def again_section(run):
+    """The commands that give the same numbers once more."""
+    facts, name = run.facts, file_name(run.facts["name"])
+    here, reference = shlex.quote(facts["run"]), shlex.quote(facts["reference"])
+    return joined([
+        element("p", "A trial is a function of (seed, condition, trial) alone: these commands give the same numbers, "
+                "whatever the number of threads. ", study_link(run), ", then:"),
+        element("pre", code(f"rcme run {name}.yaml --out {name}.sqlite\n"
+                            f"rcme summarize {name}.sqlite --format csv\n"
+                            f"rcme compare {name}.sqlite --against {reference} --format csv\n"
+                            f"rcme report {name}.sqlite --against {reference} --out {name}.html")),
+        element("p", "The numbers of this page, out of the result file at hand:"),
+        listed(joined(["rates, means, intervals, n: ", code(f"rcme summarize {here} --format csv"),
+                       ", the row of that condition, estimator and quantity; the names are those below the headings and of ",
+                       code("rcme list quantities")]),
+               joined(["differences and p-values: ",
+                       code(f"rcme compare {here} --against {reference} --format csv")]),
+               joined(["one trial with everything about it: ",
+                       code(f"rcme replay {here} --condition C --trial T"),
+                       ", with C of the table below and T from 0"])),
+        tables.conditions(run)])
+
+
+def sections(run):
+    """[(part of the id, heading, content)] of one run."""
+    parts = [("study", "The study", study_section(run))]
+    if len(run.problems.rows):
+        parts.append(("severity", "Severity of the problems", tables.severity(run)))
+    return parts + [("results", "Results", results_section(run)), ("figures", "Figures", figures(run)),
+                    ("comparison", "Paired comparisons", comparison_section(run)),
+                    ("again", "How to get these numbers again", again_section(run))]
+
+
+def title_of(run):
+    return f"Run {run.number}: {run.facts['name']}"
+
+
+def contents(runs, of_runs):
+    """The table of contents."""
+    entries = [joined([element("a", title_of(run), href=f"#{run.anchor()}"),
+                       listed(*(element("a", heading, href=f"#{run.anchor(part)}") for part, heading, _ in of_run))])
+               for run, of_run in zip(runs, of_runs)]
+    return element("nav", element("h2", "Contents"), listed(*entries), aria_label="Contents")
+
+
+def run_section(run, of_run):
+    return element("section", element("h2", title_of(run), id=run.anchor()), "\n", *(
+        element("h3", heading, id=run.anchor(part)) + "\n" + content + "\n" for part, heading, content in of_run))
+
+
+def report(runs):
+    """The whole page."""
+    names = ", ".join(dict.fromkeys(run.facts["name"] for run in runs))
+    of_runs = [sections(run) for run in runs]
+    header = element("header", element("h1", f"Report: {names}"), element(
+        "p", "Robust two-view camera-motion estimators on simulated or real matches with known truth. Every rate comes with "
+        "its exact interval and its n.", class_="subtitle"))
+    return page(f"rcme report: {names}", CSS, joined([
+        header, "\n", contents(runs, of_runs), "\n",
+        element("main", tables.overview(runs), "\n",
+                *(run_section(run, of_run) for run, of_run in zip(runs, of_runs)))]))
+
+
+def write_whole(path, text):
+    """Beside its place first, then moved: a reader never meets half a page, and a failure leaves what was there."""
+    temporary = os.path.join(os.path.dirname(path), f".{os.path.basename(path)}.{os.getpid()}.tmp")
+    try:
+        with open(temporary, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(temporary, path)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(temporary)
+
+
+def parse(arguments):
+    parser = Parser(prog="report.py", description=__doc__, epilog=EXAMPLE,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", metavar="FOLDER", help="a folder run_NNNN per run, as `rcme report` writes them")
+    parser.add_argument("--out", required=True, metavar="PAGE.html", help="the page to write")
+    options = parser.parse_args(arguments)
+    if not os.path.isdir(options.folder):
+        raise PlotError(f"there is no folder {options.folder}.")
+    if not os.path.basename(options.out):
+        raise PlotError(f"--out {options.out}: give the path of a file.")
+    check_folder(options.out)
+    return options
+
+
+def make(arguments):
+    options = parse(arguments)
+    write_whole(options.out, report(read_runs(options.folder)))
+    return [options.out]
+
+
+def main(arguments=None):
+    return run_script("report.py", make, arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

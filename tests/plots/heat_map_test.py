@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+"""Tests of plots/heat_map.py; run as: /usr/bin/python3 tests/plots/heat_map_test.py"""
+
+import contextlib
+import io
+import pathlib
+import sys
+import tempfile
+import unittest
+
+PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
+sys.path.insert(0, str(PLOTS))
+
+import heat_map  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
+from summary_csv import read_summary, where  # noqa: E402
+
+HEADER = "study,condition,noise,sigma_px,estimator,quantity,kind,value,lower,upper,standard_error,n"
+# Rates and bounds with no relation to n: a script that recomputed any of them would be seen. One factor has words.
+TABLE = HEADER + """
+demo,0,student_t,1,standard,failure,rate,0.30,0.10,0.50,,400
+demo,0,student_t,1,mine,failure,rate,0.05,0.01,0.20,,400
+demo,1,student_t,0.5,standard,failure,rate,0.123,0.02,0.33,,400
+demo,1,student_t,0.5,mine,failure,rate,0,0,0.03,,390
+demo,2,gaussian,1,standard,failure,rate,0.60,0.55,0.90,,400
+demo,2,gaussian,1,mine,failure,rate,,0,1,,0
+demo,3,gaussian,0.5,standard,failure,rate,0.07,0.05,0.09,,400
+demo,3,gaussian,0.5,mine,failure,rate,0.01,0,0.02,,400
+demo,0,student_t,1,standard,no_candidate,rate,0,0,0.02,,400
+demo,0,student_t,1,mine,no_candidate,rate,0.01,0.005,0.15,,400
+demo,0,student_t,1,scene,parallax_deg,mean,5.1,,,0.1,400
+"""
+
+
+def texts_of(axes):
+    """{(x, y) of the cell: [its printed lines from top to bottom]}."""
+    cells = {}
+    for text in sorted(axes.texts, key=lambda text: -text.get_position()[1]):
+        x, y = text.get_position()
+        cells.setdefault((int(x), int(y)), []).append(text.get_text())
+    return cells
+
+
+def colors_of(axes):
+    """{(x, y) of the cell: its colour}."""
+    return {tuple(box.get_paths()[0].vertices.min(axis=0).astype(int)): tuple(box.get_facecolor()[0])
+            for box in axes.collections if isinstance(box, PolyCollection)}
+
+
+class HeatMapTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.out = self.folder / "map"
+
+    def summary(self, text=TABLE):
+        path = self.folder / "summary.csv"
+        path.write_text(text)
+        return str(path)
+
+    def draw(self, text=TABLE, quantities=("failure",), estimators=(), conditions=()):
+        summary = where(read_summary(self.summary(text)), conditions)
+        return heat_map.draw(summary, "noise", "sigma_px", list(quantities), list(estimators))
+
+    def run_main(self, *arguments, text=TABLE, x="noise", y="sigma_px"):
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = heat_map.main([self.summary(text), "--x", x, "--y", y, "--out", str(self.out), *arguments])
+        return code, out.getvalue(), err.getvalue()
+
+    def assert_refused(self, result, *named):
+        code, out, err = result
+        self.assertEqual((code, out), (2, ""))
+        self.assertEqual(err.count("\n"), 1, err)
+        for name in named:
+            self.assertIn(name, err)
+        self.assertEqual([path.name for path in self.folder.iterdir() if path.name != "summary.csv"], [])
+
+
+class Drawn(HeatMapTest):
+    def test_every_cell_shows_its_rate_and_interval_in_the_order_of_the_study(self):
+        standard, mine = self.draw().axes[:2]
+        self.assertEqual(texts_of(standard), {(0, 0): ["30.0", "[10.0, 50.0]"], (0, 1): ["12.3", "[2.0, 33.0]"],
+                                              (1, 0): ["60.0", "[55.0, 90.0]"], (1, 1): ["7.0", "[5.0, 9.0]"]})
+        self.assertEqual(texts_of(mine)[1, 0], ["n = 0"])
+        self.assertEqual([label.get_text() for label in standard.get_xticklabels()], ["student_t", "gaussian"])
+        self.assertEqual([label.get_text() for label in standard.get_yticklabels()], ["1", "0.5"])
+        self.assertEqual((standard.get_xlabel(), standard.get_ylabel()), ("Noise", "Sigma (px)"))
+
+    def test_titles_name_quantity_and_estimator(self):
+        titles = [axes.get_title("left") for axes in self.draw(quantities=["failure", "no_candidate"]).axes]
+        self.assertEqual([title for title in titles if title],
+                         ["(a) Failure rate, Standard", "(b) Failure rate, mine",
+                          "(c) Detect-fail rate, Standard", "(d) Detect-fail rate, mine"])
+
+    def test_equal_rates_have_equal_colours_in_all_panels_and_greater_ones_are_darker(self):
+        same = TABLE.replace("mine,failure,rate,0.05,0.01", "mine,failure,rate,0.07,0.01")
+        standard, mine = map(colors_of, self.draw(same).axes[:2])
+        self.assertEqual(mine[0, 0], standard[1, 1])  # 7 % both
+        brightness = [heat_map.luminance(heat_map.COLORS(i / 20)) for i in range(21)]
+        self.assertEqual(brightness, sorted(brightness, reverse=True))  # a grey print says the same
+        for color, texts in ((colors_of(axes), axes.texts) for axes in self.draw().axes[:1]):
+            for text in texts:
+                behind = heat_map.luminance(color[tuple(map(int, text.get_position()))])
+                self.assertEqual(text.get_color(), "white" if behind < 0.5 else "black")
+
+    def test_rates_near_zero_are_not_painted_as_failures(self):
+        scale = heat_map.scale_of(heat_map.select_rates(read_summary(self.summary()), ["no_candidate"]))
+        self.assertEqual((scale.vmin, scale.vmax), (0, heat_map.LEAST_TOP))
+
+    def test_estimators_can_be_chosen_and_the_caption_says_n_and_interval(self):
+        figure = self.draw(estimators=["mine"])
+        self.assertEqual([axes.get_title("left") for axes in figure.axes if axes.get_title("left")],
+                         ["Failure rate, mine"])
+        caption = figure.texts[0].get_text().replace("\n", " ")
+        self.assertEqual(caption, "Study demo; n = 0\u2013400 per cell; in each cell the rate in %, below it its exact 95 % "
+                                  "(Clopper-Pearson) interval.")
+
+    def test_many_levels_go_into_more_rows_of_panels(self):
+        lines = [f"demo,{c},{c},{y},{name},failure,rate,0.1,0.05,0.2,,10" for c in range(8) for y in (1, 2)
+                 for name in ("a", "b", "c")]
+        figure = self.draw(HEADER + "\n" + "\n".join(lines) + "\n")
+        self.assertLessEqual(figure.get_size_inches()[0], 10)
+        self.assertEqual(sum(bool(axes.get_title("left")) for axes in figure.axes), 3)
+
+    def test_the_command_writes_both_files_the_same_each_time(self):
+        def run():
+            code, out, err = self.run_main()
+            self.assertEqual((code, err), (0, ""))
+            return [pathlib.Path(path).read_bytes() for path in out.split()]
+        first = run()
+        self.assertTrue(first[0].startswith(b"\x89PNG") and first[1].startswith(b"%PDF"))
+        self.assertEqual(run(), first)
+
+
+class Refusals(HeatMapTest):
+    def test_names_that_are_not_in_the_file(self):
+        self.assert_refused(self.run_main(x="parallax"), "--x parallax", "allowed: noise, sigma_px")
+        self.assert_refused(self.run_main(y="noise"), "--y noise", "two factors")
+        self.assert_refused(self.run_main("--quantities", "fail"), "'fail'", "allowed: failure, no_candidate")
+        self.assert_refused(self.run_main("--quantities", "parallax_deg"), "no rate called 'parallax_deg'")
+        self.assert_refused(self.run_main("--estimators", "rcme"), "--estimators rcme", "allowed: standard, mine")
+        self.assert_refused(self.run_main("--estimators", ","), "--estimators")
+        self.assert_refused(self.run_main("--where", "noise=uniform"), "noise=uniform", "student_t")
+        self.assert_refused(self.run_main("--out", str(self.folder / "map.png")), "without .png")
+
+    def test_tables_that_are_no_grid(self):
+        three = TABLE.replace("sigma_px,", "sigma_px,f,", 1).replace(",standard,", ",a,standard,").replace(
+            ",mine,", ",b,mine,").replace(",scene,", ",a,scene,")
+        self.assert_refused(self.run_main(text=three), "f varies too", "--where f=a")
+        self.assert_refused(self.run_main(text=TABLE.replace("3,gaussian,0.5", "3,gaussian,1")), "second failure",
+                            "noise = gaussian, sigma_px = 1")
+        self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10,0.50", "0.30,0.40,0.50")), "line 2", "interval")
+
+    def test_help_teaches_with_an_example(self):
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
+            heat_map.main(["--help"])
+        self.assertIn("plots/heat_map.py summary.csv --x outlier_ratio --y sigma_px --out heat_map", out.getvalue())
+
+
+if __name__ == "__main__":
+    unittest.main()

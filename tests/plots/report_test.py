@@ -1,0 +1,353 @@
+#!/usr/bin/python3
+"""Tests of plots/report.py; run as: /usr/bin/python3 tests/plots/report_test.py"""
+
+import contextlib
+import csv
+import io
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from html.parser import HTMLParser
+from unittest import mock
+
+PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
+sys.path.insert(0, str(PLOTS))
+
+import report  # noqa: E402
+import report_figures  # noqa: E402
+from report_html import VOID  # noqa: E402
+
+SUMMARY_HEADER = "study,condition,{factors}estimator,quantity,kind,value,lower,upper,standard_error,n\n"
+COMPARISON_HEADER = ("study,condition,{factors}estimator,reference,event,n,both,estimator_only,reference_only,neither,"
+                     "risk_difference,lower,upper,p_mcnemar,p_holm\n")
+EVIL = '<script>alert("1")</script>&'  # a name is whatever a study says
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def facts(**changes):
+    """run.json of a run with one factor, two conditions and two estimators."""
+    return {"run": "runs/a b.sqlite", "rcme_version": "0.1.0", "name": "demo", "description": "What fails?", "seed": 7,
+            "trials_done": 15, "trials_planned": 20, "study_yaml": "name: demo\nseed: 7\n", "reference": "standard",
+            "factors": ["noise"], "estimators": ["standard", "mine"],
+            "conditions": [{"index": index, "levels": [level], "trials_done": 10 - 5 * index, "trials_planned": 10,
+                            "first": [{"failure": None, "refusal": None}, {"failure": 3, "refusal": 1}]}
+                           for index, level in enumerate(("gaussian", "laplace"))],
+            "failure_bounds": [{"name": "max_rotation_error_deg", "value": "3", "unit": "deg"}],
+            "quantities": [{"name": "failure", "kind": "rate", "doc": "a motion beyond a bound"}],
+            "events": [{"name": "failure", "doc": "a motion beyond a bound"},
+                       {"name": "failure_or_refusal", "doc": "one of the two"}], **changes}
+
+
+def summary(study="demo", levels=(("gaussian",), ("laplace",)), estimators=("standard", "mine"), factors=("noise",)):
+    """Every number is different, and none follows from another."""
+    text, number = SUMMARY_HEADER.format(factors="".join(f"{factor}," for factor in factors)), 0.001
+    for condition, level in enumerate(levels):
+        for estimator in estimators:
+            for quantity in ("success", "failure", "no_candidate"):
+                number += 0.0023
+                text += ",".join([quoted(study), str(condition), *map(quoted, level), quoted(estimator), quantity, "rate",
+                                  f"{number:.4f}", f"{number - 0.0005:.4f}", f"{number + 0.3:.4f}", "", "10"]) + "\n"
+            text += ",".join([quoted(study), str(condition), *map(quoted, level), quoted(estimator), "nees", "mean",
+                              f"{50 * number:.4f}", "", "", f"{number:.5f}", "9"]) + "\n"
+    return text
+
+
+def comparison(study="demo", levels=(("gaussian",), ("laplace",)), others=("mine",), factors=("noise",)):
+    text = COMPARISON_HEADER.format(factors="".join(f"{factor}," for factor in factors))
+    for condition, level in enumerate(levels):
+        for estimator in others:
+            for event, p_holm in (("failure", "0.0123"), ("failure_or_refusal", "0.0789")):
+                text += ",".join([quoted(study), str(condition), *map(quoted, level), quoted(estimator), "standard", event,
+                                  "10", "1", "2", "3", "4", "-0.1", "-0.4", "0.2", "0.0045", p_holm]) + "\n"
+    return text
+
+
+def quoted(text):
+    return '"' + text.replace('"', '""') + '"'
+
+
+class Structure(HTMLParser):
+    """What a page holds; an end tag without its start is an error."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.open, self.elements, self.text, self.headings, self.ids = [], [], [], [], []
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        self.ids += [value for key, value in attributes if key == "id"]
+        if tag not in VOID | {"br", "wbr"}:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            raise AssertionError(f"</{tag}> ends nothing")
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] != "style":
+            self.text.append(data)
+            if self.open[-1] in ("h1", "h2", "h3"):
+                self.headings.append(data)
+
+    def attributes(self, name):
+        return [attributes[name] for _, attributes in self.elements if name in attributes]
+
+    def of(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+class ReportTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        self.data, self.out = self.folder / "data", self.folder / "report.html"
+        self.data.mkdir()
+
+    def add_run(self, number=1, run_json=None, summary_csv=None, comparison_csv=None):
+        folder = self.data / f"run_{number:04}"
+        folder.mkdir(exist_ok=True)
+        (folder / "run.json").write_text(json.dumps(run_json or facts()))
+        (folder / "summary.csv").write_text(summary_csv or summary())
+        if comparison_csv != "":
+            (folder / "comparison.csv").write_text(comparison_csv or comparison())
+
+    def run_main(self, *arguments):
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = report.main([str(self.data), "--out", str(self.out), *arguments])
+        return code, out.getvalue(), err.getvalue()
+
+    def page(self):
+        self.assertEqual(self.run_main(), (0, f"{self.out}\n", ""))
+        return self.out.read_text(encoding="utf-8")
+
+    def assert_refused(self, result, *named):
+        code, out, err = result
+        self.assertEqual((code, out), (2, ""))
+        self.assertEqual(err.count("\n"), 1, err)
+        for name in named:
+            self.assertIn(name, err)
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["data"])
+
+
+class Page(ReportTest):
+    def test_tags_are_balanced_ids_single_and_links_lead_somewhere(self):
+        self.add_run()
+        self.add_run(2)
+        structure = Structure(self.page())
+        self.assertEqual(structure.open, [])
+        self.assertEqual(len(set(structure.ids)), len(structure.ids))
+        inside = [link[1:] for link in structure.attributes("href") if link.startswith("#")]
+        self.assertGreater(len(inside), 10)
+        self.assertLessEqual(set(inside), set(structure.ids))
+
+    def test_it_needs_nothing_from_outside(self):
+        self.add_run()
+        page = self.page()
+        self.assertNotRegex(page, "https?://")
+        self.assertNotIn("<script", page)
+        structure = Structure(page)
+        self.assertNotIn("link", [tag for tag, _ in structure.elements])
+        for address in structure.attributes("src") + structure.attributes("href"):
+            self.assertTrue(address.startswith(("data:", "#")), address)
+        self.assertNotIn("url(", report.CSS)
+
+    def test_every_number_of_the_summary_is_there(self):
+        self.add_run()
+        page = Structure(self.page())
+        cells = "\n".join(page.text)
+        for row in csv.DictReader(io.StringIO(summary())):
+            for column in ("value", "lower", "upper", "standard_error", "n"):
+                self.assertIn(row[column], page.text if row[column] else [""], row)
+            if row["quantity"] == "failure":
+                self.assertIn(f"{100 * float(row['value']):.2f} %", cells)
+                self.assertIn(f"[{100 * float(row['lower']):.2f}, {100 * float(row['upper']):.2f}]", cells)
+
+    def test_comparisons_show_interval_and_both_p_values(self):
+        self.add_run()
+        text = Structure(self.page()).text
+        for part in ("-10.00", "[-40.00, +20.00]", "0.0045", "0.0123 *", "0.0789"):
+            self.assertIn(part, text)
+        self.assertIn("<strong>0.0123 *</strong>", self.page())
+        self.assertNotIn("<strong>0.0789", self.page())
+
+    def test_commands_can_be_pasted(self):
+        self.add_run()
+        text = "".join(Structure(self.page()).text)
+        for command in ("rcme replay 'runs/a b.sqlite' --condition 1 --trial T", "rcme run demo.yaml --out demo.sqlite",
+                        "rcme replay 'runs/a b.sqlite' --condition 1 --trial 0",
+                        "rcme summarize 'runs/a b.sqlite' --format csv",
+                        "rcme compare 'runs/a b.sqlite' --against standard --format csv",
+                        "--against standard --format csv --out comparison.csv && python3 plots/paired_difference.py"):
+            self.assertIn(command, text)
+        self.assertIn("3first failure", text)
+
+    def test_tables_have_captions_and_scopes_and_pictures_words(self):
+        self.add_run()
+        structure = Structure(self.page())
+        self.assertEqual(len(structure.of("table")), len(structure.of("caption")))
+        self.assertTrue(all(header.get("scope") in ("col", "row", "rowgroup") for header in structure.of("th")))
+        self.assertEqual(len(structure.of("img")), 2)
+        self.assertTrue(all(len(picture["alt"]) > 40 for picture in structure.of("img")))
+        self.assertEqual(structure.of("html")[0]["lang"], "en")
+
+    def test_names_out_of_files_are_only_text(self):
+        names = dict(name=EVIL, description=EVIL, run=EVIL, study_yaml=f"name: {EVIL}\x00\x1b", reference=EVIL,
+                     factors=[EVIL], estimators=[EVIL, "mine"], ademp=[[EVIL, EVIL]])
+        self.add_run(run_json=facts(**names),
+                     summary_csv=summary(EVIL, ((EVIL,), ("b",)), (EVIL, "mine"), (quoted(EVIL),)),
+                     comparison_csv=comparison(EVIL, ((EVIL,), ("b",)), factors=(quoted(EVIL),)))
+        page = self.page()
+        self.assertNotIn("<script", page)
+        self.assertNotIn("\x00", page)
+        structure = Structure(page)
+        self.assertEqual(structure.open, [])
+        self.assertIn(f"Run 1: {EVIL}", structure.headings)
+        self.assertEqual({key for _, attributes in structure.elements for key in attributes if key.startswith("on")}, set())
+
+    def test_two_runs_of_one_study_both_show(self):
+        self.add_run()
+        self.add_run(2, run_json=facts(run="other.sqlite"))
+        structure = Structure(self.page())
+        self.assertIn("Run 1: demo", structure.headings)
+        self.assertIn("Run 2: demo", structure.headings)
+        self.assertIn("other.sqlite", structure.text)
+
+    def test_the_same_input_gives_the_same_bytes(self):
+        self.add_run()
+        first = self.page()
+        with mock.patch("time.time", return_value=2e9):
+            self.assertEqual(self.page(), first)
+
+    def test_ademp_and_severity_are_shown_where_there_are_any(self):
+        self.add_run()
+        self.assertNotIn("Severity of the problems", self.page())
+        scene = 'demo,0,gaussian,scene,parallax_deg,mean,4.321,,,0.0567,10\n'
+        self.add_run(run_json=facts(ademp=[["aims", "to see what noise does"]]), summary_csv=summary() + scene)
+        structure = Structure(self.page())
+        self.assertIn("Severity of the problems", structure.headings)
+        self.assertLessEqual({"aims", "to see what noise does", "4.32", "\u00b1 0.057"}, set(structure.text))
+        self.add_run(run_json=facts(estimators=["standard", "mine", "scene"], conditions=[
+            {**condition, "first": [{"failure": None, "refusal": None}] * 3} for condition in facts()["conditions"]]),
+            summary_csv=summary() + scene)
+        self.assertNotIn("Severity of the problems", self.page())  # an estimator may be called so
+
+    def test_one_estimator_has_no_comparison(self):
+        self.add_run(run_json=facts(estimators=["standard"]), summary_csv=summary(estimators=["standard"]),
+                     comparison_csv="")
+        structure = Structure(self.page())
+        self.assertIn("The study has one estimator: there is nothing to compare.", structure.text)
+        self.assertEqual(len(structure.of("img")), 1)
+
+
+class Figures(ReportTest):
+    def drawn(self, factors, levels):
+        """The captions of the figures, and the notes, of a run with these factors."""
+        conditions = [{"index": index, "levels": list(level), "trials_done": 10, "trials_planned": 10,
+                       "first": [{"failure": 0, "refusal": 0}] * 2} for index, level in enumerate(levels)]
+        self.add_run(run_json=facts(factors=list(factors), conditions=conditions),
+                     summary_csv=summary(levels=levels, factors=factors),
+                     comparison_csv=comparison(levels=levels, factors=factors))
+        structure = Structure(self.page())
+        return [picture["alt"] for picture in structure.of("img")], "".join(structure.text)
+
+    def test_nothing_varies_nothing_is_drawn(self):
+        self.assertEqual(self.drawn([], [()])[0], [])
+
+    def test_two_factors_give_a_heat_map(self):
+        alts, text = self.drawn(["noise", "sigma_px"], [(a, b) for a in ("gaussian", "laplace") for b in ("1", "2", "3")])
+        self.assertRegex(alts[0], "over noise and sigma .px.*heat map")
+        self.assertRegex(alts[1], "Difference to Standard on the same trials, against sigma")
+        self.assertIn("python3 plots/heat_map.py summary.csv --x noise --y sigma_px", text)
+
+    def test_one_factor_at_a_time_gives_a_line_figure_for_each(self):
+        levels = [("0", "1"), ("0.2", "1"), ("0.4", "1"), ("0", "2"), ("0", "3")]
+        alts, text = self.drawn(["outlier_ratio", "sigma_px"], levels)
+        self.assertEqual([alt.split(".")[0] for alt in alts], [
+            "Failure rate and detect-fail rate against outlier ratio",
+            "Failure rate and detect-fail rate against sigma (px)",
+            "Difference to Standard on the same trials, against outlier ratio",
+            "Difference to Standard on the same trials, against sigma (px)"])
+        self.assertNotIn("Not drawn", text)
+
+    def test_three_factors_give_a_heat_map_for_each_level_of_the_third_up_to_a_limit(self):
+        levels = [(a, b, c) for a in "012" for b in "012" for c in ("u", "v")]
+        alts, text = self.drawn(["a", "b", "c"], levels)
+        self.assertEqual([alt for alt in alts if "heat map" in alt.lower()], alts[:2])
+        self.assertIn("c = u", alts[0])
+        self.assertIn("--where c=v", text)
+        with mock.patch.object(report_figures, "MAX_SLICES", 1):
+            alts, text = self.drawn(["a", "b", "c"], levels)
+        self.assertIn("Drawn are 1 of 2 combinations of c", text)
+
+    def test_what_cannot_be_drawn_says_why(self):
+        levels = [(a, b, c) for a in "0123" for b in "012" for c in "012"]
+        _, text = self.drawn(["a", "b", "c"], levels)
+        self.assertIn("Not drawn: comparison.csv: 9 combinations of b, c", text)
+
+
+class Refusals(ReportTest):
+    def test_folders_that_are_no_report(self):
+        self.assert_refused(self.run_main(), "holds no folder run_0001")
+        self.data.rmdir()
+        self.assertEqual(self.run_main()[0], 2)
+
+    def test_files_that_are_missing_or_damaged(self):
+        self.add_run()
+        for name, text, message in (("run.json", "{", "not a JSON file"), ("run.json", "{}", "has no run"),
+                                    ("summary.csv", "a,b\n", "has no column study"),
+                                    ("summary.csv", summary().replace(",10\n", ",\n", 1), "column n must be a number"),
+                                    ("comparison.csv", comparison().replace("-0.1,", ",", 1), "risk_difference is empty")):
+            path = self.data / "run_0001" / name
+            whole = path.read_text()
+            path.write_text(text)
+            self.assert_refused(self.run_main(), name, message)
+            path.write_text(whole)
+        (self.data / "run_0001" / "summary.csv").unlink()
+        self.assert_refused(self.run_main(), "summary.csv", "cannot be read")
+
+    def test_a_failed_write_leaves_the_old_page(self):
+        self.add_run()
+        self.out.write_text("old")
+        with mock.patch("os.replace", side_effect=OSError(28, "No space left on device")):
+            code, _, err = self.run_main()
+        self.assertEqual(code, 2)
+        self.assertIn("No space left on device", err)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["data", "report.html"])
+        self.assertEqual(self.out.read_text(), "old")
+
+    def test_places_that_cannot_be_written(self):
+        self.add_run()
+        self.out = self.folder / "no" / "report.html"
+        self.assert_refused(self.run_main(), "there is no folder")
+
+
+@unittest.skipUnless(BROWSER, "no chromium on this machine")
+class InABrowser(ReportTest):
+    def test_the_page_loads_without_a_complaint(self):
+        self.add_run(run_json=facts(name=EVIL))
+        self.page()
+        with tempfile.TemporaryDirectory() as profile:
+            done = subprocess.run(
+                [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+                 "--disable-background-networking", "--disable-component-update", "--disable-sync",
+                 f"--user-data-dir={profile}", "--enable-logging=stderr", "--dump-dom", self.out.as_uri()],
+                capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(re.findall(".*CONSOLE.*", done.stderr), [])
+        headings = Structure(done.stdout).headings
+        for heading in (f"Run 1: {EVIL}", "The study", "Results", "Figures", "Paired comparisons",
+                        "How to get these numbers again"):
+            self.assertIn(heading, headings)
+
+
+if __name__ == "__main__":
+    unittest.main()
