@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -97,6 +98,14 @@ Parameter Parameter::Text(std::string name, std::string* target, std::string all
     return true;
   };
   parameter.get_ = [target] { return *target; };
+  return parameter;
+}
+
+Parameter Parameter::Together(const std::vector<Parameter>& same) {
+  Parameter parameter = same.front();
+  parameter.set_ = [same](const std::string& text) {
+    return std::ranges::all_of(same, [&](const Parameter& part) { return part.set_(text); });
+  };
   return parameter;
 }
 

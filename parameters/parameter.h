@@ -35,6 +35,10 @@ class Parameter {
   static Parameter Choice(std::string name, Enum* target, std::vector<std::pair<std::string, Enum>> choices,
                           std::string doc);
 
+  // One parameter for fields of several models that have a name in common: sets them all, reads the first.
+  // They are of one kind and allow the same.
+  static Parameter Together(const std::vector<Parameter>& same);
+
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }
   const std::string& doc() const { return doc_; }

@@ -13,7 +13,8 @@ namespace rcme {
 // by threads.
 //
 // Every law has the key sigma_px, and scales itself so that sigma_px is the root mean square of the noise
-// over the four coordinates of a match: laws differ in shape, not in power.
+// over the four coordinates of a match: laws differ in shape, not in power. (`quantised` alone adds more than
+// it tells, which is its point.)
 class NoiseModel {
  public:
   virtual ~NoiseModel() = default;

@@ -8,6 +8,14 @@ const std::vector<NoiseEntry>& NoiseRegistry() {
   static const std::vector<NoiseEntry> registry = {
       {"gaussian", "independent and normal, equal in all coordinates (the paper's a.2)",
        [] { return MakeGaussianNoise(); }},
+      {"anisotropic", "normal, larger along one axis, correlated between x and y or between the images",
+       MakeAnisotropicNoise},
+      {"octave", "normal, larger for points from coarser levels of an image pyramid", MakeOctaveNoise},
+      {"student_t", "Student's t in every coordinate: heavy tails", MakeStudentNoise},
+      {"laplace", "double exponential in every coordinate", MakeLaplaceNoise},
+      {"contaminated", "normal, several times as large in a share of the matches", MakeContaminatedNoise},
+      {"quantised", "normal, then rounded to the detector's grid: larger than what sigma_px says",
+       MakeQuantisedNoise},
   };
   return registry;
 }

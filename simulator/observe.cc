@@ -4,6 +4,8 @@
 #include <numeric>
 #include <span>
 
+#include "simulator/exact_match.h"
+
 namespace rcme {
 namespace {
 
@@ -11,7 +13,7 @@ std::vector<Correspondence> ExactMatches(const Scene& scene) {
   std::vector<Correspondence> matches;
   matches.reserve(scene.points_in_cam1.size());
   for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-    matches.push_back({scene.camera1.Project(point), scene.camera2.Project(scene.InCamera2(point))});
+    matches.push_back(ExactMatch(scene, point));
   }
   return matches;
 }

@@ -6,6 +6,7 @@
 
 #include "estimator/geometry/correspondence.h"
 #include "parameters/parameter.h"
+#include "simulator/exact_match.h"
 #include "simulator/scene.h"
 #include "stats/random.h"
 
@@ -15,7 +16,7 @@ namespace rcme {
 // scene.points_in_cam1[i].
 struct MatchedScene {
   const Scene& scene;
-  std::span<const std::uint32_t> inliers;  // points whose matches stay true
+  std::span<const std::uint32_t> inliers;  // points whose matches stay true, in random order
   std::span<Correspondence> matches;
   // To be set for wrong matches that satisfy the true epipolar constraint: no epipolar test can tell them.
   std::vector<bool>& is_undetectable;
@@ -28,11 +29,28 @@ class OutlierLaw {
   virtual ~OutlierLaw() = default;
   // The parameters by name; valid as long as the law lives.
   virtual std::vector<Parameter> Parameters() { return {}; }
-  // Makes the matches of `points` (disjoint from the inliers, in random order) wrong. Both ends stay in their
-  // images, but for noise. Throws InputError that names the keys if that is impossible.
+  // Makes the matches of `points` (disjoint from the inliers, in random order) wrong; no points, no draw and
+  // no error. Both ends stay in their images, but for noise. Throws InputError that names the keys if that is
+  // impossible.
   virtual void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,
                        RandomStream& rng) const = 0;
 };
+
+// Draws for one outlier, after which a law counts as impossible: less than about one in a thousand fits.
+inline constexpr int kMaxOutlierDraws = 10'000;
+
+// What the noise law has added to a point's match (px), for laws that put the match elsewhere and keep its
+// noise. To be asked before the match is changed.
+inline Correspondence NoiseOf(const MatchedScene& matched, std::uint32_t point) {
+  const Correspondence exact = ExactMatch(matched.scene, matched.scene.points_in_cam1[point]);
+  return {matched.matches[point].x1_px - exact.x1_px, matched.matches[point].x2_px - exact.x2_px};
+}
+
+// A key that several laws have.
+inline Parameter MinShiftParameter(double* min_shift_px) {
+  return Parameter::Real("outlier_min_shift_px", min_shift_px, {0.0, 1e5}, "px",
+                         "least distance between the wrong and the true point in image 2, before noise");
+}
 
 // Uniform over the image, whose border runs half a pixel outside the outermost pixel centres.
 inline Eigen::Vector2d DrawPixel(const Camera& camera, RandomStream& rng) {

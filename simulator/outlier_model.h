@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct OutlierModel {
 
   double outlier_ratio = 0.2;
   Count count = Count::kExact;
+  // q of stats/tilted_binomial.h: the number is drawn as if the ratio were anything between outlier_ratio and
+  // this. NaN: it is not tilted. Only for a Bernoulli count; throws InputError otherwise, when it is drawn.
+  double tilted_to = std::numeric_limits<double>::quiet_NaN();
   std::shared_ptr<OutlierLaw> law;
 
   // The number of wrong matches of a trial, and the trial's weight: the probability of that number under the

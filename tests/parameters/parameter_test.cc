@@ -151,6 +151,20 @@ TEST(Parameter, CarriesItsDescription) {
   EXPECT_EQ(parameter.doc(), "a bounded number");
 }
 
+TEST(Parameter, TogetherSetsAllOrNone) {
+  double first = 1.0, second = 2.0;
+  const Parameter both =
+      Parameter::Together({Parameter::Real("shift", &first, {0.0, 9.0}, "px", "a shift"),
+                           Parameter::Real("shift", &second, {0.0, 9.0}, "px", "a shift")});
+  EXPECT_EQ(both.Value(), "1");
+  both.SetFromText("5");
+  EXPECT_EQ(first, 5.0);
+  EXPECT_EQ(second, 5.0);
+  EXPECT_THROW(both.SetFromText("10"), InputError);
+  EXPECT_EQ(first, 5.0);
+  EXPECT_EQ(second, 5.0);
+}
+
 TEST(FindParameter, UnknownKeyListsTheKnownOnes) {
   Options o;
   EXPECT_EQ(Refusal(o, "colour", "red"),

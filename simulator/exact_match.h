@@ -1,0 +1,13 @@
+#pragma once
+
+#include "estimator/geometry/correspondence.h"
+#include "simulator/view_pair.h"
+
+namespace rcme {
+
+// Where the two images show a point (camera 1's frame, m), before noise.
+inline Correspondence ExactMatch(const ViewPair& view, const Eigen::Vector3d& point_in_cam1) {
+  return {view.camera1.Project(point_in_cam1), view.camera2.Project(view.InCamera2(point_in_cam1))};
+}
+
+}  // namespace rcme

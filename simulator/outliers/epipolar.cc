@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "parameters/input_error.h"
+#include "simulator/outliers/outlier_laws.h"
+
+namespace rcme {
+namespace {
+
+// The part of a viewing ray of camera 1 that image 2 shows. A point of the ray at inverse depth w = 1 / z is,
+// up to the factor z, P + w Q in camera 2's frame, P = R ray, Q = the translation (m). w runs from 0
+// (infinitely far) to infinity (camera 1's centre).
+struct VisibleRay {
+  Eigen::Vector3d far_in_cam2, near_in_cam2;  // its ends, each up to a positive factor
+  Eigen::Vector2d far_px, near_px;            // their images
+
+  double Length() const { return (near_px - far_px).norm(); }
+  // The image of the ray's point that is seen `from_far_px` along the line from the far to the near end. The
+  // sum of the ends at depth 1 in camera 2 with weights that sum to 1 is seen there, and is a point of the
+  // ray again, since its coefficients of P and Q are positive.
+  Eigen::Vector2d Project(const Camera& camera2, double from_far_px) const {
+    const double share = from_far_px / Length();
+    return camera2.Project((1.0 - share) / far_in_cam2.z() * far_in_cam2 +
+                           share / near_in_cam2.z() * near_in_cam2);
+  }
+};
+
+// Four numbers, all >= 0 if image 2 shows the point (camera 2's frame): its distances from the image's
+// borders (px) times its depth.
+std::array<double, 4> BorderDistances(const Camera& camera, const Eigen::Vector3d& point_in_cam) {
+  const double x = camera.fx * point_in_cam.x(), y = camera.fy * point_in_cam.y(), z = point_in_cam.z();
+  return {x + (camera.cx + 0.5) * z, (camera.width - 0.5 - camera.cx) * z - x, y + (camera.cy + 0.5) * z,
+          (camera.height - 0.5 - camera.cy) * z - y};
+}
+
+// What image 2 shows of the ray through x1, of which it shows something. All borders are linear in w.
+VisibleRay ClipToImage2(const ViewPair& view, const Eigen::Vector2d& x1_px) {
+  const Eigen::Vector3d P = view.cam2_from_cam1_true.R * view.camera1.Ray(x1_px);
+  const Eigen::Vector3d Q = view.baseline_m * view.cam2_from_cam1_true.t;
+  const std::array<double, 4> at_P = BorderDistances(view.camera2, P),
+                              at_Q = BorderDistances(view.camera2, Q);
+  double w_far = 0.0, w_near = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < 4; ++i) {
+    if (at_Q[i] > 0.0) w_far = std::max(w_far, -at_P[i] / at_Q[i]);
+    if (at_Q[i] < 0.0) w_near = std::min(w_near, -at_P[i] / at_Q[i]);
+  }
+  VisibleRay ray;
+  ray.far_in_cam2 = P + w_far * Q;
+  ray.near_in_cam2 = std::isinf(w_near) ? Q : P + w_near * Q;  // image 2 shows the epipole
+  ray.far_px = view.camera2.Project(ray.far_in_cam2);
+  ray.near_px = view.camera2.Project(ray.near_in_cam2);
+  return ray;
+}
+
+// The point in image 2 is that of another point on the viewing ray of the exact x1. What image 2 shows of the
+// ray is a segment; the point is uniform on it, but for the places less than outlier_min_shift_px from the
+// true one. (Without rotation, sideways, this is uniform in inverse depth.) The match's noise stays.
+//
+// On a ray that image 2 shows too little of, as all rays near the direction of the motion, there is no such
+// place. Then the match moves to the ray of another scene point, drawn at random, in image 1 too.
+class EpipolarOutliers : public OutlierLaw {
+ public:
+  std::vector<Parameter> Parameters() override { return {MinShiftParameter(&min_shift_px_)}; }
+
+  void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,
+               RandomStream& rng) const override {
+    const Scene& scene = matched.scene;
+    if (!points.empty() && !scene.IsDirectionDefined()) {
+      throw InputError(
+          "outliers: 'epipolar' is not allowed without a baseline, there is no epipolar line; give another "
+          "motion, "
+          "or baseline_m > 0");
+    }
+    const auto num_points = static_cast<std::uint32_t>(scene.points_in_cam1.size());
+    for (const std::uint32_t point : points) {
+      const Correspondence noise = NoiseOf(matched, point);
+      std::uint32_t on_ray_of = point;
+      std::optional<Eigen::Vector2d> x2_px = DrawOnRay(scene, point, rng);
+      for (int draw = 0; !x2_px; ++draw) {
+        if (draw == kMaxOutlierDraws) ThrowNoPlace();
+        on_ray_of = rng.IntegerBelow(num_points);
+        x2_px = DrawOnRay(scene, on_ray_of, rng);
+      }
+      if (on_ray_of != point) {
+        matched.matches[point].x1_px = scene.camera1.Project(scene.points_in_cam1[on_ray_of]) + noise.x1_px;
+      }
+      matched.matches[point].x2_px = *x2_px + noise.x2_px;
+      matched.is_undetectable[point] = true;
+    }
+  }
+
+ private:
+  // Nothing where the visible ray leaves no place.
+  std::optional<Eigen::Vector2d> DrawOnRay(const Scene& scene, std::uint32_t point, RandomStream& rng) const {
+    const Correspondence exact = ExactMatch(scene, scene.points_in_cam1[point]);
+    const VisibleRay ray = ClipToImage2(scene, exact.x1_px);
+    const double length_px = ray.Length(), true_px = (exact.x2_px - ray.far_px).norm();
+    const double before_px = std::max(0.0, true_px - min_shift_px_);
+    const double after_px = std::max(0.0, length_px - true_px - min_shift_px_);
+    if (!(before_px + after_px > 0.0)) return std::nullopt;
+    const double place_px = rng.Uniform(0.0, before_px + after_px);
+    const double jump_px = place_px < before_px ? 0.0 : true_px + min_shift_px_ - before_px;
+    return ray.Project(scene.camera2, place_px + jump_px);
+  }
+
+  [[noreturn]] void ThrowNoPlace() const {
+    throw InputError(
+        fmt::format("outlier_min_shift_px: {}: no ray of {} has a place that far from the true point in "
+                    "image 2; give less, or another motion or baseline_m",
+                    min_shift_px_, kMaxOutlierDraws));
+  }
+
+  double min_shift_px_ = 5.0;
+};
+
+}  // namespace
+
+std::unique_ptr<OutlierLaw> MakeEpipolarOutliers() { return std::make_unique<EpipolarOutliers>(); }
+
+}  // namespace rcme

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "parameters/input_error.h"
+#include "simulator/motion_model.h"
+#include "simulator/outliers/outlier_laws.h"
+
+namespace rcme {
+namespace {
+
+// A rigid motion between the two images: p -> R (p - centre) + centre + shift, in camera 1's frame (m).
+struct MovingBody {
+  Eigen::Vector3d centre_in_cam1, shift_m;
+  Eigen::Matrix3d R;
+
+  Eigen::Vector3d Moved(const Eigen::Vector3d& point_in_cam1) const {
+    return R * (point_in_cam1 - centre_in_cam1) + centre_in_cam1 + shift_m;
+  }
+};
+
+// A second rigid motion. One object a trial: it lies around a point of the scene, its points are normal
+// around it, it turns about its centre by an angle uniform from 0 and shifts in a uniform direction. A match
+// shows a point of the object before the motion in image 1 and after it in image 2, with the noise of the
+// match that it replaces. (Which matches become wrong is not for a law to choose; so the object brings points
+// of its own, compact in the image as the scene's points would not be.)
+//
+// By chance an object may move so that its matches satisfy the epipolar constraint of the camera too.
+//
+// Points that an image does not show are drawn again, and so is an object of which too little is in view.
+class MovingObject : public OutlierLaw {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {Parameter::Real("object_size_m", &size_m_, {1e-9, 1e6}, "m",
+                            "standard deviation of the object's points around its centre, per axis"),
+            Parameter::Real("object_shift_m", &shift_m_, {1e-9, 1e6}, "m",
+                            "length of the object's translation between the images"),
+            Parameter::Real("object_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
+                            "bound of the object's rotation about its centre, uniform from 0")};
+  }
+
+  void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,
+               RandomStream& rng) const override {
+    if (points.empty()) return;
+    const std::vector<Correspondence> exact = DrawObject(points.size(), matched.scene, rng);
+    for (size_t k = 0; k < points.size(); ++k) {
+      const Correspondence noise = NoiseOf(matched, points[k]);
+      matched.matches[points[k]] = {exact[k].x1_px + noise.x1_px, exact[k].x2_px + noise.x2_px};
+    }
+  }
+
+ private:
+  MovingBody DrawBody(const Scene& scene, RandomStream& rng) const {
+    const auto num_points = static_cast<std::uint32_t>(scene.points_in_cam1.size());
+    MovingBody body;
+    body.centre_in_cam1 = scene.points_in_cam1[rng.IntegerBelow(num_points)];
+    body.R = DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng);
+    body.shift_m = shift_m_ * DrawDirection(rng);
+    return body;
+  }
+
+  std::optional<Correspondence> DrawMatch(const MovingBody& body, const ViewPair& view,
+                                          RandomStream& rng) const {
+    const double x = rng.Normal(), y = rng.Normal(), z = rng.Normal();
+    const Eigen::Vector3d before = body.centre_in_cam1 + size_m_ * Eigen::Vector3d(x, y, z);
+    const Eigen::Vector3d after_in_cam2 = view.InCamera2(body.Moved(before));
+    if (before.z() <= 0.0 || after_in_cam2.z() <= 0.0) return std::nullopt;
+    const Correspondence match{view.camera1.Project(before), view.camera2.Project(after_in_cam2)};
+    if (!view.camera1.IsInImage(match.x1_px) || !view.camera2.IsInImage(match.x2_px)) return std::nullopt;
+    return match;
+  }
+
+  // The exact matches of one object: the first of 200 objects of whose points at least one in 20 or so is
+  // seen.
+  std::vector<Correspondence> DrawObject(size_t num_matches, const Scene& scene, RandomStream& rng) const {
+    constexpr int kMaxObjects = 200;
+    constexpr size_t kMinDraws = 100, kMaxDrawsPerMatch = 20;
+    for (int object = 0; object < kMaxObjects; ++object) {
+      const MovingBody body = DrawBody(scene, rng);
+      std::vector<Correspondence> matches;
+      for (size_t draw = 0; draw < kMinDraws + kMaxDrawsPerMatch * num_matches; ++draw) {
+        if (const std::optional<Correspondence> match = DrawMatch(body, scene, rng))
+          matches.push_back(*match);
+        if (matches.size() == num_matches) return matches;
+      }
+    }
+    throw InputError(
+        fmt::format("object_shift_m: {}, object_size_m: {}: of {} objects too little is seen before "
+                    "and after they moved; give a smaller shift or size",
+                    shift_m_, size_m_, kMaxObjects));
+  }
+
+  double size_m_ = 0.3, shift_m_ = 0.3, max_rotation_deg_ = 10.0;
+};
+
+}  // namespace
+
+std::unique_ptr<OutlierLaw> MakeMovingObject() { return std::make_unique<MovingObject>(); }
+
+}  // namespace rcme
