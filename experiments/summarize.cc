@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "parameters/input_error.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
+#include "stats/weighted_rate.h"
 
 namespace rcme {
 namespace {
@@ -123,38 +126,59 @@ class Accumulator {
   explicit Accumulator(const std::vector<Quantity<Record>>& quantities)
       : quantities_(quantities), moments_(quantities.size()) {}
 
-  void Add(const Record& record, const FailureBounds& bounds) {
+  void Add(const Record& record, double weight, const FailureBounds& bounds) {
+    ++num_trials_;
+    is_weighted_ = is_weighted_ || weight != 1.0;
     for (size_t q = 0; q < moments_.size(); ++q) {
       const std::optional<double> value = quantities_[q].contribution(record, bounds);
-      if (value) moments_[q].Add(*value);
+      if (!value) continue;
+      moments_[q].Add(*value);
+      if (quantities_[q].kind == SummaryRow::Kind::kRate) weighted_[q].Add(weight, *value != 0.0);
     }
   }
 
-  void AppendRows(const SummaryRow& of_cell, IntervalKind interval_kind,
-                  std::vector<SummaryRow>* rows) const {
-    for (size_t q = 0; q < moments_.size(); ++q) rows->push_back(Row(q, interval_kind, of_cell));
+  // `cell` holds what the rows share.
+  void AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* rows) const {
+    for (size_t q = 0; q < moments_.size(); ++q) {
+      SummaryRow row = cell;
+      row.quantity = quantities_[q].name;
+      row.kind = quantities_[q].kind;
+      row.value = moments_[q].mean();
+      row.n = moments_[q].n();
+      if (is_weighted_) {
+        FillWeighted(q, &row);
+      } else if (row.kind == SummaryRow::Kind::kRate) {
+        FillRate(&row);
+      } else {
+        row.standard_error = moments_[q].standard_error();
+      }
+      rows->push_back(std::move(row));
+    }
   }
 
  private:
-  SummaryRow Row(size_t q, IntervalKind interval_kind, SummaryRow row) const {
-    row.quantity = quantities_[q].name;
-    row.kind = quantities_[q].kind;
-    row.value = moments_[q].mean();
-    row.n = moments_[q].n();
-    if (row.kind == SummaryRow::Kind::kRate) {
-      const double successes = row.n > 0 ? row.value * static_cast<double>(row.n) : 0.0;
-      row.interval = interval_kind == IntervalKind::kExact
-                         ? ExactBinomialInterval(std::llround(successes), row.n)
-                         : ConfidenceSequence(std::llround(successes), row.n);
-      if (row.n > 0) row.value = std::round(successes) / static_cast<double>(row.n);
-    } else {
-      row.standard_error = moments_[q].standard_error();
-    }
-    return row;
+  static void FillRate(SummaryRow* row) {
+    const std::int64_t successes = row->n > 0 ? std::llround(row->value * static_cast<double>(row->n)) : 0;
+    row->interval = row->interval_kind == IntervalKind::kExact ? ExactBinomialInterval(successes, row->n)
+                                                               : ConfidenceSequence(successes, row->n);
+    if (row->n > 0) row->value = static_cast<double>(successes) / static_cast<double>(row->n);
+  }
+
+  void FillWeighted(size_t q, SummaryRow* row) const {
+    row->interval_kind = IntervalKind::kWeighted;
+    const bool is_of_all = row->kind == SummaryRow::Kind::kRate && row->n == num_trials_;
+    const WeightedRate rate = EstimateWeightedRate(is_of_all ? weighted_[q] : WeightedEvents());
+    row->n = is_of_all ? row->n : 0;
+    row->value = is_of_all ? std::min(rate.estimate, 1.0) : std::numeric_limits<double>::quiet_NaN();
+    row->standard_error = is_of_all ? rate.standard_error : row->value;
+    row->interval = {std::min(rate.interval.lower, 1.0), std::min(rate.cautious_upper, 1.0)};
   }
 
   const std::vector<Quantity<Record>>& quantities_;
   std::vector<Moments> moments_;
+  std::vector<WeightedEvents> weighted_{quantities_.size()};
+  std::int64_t num_trials_ = 0;
+  bool is_weighted_ = false;
 };
 
 // The accumulators of one condition.
@@ -183,18 +207,32 @@ const std::vector<QuantityHelp>& SummaryQuantities() {
 }
 
 std::string IntervalKindName(IntervalKind kind) {
-  return kind == IntervalKind::kExact ? "exact" : "anytime_valid";
+  switch (kind) {
+    case IntervalKind::kExact:
+      return "exact";
+    case IntervalKind::kAnytimeValid:
+      return "anytime_valid";
+    case IntervalKind::kWeighted:
+      return "weighted";
+  }
+  return "";
 }
 
 std::string IntervalKindInWords(IntervalKind kind) {
-  return kind == IntervalKind::kExact ? "exact 95 % (Clopper-Pearson)"
-                                      : "anytime-valid 95 % (confidence sequence)";
+  switch (kind) {
+    case IntervalKind::kExact:
+      return "exact 95 % (Clopper-Pearson)";
+    case IntervalKind::kAnytimeValid:
+      return "anytime-valid 95 % (confidence sequence)";
+    case IntervalKind::kWeighted:
+      return "weighted 95 % (Fay-Feuer, cautious upper end)";
+  }
+  return "";
 }
 
 Summary Summarize(const ResultStore& store, bool with_times) {
   const StudyPlan plan = store.Plan();
   Summary summary{plan.study.name, plan.factor_names, {}, 0, plan.NumTrials()};
-  if (!store.StoppingRule().empty()) summary.interval_kind = IntervalKind::kAnytimeValid;
   const size_t num_estimators = plan.study.estimators.size();
   const Accumulator<TrialRecord> empty(TrialQuantities());
   std::vector<Cell> cells(plan.conditions.size(), Cell{std::vector(num_estimators, empty)});
@@ -206,20 +244,22 @@ Summary Summarize(const ResultStore& store, bool with_times) {
     }
     ++summary.num_trials_done;
     Cell& cell = cells[problem.condition];
-    cell.problems.Add(problem, plan.study.failure);
-    for (size_t e = 0; e < num_estimators; ++e) cell.estimators[e].Add(records[e], plan.study.failure);
+    cell.problems.Add(problem, problem.weight, plan.study.failure);
+    for (size_t e = 0; e < num_estimators; ++e)
+      cell.estimators[e].Add(records[e], problem.weight, plan.study.failure);
   });
   for (const Condition& condition : plan.conditions) {
     const Cell& cell = cells[condition.index];
     SummaryRow row;
     row.condition = condition.index;
     row.levels = condition.levels;
+    if (!store.StoppingRule().empty()) row.interval_kind = IntervalKind::kAnytimeValid;
     for (size_t e = 0; e < num_estimators; ++e) {
       row.estimator = plan.study.estimators[e].label;
-      cell.estimators[e].AppendRows(row, summary.interval_kind, &summary.rows);
+      cell.estimators[e].AppendRows(row, &summary.rows);
     }
     row.estimator = kSceneLabel;
-    cell.problems.AppendRows(row, summary.interval_kind, &summary.rows);
+    cell.problems.AppendRows(row, &summary.rows);
   }
   if (!with_times)
     std::erase_if(summary.rows, [](const SummaryRow& row) { return row.quantity == "time_ms"; });

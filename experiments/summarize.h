@@ -9,6 +9,15 @@
 
 namespace rcme {
 
+// Which intervals the rates have.
+enum class IntervalKind {
+  kExact,         // Clopper-Pearson
+  kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
+  kWeighted,      // of weighted trials, with the cautious upper end (stats/weighted_rate.h)
+};
+std::string IntervalKindName(IntervalKind kind);     // one word
+std::string IntervalKindInWords(IntervalKind kind);  // for people
+
 // One number of one estimator in one condition, never without what says how far to trust it.
 struct SummaryRow {
   enum class Kind { kRate, kMean };
@@ -18,29 +27,21 @@ struct SummaryRow {
   std::string estimator;            // label; kSceneLabel: of the problem, whoever solves it
   std::string quantity;
   Kind kind = Kind::kRate;
-  double value = 0.0;           // NaN where n is 0
-  Interval interval;            // rates: 95 %, of the summary's kind
-  double standard_error = 0.0;  // means: Monte-Carlo standard error
+  double value = 0.0;  // NaN where n is 0
+  IntervalKind interval_kind = IntervalKind::kExact;
+  Interval interval;            // rates: 95 %
+  double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of
 };
 
 // Stands in the place of an estimator in rows about the problems themselves.
 inline constexpr const char* kSceneLabel = "scene";
 
-// Which intervals the rates have.
-enum class IntervalKind {
-  kExact,         // Clopper-Pearson
-  kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
-};
-std::string IntervalKindName(IntervalKind kind);     // one word
-std::string IntervalKindInWords(IntervalKind kind);  // for people
-
 struct Summary {
   std::string study;
   std::vector<std::string> factor_names;
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
-  IntervalKind interval_kind = IntervalKind::kExact;
 };
 
 // A quantity of the summary, for `rcme list quantities`.
@@ -49,6 +50,9 @@ struct QuantityHelp {
 };
 const std::vector<QuantityHelp>& SummaryQuantities();
 
+// Where the trials of a condition are weighted, only the rates of all trials are given: of a part of the
+// trials they would be ratios of estimates.
+//
 // Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
 // one pass and constant memory. Times (which no two runs share) only if asked for.
 Summary Summarize(const ResultStore& store, bool with_times);

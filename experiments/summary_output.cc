@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "experiments/field_text.h"
 
@@ -15,12 +16,25 @@ namespace {
 std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
   if (row.n == 0) return "-";
   const std::string of = row.n == num_trials ? "" : fmt::format(" (n {})", row.n);
+  if (row.interval_kind == IntervalKind::kWeighted) {
+    return fmt::format("{:.3g} % +- {:.2g} [{:.2g}, {:.2g}]{}", 100.0 * row.value, 100.0 * row.standard_error,
+                       100.0 * row.interval.lower, 100.0 * row.interval.upper, of);
+  }
   if (row.kind == SummaryRow::Kind::kRate) {
     return fmt::format("{:.2f} % [{:.2f}, {:.2f}]{}", 100.0 * row.value, 100.0 * row.interval.lower,
                        100.0 * row.interval.upper, of);
   }
   if (row.n == 1) return fmt::format("{:.3g}{}", row.value, of);
   return fmt::format("{:.3g} +- {:.2g}{}", row.value, row.standard_error, of);
+}
+
+// "exact 95 % (Clopper-Pearson)", or several kinds.
+std::string IntervalKindsIn(const Summary& summary) {
+  std::set<std::string> kinds;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.kind == SummaryRow::Kind::kRate) kinds.insert(IntervalKindInWords(row.interval_kind));
+  }
+  return fmt::format("{}", fmt::join(kinds, " and "));
 }
 
 // How hard the problems were: one row per condition. Empty where nothing was measured.
@@ -92,7 +106,7 @@ std::string SummaryAsTable(const Summary& summary) {
                                  summary.num_trials_done, summary.num_trials_planned, FormatColumns(rows));
   text += SeverityAsTable(summary);
   text += fmt::format("Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n",
-                      IntervalKindInWords(summary.interval_kind));
+                      IntervalKindsIn(summary));
   text +=
       "(n ...) where a number is not of all trials.\n"
       "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
@@ -112,8 +126,9 @@ std::string SummaryAsCsv(const Summary& summary) {
     text += fmt::format(
         "{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity, is_rate ? "rate" : "mean",
         CsvNumber(row.value), is_rate ? CsvNumber(row.interval.lower) : "",
-        is_rate ? CsvNumber(row.interval.upper) : "", is_rate ? "" : CsvNumber(row.standard_error), row.n,
-        is_rate ? IntervalKindName(summary.interval_kind) : "");
+        is_rate ? CsvNumber(row.interval.upper) : "",
+        is_rate && row.interval_kind != IntervalKind::kWeighted ? "" : CsvNumber(row.standard_error), row.n,
+        is_rate ? IntervalKindName(row.interval_kind) : "");
   }
   return text;
 }
@@ -122,7 +137,6 @@ std::string SummaryAsJson(const Summary& summary) {
   nlohmann::ordered_json json = {{"study", summary.study},
                                  {"trials_done", summary.num_trials_done},
                                  {"trials_planned", summary.num_trials_planned},
-                                 {"interval", IntervalKindName(summary.interval_kind)},
                                  {"rows", nlohmann::ordered_json::array()}};
   for (const SummaryRow& row : summary.rows) {
     nlohmann::ordered_json entry = {{"condition", row.condition}};
@@ -133,6 +147,7 @@ std::string SummaryAsJson(const Summary& summary) {
     if (row.kind == SummaryRow::Kind::kRate) {
       entry["kind"] = "rate";
       entry["interval"] = {row.interval.lower, row.interval.upper};
+      entry["interval_kind"] = IntervalKindName(row.interval_kind);
     } else {
       entry["kind"] = "mean";
       entry["standard_error"] = JsonNumber(row.standard_error);

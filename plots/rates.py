@@ -62,7 +62,7 @@ def check_no_repetition(path, part, keys, at):
 
 
 INTERVALS = {"exact": "exact 95 % (Clopper-Pearson)", "anytime_valid": "anytime-valid 95 % (confidence sequence)",
-             "weighted": "95 % (Fay-Feuer, weighted trials)"}
+             "weighted": "weighted 95 % (Fay-Feuer, cautious upper end)"}
 
 
 def interval_in_words(rows):

@@ -158,9 +158,9 @@ TEST_F(CompareTest, ABadLabelNamesWhatIsAllowed) {
 
 TEST_F(CompareTest, ATrialThatIsNotWholeIsDamage) {
   Write("last", {{"ss", 1}, {"s", 1}});
-  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("last"); }, {"damaged", "last trial"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("last"); }, {"damaged", "condition 0", "trial 1"}));
   Write("first", {{"s", 1}, {"ss", 1}});
-  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("first"); }, {"damaged", "condition 0", "trial 1"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("first"); }, {"damaged", "condition 0", "trial 0"}));
   Write("three", {{"sss", 1}});
   EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("three"); }, {"damaged", "not whole"}));
 }

@@ -185,7 +185,8 @@ TEST_F(RunStudyTest, AnImpossibleSceneArrivesAsInputErrorAndWhatWasDoneIsKept) {
   const StudyPlan plan = MakePlan(study);
   for (const int num_threads : {1, 2}) {
     const std::string name = "run" + std::to_string(num_threads);
-    EXPECT_TRUE(ThrowsInputError([&] { Run(name, plan, num_threads); }, {"image 2 sees only", "baseline_m"}));
+    EXPECT_TRUE(
+        ThrowsInputError([&] { Run(name, plan, num_threads); }, {"both images see only", "baseline_m"}));
     ResultStore store = ResultStore::OpenForRun(folder_.Path(name), plan);
     EXPECT_TRUE(store.MissingTrials(0, 20).empty()) << "what was done before the error is lost";
     ASSERT_EQ(store.MissingTrials(1, 20).size(), 1u);

@@ -133,8 +133,8 @@ TEST(ToYaml, RoundTripOfTheCommittedStudies) {
 TEST(ParseStudyErrors, UnknownKeys) {
   EXPECT_TRUE(Refuses(Edited("seed: 3", "sead: 3"), {":2:", "'sead'", "known keys", "seed", "trials"}));
   EXPECT_TRUE(Refuses(Edited("num_matches:", "matches:"), {":4:", "'matches'", "known keys", "num_matches"}));
-  EXPECT_TRUE(
-      Refuses(Edited("outlier_ratio:", "outliers:"), {":6:", "'outliers'", "known keys", "outlier_ratio"}));
+  EXPECT_TRUE(Refuses(Edited("outlier_ratio:", "outlier_rate:"),
+                      {":6:", "'outlier_rate'", "known keys", "outlier_ratio"}));
   EXPECT_TRUE(Refuses(Edited("label: ours", "alias: ours"),
                       {":9:", "'alias'", "known keys", "label, name, options"}));
   EXPECT_TRUE(Refuses(Edited("reading: rank_aware", "readings: x"),
@@ -227,7 +227,8 @@ TEST(ParseStudyErrors, MissingParts) {
   EXPECT_TRUE(Refuses(Without("data"), {"'data' is missing"}));
   EXPECT_TRUE(Refuses(Without("estimators"), {"'estimators' is missing"}));
   EXPECT_TRUE(Refuses(Edited("scene: uniform_volume, ", ""), {":4:", "'scene' is missing"}));
-  EXPECT_TRUE(Refuses(Edited("outlier_ratio: [0.0, 0.3]", "scene: [uniform_volume]"), {":6:", "'scene'"}));
+  EXPECT_TRUE(Refuses(Edited("outlier_ratio: [0.0, 0.3]", "scene: [uniform_volume, match_files]"),
+                      {":6:", "scene", "match_files"}));
 }
 
 TEST(ParseStudyErrors, BrokenYaml) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "experiments/summary_output.h"
+#include "stats/confidence_sequence.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
@@ -70,7 +71,10 @@ std::vector<TrialRecord> HandMadeRecords() {
 
 class SummarizeTest : public testing::Test {
  protected:
-  SummarizeTest() { Write("run", HandMadeRecords()); }
+  SummarizeTest() {
+    study_.estimators.resize(1);  // "standard"
+    Write("run", HandMadeRecords());
+  }
 
   void Write(const std::string& name, const std::vector<TrialRecord>& records) {
     ResultStore store = ResultStore::OpenForRun(folder_.Path(name), MakePlan(study_));
@@ -153,17 +157,15 @@ TEST_F(SummarizeTest, EveryTrialHasExactlyOneOutcome) {
 }
 
 TEST_F(SummarizeTest, EmptyCellsSayThatNothingIsKnown) {
-  for (const auto& [condition, estimator] : {std::pair{0u, "ours"}, {1u, "standard"}, {1u, "ours"}}) {
-    for (const char* quantity : {"success", "nees_coverage"}) {
-      const SummaryRow row = Row(quantity, condition, estimator);
-      EXPECT_EQ(row.n, 0);
-      EXPECT_TRUE(std::isnan(row.value));
-      EXPECT_EQ(row.interval.lower, 0.0);
-      EXPECT_EQ(row.interval.upper, 1.0);
-    }
-    EXPECT_TRUE(std::isnan(Row("nees", condition, estimator).value));
-    EXPECT_TRUE(std::isnan(Row("nees", condition, estimator).standard_error));
+  for (const char* quantity : {"success", "nees_coverage"}) {
+    const SummaryRow row = Row(quantity, 1);
+    EXPECT_EQ(row.n, 0);
+    EXPECT_TRUE(std::isnan(row.value));
+    EXPECT_EQ(row.interval.lower, 0.0);
+    EXPECT_EQ(row.interval.upper, 1.0);
   }
+  EXPECT_TRUE(std::isnan(Row("nees", 1).value));
+  EXPECT_TRUE(std::isnan(Row("nees", 1).standard_error));
 }
 
 TEST_F(SummarizeTest, RowsAreComplete) {
@@ -172,7 +174,7 @@ TEST_F(SummarizeTest, RowsAreComplete) {
   EXPECT_EQ(summary.factor_names, std::vector<std::string>{"outlier_ratio"});
   EXPECT_EQ(summary.num_trials_done, 10);
   EXPECT_EQ(summary.num_trials_planned, 12);
-  EXPECT_EQ(summary.rows.size(), 2 * 2 * SummaryQuantities().size());
+  EXPECT_EQ(summary.rows.size(), 2 * SummaryQuantities().size());
   EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0.0"});
   EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
   for (const SummaryRow& row : SummaryOf("run").rows)
@@ -208,16 +210,17 @@ std::vector<std::string> Lines(const std::string& text) {
 TEST_F(SummarizeTest, Csv) {
   const std::vector<std::string> lines = Lines(SummaryAsCsv(SummaryOf("run")));
   ASSERT_EQ(lines.size(), 1 + SummaryOf("run").rows.size());
-  EXPECT_EQ(lines[0],
-            "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n");
-  EXPECT_EQ(lines[1], "small,0,0.0,standard,success,rate,0.4,0.12155226,0.73762192,,10");
+  EXPECT_EQ(
+      lines[0],
+      "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n,interval");
+  EXPECT_EQ(lines[1], "small,0,0.0,standard,success,rate,0.4,0.12155226,0.73762192,,10,exact");
   const auto has_line = [&](const std::string& line) {
     return std::count(lines.begin(), lines.end(), line) == 1;
   };
-  EXPECT_TRUE(has_line("small,0,0.0,standard,rotation_error_deg,mean,2,,,0.40824829,4"));  // sqrt(2 / 3 / 4)
-  EXPECT_TRUE(has_line("small,1,0.3,ours,success,rate,,0,1,,0"));
-  EXPECT_TRUE(has_line("small,1,0.3,ours,nees,mean,,,,,0"));
-  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 10) << line;
+  EXPECT_TRUE(has_line("small,0,0.0,standard,rotation_error_deg,mean,2,,,0.40824829,4,"));  // sqrt(2 / 3 / 4)
+  EXPECT_TRUE(has_line("small,1,0.3,standard,success,rate,,0,1,,0,exact"));
+  EXPECT_TRUE(has_line("small,1,0.3,standard,nees,mean,,,,,0,"));
+  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 11) << line;
 }
 
 TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
@@ -225,7 +228,8 @@ TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
   study_.estimators[0].label = "line\nbreak";
   Write("quoted", {});
   const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
-  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0.0,\"line\nbreak\",success,rate,,0,1,,0\n"), std::string::npos)
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0.0,\"line\nbreak\",success,rate,,0,1,,0,exact\n"),
+            std::string::npos)
       << csv;
 }
 
@@ -273,6 +277,70 @@ TEST_F(SummarizeTest, EqualDataGiveEqualBytesInWhateverOrderTheyCame) {
   EXPECT_EQ(SummaryAsCsv(SummaryOf("run")), SummaryAsCsv(SummaryOf("reversed")));
   EXPECT_EQ(SummaryAsJson(SummaryOf("run")), SummaryAsJson(SummaryOf("reversed")));
   EXPECT_EQ(SummaryAsTable(SummaryOf("run")), SummaryAsTable(SummaryOf("reversed")));
+}
+
+// Two problems of ten: one within the bounds, one whose bound is beyond them; the others were not measured.
+TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
+  std::vector<ProblemRecord> problems(2);
+  problems[1].trial = 1;
+  for (ProblemRecord& problem : problems) {
+    problem.num_inliers_true = 30.0 + 10.0 * problem.trial;
+    problem.severity.crb_rotation_deg = 0.1 + 5.0 * problem.trial;  // the bound is 3 deg
+    problem.severity.crb_direction_deg = 0.5;
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("severe"), MakePlan(study_));
+    store.Add(problems, {Motion(0, 1.0, 1.0, 1.0), Motion(1, 1.0, 1.0, 1.0)});
+  }
+  for (const SummaryRow& row : SummaryOf("severe").rows) {
+    if (row.condition != 0 || row.estimator != kSceneLabel) continue;
+    if (row.quantity == "impossible") {
+      EXPECT_EQ(row.value, 0.5);
+    } else if (row.quantity == "num_inliers_true") {
+      EXPECT_EQ(row.value, 35.0);
+    } else if (row.quantity == "crb_rotation_deg") {
+      EXPECT_DOUBLE_EQ(row.value, 2.6);
+    } else if (row.quantity == "planarity") {
+      EXPECT_EQ(row.n, 0);  // unknown
+    }
+  }
+  EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [1.26, 98.74]"), std::string::npos);
+}
+
+TEST_F(SummarizeTest, TrialsThatStoppedByTheirOutcomesHaveAnytimeValidIntervals) {
+  ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_)).NoteStoppingRule("a reason");
+  const SummaryRow row = Row("failure");
+  EXPECT_EQ(row.interval_kind, IntervalKind::kAnytimeValid);
+  EXPECT_EQ(row.interval.lower, ConfidenceSequence(2, 10).lower);
+  EXPECT_EQ(row.interval.upper, ConfidenceSequence(2, 10).upper);
+  EXPECT_LT(row.interval.lower, ExactBinomialInterval(2, 10).lower);
+}
+
+// Failures of weight 0.5 and 0.25 in four trials: (0.5 + 0.25) / 4.
+TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
+  std::vector<ProblemRecord> problems(4);
+  const double weights[] = {0.5, 0.25, 2.0, 1.25};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    problems[i].trial = i;
+    problems[i].weight = weights[i];
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("weighted"), MakePlan(study_));
+    store.Add(problems, {Motion(0, 9.0, 1.0, 1.0), Motion(1, 9.0, 1.0, 1.0), Motion(2, 1.0, 1.0, 1.0),
+                         NoMotion(3, MotionStatus::kNoCandidate)});
+  }
+  for (const SummaryRow& row : SummaryOf("weighted").rows) {
+    if (row.condition != 0 || row.estimator != "standard") continue;
+    EXPECT_EQ(row.interval_kind, IntervalKind::kWeighted);
+    if (row.quantity == "failure") {
+      EXPECT_DOUBLE_EQ(row.value, 0.1875);
+      EXPECT_GT(row.standard_error, 0.0);
+      EXPECT_LT(row.interval.lower, 0.1875);
+      EXPECT_EQ(row.interval.upper, 1.0);  // four trials bound nothing
+    } else if (row.quantity == "kappa_flag" || row.quantity == "rotation_error_deg") {
+      EXPECT_EQ(row.n, 0);  // of a part of the trials
+    }
+  }
 }
 
 TEST(FormatColumns, PadsToTheWidestCell) {
