@@ -8,5 +8,13 @@
 namespace rcme {
 
 std::unique_ptr<SceneModel> MakeUniformVolume();
+// Gaussian clusters in space before a uniform volume.
+std::unique_ptr<SceneModel> MakeClusters();
+// A cluster process on image 1, at depths of a uniform volume.
+std::unique_ptr<SceneModel> MakeImageClusters();
+// A uniform volume behind one rectangle of image 1.
+std::unique_ptr<SceneModel> MakeImageRegion();
+// A uniform volume and points without parallax behind it.
+std::unique_ptr<SceneModel> MakeFarPoints();
 
 }  // namespace rcme
