@@ -13,6 +13,10 @@ const std::vector<SceneEntry>& SceneRegistry() {
         MakeImageClusters}},
       {{"image_region", "all matches in the left half, a corner or a band of the first image",
         MakeImageRegion}},
+      {{"plane", "all points on one plane (Type B)", MakePlane}},
+      {{"plane_and_parallax", "a plane, and some points off it", MakePlaneAndParallax}},
+      {{"two_planes", "two planes that meet in a vertical edge: the corner of a room or of a house",
+        MakeTwoPlanes}},
       {{"far_points", "a near uniform volume and points too far away for parallax", MakeFarPoints}},
   };
   return registry;

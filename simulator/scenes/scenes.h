@@ -14,6 +14,12 @@ std::unique_ptr<SceneModel> MakeClusters();
 std::unique_ptr<SceneModel> MakeImageClusters();
 // A uniform volume behind one rectangle of image 1.
 std::unique_ptr<SceneModel> MakeImageRegion();
+// One plane (Type B).
+std::unique_ptr<SceneModel> MakePlane();
+// The same with some points off the plane.
+std::unique_ptr<SceneModel> MakePlaneAndParallax();
+// Two planes that meet in a vertical edge.
+std::unique_ptr<SceneModel> MakeTwoPlanes();
 // A uniform volume and points without parallax behind it.
 std::unique_ptr<SceneModel> MakeFarPoints();
 
