@@ -17,6 +17,11 @@ const std::vector<SceneEntry>& SceneRegistry() {
       {{"plane_and_parallax", "a plane, and some points off it", MakePlaneAndParallax}},
       {{"two_planes", "two planes that meet in a vertical edge: the corner of a room or of a house",
         MakeTwoPlanes}},
+      {{"corridor", "walls, floor and ceiling, seen along a corridor", MakeCorridor}, "office", "forward"},
+      {{"room", "walls, floor, ceiling and furniture, seen from the middle of a room", MakeRoom},
+       "office",
+       "hand_held"},
+      {{"street", "road, facades on both sides, trees far away", MakeStreet}, "kitti", "vehicle"},
       {{"far_points", "a near uniform volume and points too far away for parallax", MakeFarPoints}},
   };
   return registry;

@@ -20,6 +20,12 @@ std::unique_ptr<SceneModel> MakePlane();
 std::unique_ptr<SceneModel> MakePlaneAndParallax();
 // Two planes that meet in a vertical edge.
 std::unique_ptr<SceneModel> MakeTwoPlanes();
+// Two walls, floor and ceiling, seen along the corridor.
+std::unique_ptr<SceneModel> MakeCorridor();
+// A room with boxes on its floor, seen from its middle.
+std::unique_ptr<SceneModel> MakeRoom();
+// Road, facades on both sides, and points beyond the street's end.
+std::unique_ptr<SceneModel> MakeStreet();
 // A uniform volume and points without parallax behind it.
 std::unique_ptr<SceneModel> MakeFarPoints();
 
