@@ -23,6 +23,10 @@ const std::vector<SceneEntry>& SceneRegistry() {
        "hand_held"},
       {{"street", "road, facades on both sides, trees far away", MakeStreet}, "kitti", "vehicle"},
       {{"far_points", "a near uniform volume and points too far away for parallax", MakeFarPoints}},
+      {{"lattice", "a facade that repeats itself: every cell of a lattice shows the same points",
+        MakeLattice},
+       "pinhole",
+       "sideways"},
   };
   return registry;
 }

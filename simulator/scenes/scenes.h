@@ -28,5 +28,7 @@ std::unique_ptr<SceneModel> MakeRoom();
 std::unique_ptr<SceneModel> MakeStreet();
 // A uniform volume and points without parallax behind it.
 std::unique_ptr<SceneModel> MakeFarPoints();
+// A facade that repeats itself.
+std::unique_ptr<SceneModel> MakeLattice();
 
 }  // namespace rcme
