@@ -91,8 +91,11 @@ inline std::vector<double> Depths(const std::vector<Eigen::Vector3d>& points_in_
   return depths_m;
 }
 
-// Kolmogorov-Smirnov: the p-value of a sample under the uniform law on [low, high].
+// Kolmogorov-Smirnov: the p-value of a sample under the uniform law on [low, high]; 0 if a number lies
+// outside (by more than rounding), which is impossible under that law.
 inline double UniformPValue(const std::vector<double>& sample, double low = 0.0, double high = 1.0) {
+  const double rounding = 1e-9 * (high - low);
+  if (std::ranges::min(sample) < low - rounding || std::ranges::max(sample) > high + rounding) return 0.0;
   return TestKolmogorovSmirnov(sample,
                                [&](double x) { return std::clamp((x - low) / (high - low), 0.0, 1.0); })
       .p_value;

@@ -58,7 +58,7 @@ TEST(ImageClusters, DiscOffspringIsUniformInTheDisc) {
   for (const Eigen::Vector2d& pixel : pixels) {
     const Eigen::Vector2d offset = pixel - middle;
     radii.push_back(offset.norm() / 5.0);
-    areas.push_back(radii.back() * radii.back());
+    areas.push_back(std::min(radii.back() * radii.back(), 1.0));
     angles.push_back(std::atan2(offset.y(), offset.x()));
   }
   EXPECT_GT(UniformPValue(areas), 1e-4);

@@ -28,17 +28,18 @@ TEST(UprightCamera, ARightTurnCarriesTheOpticalAxisToTheRight) {
 }
 
 TEST(UprightCamera, FirstDepthIsThatOfTheNearestRectangleOnTheRay) {
-  const UprightCamera camera({}, {0, 0, 0}, 0.0);
-  const std::vector<Rectangle> both = {kFloor, kWall};
-  EXPECT_DOUBLE_EQ(camera.FirstDepth({0.0, 0.0, 1.0}, both), 5.0);
-  EXPECT_DOUBLE_EQ(camera.FirstDepth({0.19, 0.09, 1.0}, both), 5.0);       // the floor is behind the wall
-  EXPECT_DOUBLE_EQ(camera.FirstDepth({0.25, 0.09, 1.0}, both), 1 / 0.09);  // past the wall, to the floor
-  EXPECT_DOUBLE_EQ(camera.FirstDepth({0.0, 0.25, 1.0}, both), 4.0);        // the floor before the wall
-  EXPECT_EQ(camera.FirstDepth({0.25, 0.04, 1.0}, both), kNone);            // beyond the floor's end
-  EXPECT_EQ(camera.FirstDepth({0.0, 0.6, 1.0}, both), kNone);              // before its beginning
-  EXPECT_EQ(camera.FirstDepth({0.0, -0.2, 1.0}, both), kNone);             // above all
-  EXPECT_EQ(UprightCamera({}, {0, 0, 0}, 0.5).FirstDepth({0.0, 0.0, 1.0}, both), kNone);  // behind
-  EXPECT_DOUBLE_EQ(UprightCamera({}, {0, 0, 3.0}, 0.0).FirstDepth({0.0, 0.0, 1.0}, both), 2.0);
+  const UprightCamera camera({}, {0, 0, 0}, 0.0), back({}, {0, 0, 0}, 0.5), near({}, {0, 0, 3.0}, 0.0);
+  for (const std::vector<Rectangle>& both : {std::vector{kFloor, kWall}, {kWall, kFloor}}) {
+    EXPECT_DOUBLE_EQ(camera.FirstDepth({0.0, 0.0, 1.0}, both), 5.0);
+    EXPECT_DOUBLE_EQ(camera.FirstDepth({0.19, 0.09, 1.0}, both), 5.0);       // the floor is behind the wall
+    EXPECT_DOUBLE_EQ(camera.FirstDepth({0.25, 0.09, 1.0}, both), 1 / 0.09);  // past the wall, to the floor
+    EXPECT_DOUBLE_EQ(camera.FirstDepth({0.0, 0.25, 1.0}, both), 4.0);        // the floor before the wall
+    EXPECT_EQ(camera.FirstDepth({0.25, 0.04, 1.0}, both), kNone);            // beyond the floor's end
+    EXPECT_EQ(camera.FirstDepth({0.0, 0.6, 1.0}, both), kNone);              // before its beginning
+    EXPECT_EQ(camera.FirstDepth({0.0, -0.2, 1.0}, both), kNone);             // above all
+    EXPECT_EQ(back.FirstDepth({0.0, 0.0, 1.0}, both), kNone);
+    EXPECT_DOUBLE_EQ(near.FirstDepth({0.0, 0.0, 1.0}, both), 2.0);
+  }
 }
 
 TEST(UprightCamera, DrawsPointsOnRectanglesAndNothingElsewhere) {
