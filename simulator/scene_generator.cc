@@ -102,7 +102,7 @@ void SceneGenerator::DrawPart(const World& world, size_t part, size_t num_points
   const size_t max_draws = std::max(kMinDraws, kMaxDrawsPerPoint * num_points);
   size_t num_draws = 0;
   for (; num_accepted < num_wanted && num_draws < max_draws; num_draws += PointBlock::kSize) {
-    world.DrawCandidates(part, rng, &candidates);
+    world.DrawCandidates(part, num_draws, rng, &candidates);
     MeasureClearance(clip_from_cam1, Eigen::Vector3d::Zero(), candidates, &clearance1);
     MeasureClearance(A2, t2, candidates, &clearance2);
     for (size_t i = 0; i < PointBlock::kSize; ++i) {

@@ -5,6 +5,7 @@
 // of several parts; each gets its exact share of the points.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <memory>
 #include <vector>
@@ -27,15 +28,19 @@ struct PointBlock {
   }
 };
 
+// A candidate that no image shows, where a draw meets nothing: it lies behind camera 1.
+inline Eigen::Vector3d UnseenPoint() { return {0.0, 0.0, -1.0}; }
+
 // One world, drawn for one trial.
 class World {
  public:
   virtual ~World() = default;
   // The share of the points that each part of the world gets; they sum to 1.
   virtual std::vector<double> PartShares() const { return {1.0}; }
-  // Fills the block with independent candidates on a part. They may lie behind a camera or outside its image:
-  // only those that both see are kept.
-  virtual void DrawCandidates(size_t part, RandomStream& rng, PointBlock* block) const = 0;
+  // Fills the block with candidates on a part, `num_before` of which have been drawn before. They may lie
+  // behind a camera or outside its image: only those that both see are kept. Candidates are independent, or,
+  // where a part has only so many points, all different.
+  virtual void DrawCandidates(size_t part, size_t num_before, RandomStream& rng, PointBlock* block) const = 0;
   // See Scene::repeat_steps_m.
   virtual std::vector<Eigen::Vector3d> RepeatSteps() const { return {}; }
 };
@@ -43,7 +48,7 @@ class World {
 // For worlds that draw their candidates one by one.
 class PointwiseWorld : public World {
  public:
-  void DrawCandidates(size_t part, RandomStream& rng, PointBlock* block) const final {
+  void DrawCandidates(size_t part, size_t, RandomStream& rng, PointBlock* block) const final {
     for (size_t i = 0; i < PointBlock::kSize; ++i) block->Set(i, DrawCandidate(part, rng));
   }
 

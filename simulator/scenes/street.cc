@@ -1,0 +1,94 @@
+#include "simulator/scenes/scenes.h"
+#include "simulator/scenes/shares.h"
+#include "simulator/scenes/surfaces.h"
+#include "simulator/scenes/view_volume.h"
+
+namespace rcme {
+namespace {
+
+// The farthest of the points beyond the street, times street_length_m.
+constexpr double kFarSpan = 5.0;
+
+struct StreetSize {
+  double camera_height_m = 1.65;  // of a camera on the roof of a car (KITTI)
+  double facade_distance_m = 8.0, facade_height_m = 10.0, street_length_m = 60.0;
+};
+
+// Part 0: the road, 1: the facades, 2: what is far away. The street is convex: nothing hides anything.
+class StreetWorld : public PointwiseWorld {
+ public:
+  StreetWorld(const Camera& camera1, double turn, const StreetSize& size, std::vector<double> shares)
+      : camera_(camera1),
+        size_(size),
+        upright_(camera1, Eigen::Vector3d::Zero(), turn),
+        shares_(std::move(shares)) {
+    const double right = size.facade_distance_m, length = size.street_length_m;
+    const double road = size.camera_height_m, roof = road - size.facade_height_m;
+    road_ = {{1, {-right, road, -length}, {right, road, length}}};
+    facades_ = {{0, {-right, roof, -length}, {-right, road, length}},
+                {0, {right, roof, -length}, {right, road, length}}};
+  }
+
+  std::vector<double> PartShares() const override { return shares_; }
+
+ private:
+  Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const override {
+    return part == 2 ? DrawFarPoint(rng) : upright_.DrawPoint(part == 0 ? road_ : facades_, rng);
+  }
+
+  // Uniform in depth, across image 1, and in height up to that of the facades.
+  Eigen::Vector3d DrawFarPoint(RandomStream& rng) const {
+    const double depth_m = rng.Uniform(size_.street_length_m, kFarSpan * size_.street_length_m);
+    const double height_m = rng.Uniform(0.0, size_.facade_height_m);
+    return {depth_m * DrawRay(camera_, rng).x(), size_.camera_height_m - height_m, depth_m};
+  }
+
+  Camera camera_;
+  StreetSize size_;
+  UprightCamera upright_;
+  std::vector<Rectangle> road_, facades_;
+  std::vector<double> shares_;
+};
+
+// A street seen from a car in its middle: road, facades on both sides, and trees and houses beyond its end.
+// On road and facades the first images are uniform over what image 1 shows of them.
+//
+// Building frame: the origin at camera 1, z along the street.
+class Street : public SceneModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {
+        Parameter::Real("camera_height_m", &size_.camera_height_m, {1e-3, 1e6}, "m",
+                        "height of camera 1 above the road"),
+        Parameter::Real("facade_distance_m", &size_.facade_distance_m, {1e-3, 1e6}, "m",
+                        "distance of the facades from the middle of the street, where camera 1 is"),
+        Parameter::Real("facade_height_m", &size_.facade_height_m, {1e-3, 1e6}, "m",
+                        "height of the facades above the road"),
+        Parameter::Real(
+            "street_length_m", &size_.street_length_m, {1e-3, 1e6}, "m",
+            "how far from camera 1 the street runs; far points have one to five times that depth"),
+        Parameter::Real("max_heading_deg", &max_heading_deg_, {0.0, 45.0}, "deg",
+                        "bound of the angle between the optical axis and the street, uniform to either side"),
+        Parameter::Real("road_share", &road_share_, {0.0, 1.0}, "", "share of the points on the road"),
+        Parameter::Real("facade_share", &facade_share_, {0.0, 1.0}, "",
+                        "share of the points on both facades; those on neither are far away")};
+  }
+  // Where the images of the facades are about half-way between the middle and the border.
+  double TypicalDepth() const override { return 2.5 * size_.facade_distance_m; }
+
+  std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
+    const double far_share = RestOfShares({"road_share", road_share_}, {"facade_share", facade_share_});
+    return std::make_unique<StreetWorld>(view.camera1, DrawTurn(max_heading_deg_, rng), size_,
+                                         std::vector{road_share_, facade_share_, far_share});
+  }
+
+ private:
+  StreetSize size_;
+  double max_heading_deg_ = 3.0, road_share_ = 0.3, facade_share_ = 0.5;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneModel> MakeStreet() { return std::make_unique<Street>(); }
+
+}  // namespace rcme

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "parameters/input_error.h"
+#include "simulator/scenes/scenes.h"
+#include "simulator/scenes/surfaces.h"
+#include "simulator/scenes/view_volume.h"
+#include "stats/portable_math.h"
+
+namespace rcme {
+namespace {
+
+// Part 0: the plane left of the edge. Part 1: the one right of it. The edge is vertical and crosses the
+// optical axis of camera 1; angles[part] lies between its plane and the line from the edge back to the
+// camera.
+class TwoPlanesWorld : public PointwiseWorld {
+ public:
+  TwoPlanesWorld(const Camera& camera1, double edge_depth_m, const std::array<CosSin, 2>& angles,
+                 double first_plane_share)
+      : camera_(camera1),
+        edge_depth_m_(edge_depth_m),
+        angles_(angles),
+        first_plane_share_(first_plane_share) {}
+
+  std::vector<double> PartShares() const override { return {first_plane_share_, 1.0 - first_plane_share_}; }
+
+ private:
+  // Where the ray of a pixel uniform over image 1 meets the plane. The plane's points s metres from the edge
+  // are edge_depth_m - s cos deep and s sin to their side; both ratio = |x / z| of the ray.
+  Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const override {
+    const Eigen::Vector3d ray = DrawRay(camera_, rng);
+    const double ratio = part == 0 ? -ray.x() : ray.x();
+    const double denominator = angles_[part].sin + ratio * angles_[part].cos;
+    if (ratio < 0.0 || denominator < 1e-9) return UnseenPoint();
+    return edge_depth_m_ * angles_[part].sin / denominator * ray;
+  }
+
+  Camera camera_;
+  double edge_depth_m_;
+  std::array<CosSin, 2> angles_;
+  double first_plane_share_;
+};
+
+// Two walls that meet in a vertical edge: the corner of a room or of a house.
+class TwoPlanes : public SceneModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {
+        Parameter::Real("edge_depth_m", &edge_depth_m_, {1e-6, 1e9}, "m",
+                        "depth at which the optical axis of camera 1 meets the edge of the two planes"),
+        Parameter::Real(
+            "dihedral_deg", &dihedral_deg_, {2.0, 358.0}, "deg",
+            "angle between the planes on the camera's side: below 180 the inner corner of a room, "
+            "above the outer corner of a house"),
+        Parameter::Real("max_corner_turn_deg", &max_corner_turn_deg_, {0.0, 89.0}, "deg",
+                        "bound of the corner's turn about its edge, uniform to either side; at 0 both planes "
+                        "make the same angle with the optical axis"),
+        Parameter::Real("first_plane_share", &first_plane_share_, {0.0, 1.0}, "",
+                        "share of the points on the left plane; the others lie on the right one")};
+  }
+  double TypicalDepth() const override { return edge_depth_m_; }
+
+  std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
+    const double half_deg = 0.5 * dihedral_deg_;
+    if (max_corner_turn_deg_ >= std::min(half_deg, 180.0 - half_deg)) {
+      throw InputError(
+          fmt::format("max_corner_turn_deg: {} is not allowed; with dihedral_deg = {} give less than {}, or "
+                      "the camera may see "
+                      "one of the planes from behind",
+                      max_corner_turn_deg_, dihedral_deg_, std::min(half_deg, 180.0 - half_deg)));
+    }
+    const double turn = DrawTurn(max_corner_turn_deg_, rng), half_turn = half_deg / 360.0;
+    return std::make_unique<TwoPlanesWorld>(
+        view.camera1, edge_depth_m_,
+        std::array{PortableCosSinOfTurn(half_turn - turn), PortableCosSinOfTurn(half_turn + turn)},
+        first_plane_share_);
+  }
+
+ private:
+  double edge_depth_m_ = 6.0, dihedral_deg_ = 90.0, max_corner_turn_deg_ = 20.0, first_plane_share_ = 0.5;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneModel> MakeTwoPlanes() { return std::make_unique<TwoPlanes>(); }
+
+}  // namespace rcme

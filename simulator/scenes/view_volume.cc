@@ -1,0 +1,43 @@
+#include "simulator/scenes/view_volume.h"
+
+#include <fmt/format.h>
+
+#include "parameters/input_error.h"
+
+namespace rcme {
+
+void DepthRange::Check() const {
+  if (min_depth_m <= max_depth_m) return;
+  throw InputError(
+      fmt::format("min_depth_m: {} is not allowed; give at most max_depth_m = {}", min_depth_m, max_depth_m));
+}
+
+std::vector<Parameter> Parameters(DepthRange& depths) {
+  return {
+      Parameter::Real("min_depth_m", &depths.min_depth_m, {1e-6, 1e9}, "m", "least depth in camera 1"),
+      Parameter::Real("max_depth_m", &depths.max_depth_m, {1e-6, 1e9}, "m", "greatest depth in camera 1")};
+}
+
+Eigen::Vector3d DrawRay(const Camera& camera, RandomStream& rng) {
+  const double y_px = -0.5 + camera.height * rng.Uniform();
+  const double x_px = -0.5 + camera.width * rng.Uniform();
+  return camera.Ray({x_px, y_px});
+}
+
+// Three uniforms a point: its y in image 1, x in image 1, depth. A plain loop over arrays, which the compiler
+// turns into vectors.
+void DrawInViewVolume(const Camera& camera1, const DepthRange& depths, RandomStream& rng, PointBlock* block) {
+  std::array<double, 3 * PointBlock::kSize> uniforms;
+  rng.FillUniform(uniforms);
+  const Camera camera = camera1;  // a copy: the block is no alias of it
+  const double width_px = camera.width, height_px = camera.height;
+  const double min_depth_m = depths.min_depth_m, depth_span_m = depths.max_depth_m - depths.min_depth_m;
+  for (size_t i = 0; i < PointBlock::kSize; ++i) {
+    const double depth_m = min_depth_m + depth_span_m * uniforms[3 * i + 2];
+    block->x_m[i] = depth_m * ((-0.5 + width_px * uniforms[3 * i + 1] - camera.cx) / camera.fx);
+    block->y_m[i] = depth_m * ((-0.5 + height_px * uniforms[3 * i] - camera.cy) / camera.fy);
+    block->z_m[i] = depth_m;
+  }
+}
+
+}  // namespace rcme

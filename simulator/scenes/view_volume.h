@@ -1,0 +1,31 @@
+// The part of space that image 1 shows between two depths: where scenes place points that belong to nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/geometry/camera.h"
+#include "parameters/parameter.h"
+#include "simulator/scene_model.h"
+#include "stats/random.h"
+
+namespace rcme {
+
+// Depths in camera 1.
+struct DepthRange {
+  double min_depth_m = 2.0, max_depth_m = 8.0;
+
+  double Middle() const { return 0.5 * (min_depth_m + max_depth_m); }
+  double Draw(RandomStream& rng) const { return rng.Uniform(min_depth_m, max_depth_m); }
+  // Throws InputError that names both keys if there is no depth between them.
+  void Check() const;
+};
+std::vector<Parameter> Parameters(DepthRange& depths);
+
+// The viewing ray (third component 1) of a pixel uniform over the image; two uniforms, y first.
+Eigen::Vector3d DrawRay(const Camera& camera, RandomStream& rng);
+
+// Points whose first image is uniform over image 1 and whose depth is uniform in the range.
+void DrawInViewVolume(const Camera& camera1, const DepthRange& depths, RandomStream& rng, PointBlock* block);
+
+}  // namespace rcme
