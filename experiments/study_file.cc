@@ -76,16 +76,10 @@ long long WholeNumber(const Place& place, const YAML::Node& node, const std::str
 }
 
 void ReadFactors(const Place& place, const YAML::Node& node, Study* study) {
-  size_t num_combinations = 1;
   for (const auto& [key, levels] : Entries(place, node, "factors", {})) {
     Factor factor{key, {}};
     if (!levels.IsSequence() || levels.size() == 0) {
       place.Fail(levels, fmt::format("factors: {}: a list of at least one level is needed", key));
-    }
-    num_combinations *= levels.size();
-    if (num_combinations > kMaxConditions) {
-      place.Fail(levels, fmt::format("factors: {}: more than {} combinations of levels; give fewer levels",
-                                     key, kMaxConditions));
     }
     std::set<std::string> seen;
     for (const YAML::Node& level : levels) {
@@ -154,14 +148,14 @@ void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
     return map && map.IsMap() && map[key] ? map[key] : root;
   };
   const Settings first = FirstSettings(study);
-  if (std::ranges::count(first, "scene", &Settings::value_type::first) == 0)
-    place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
+  const auto scene = std::ranges::find(first, "scene", &Settings::value_type::first);
+  if (scene == first.end()) place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
   Settings choices;
-  for (const auto& setting : first) {
-    if (!IsChoice(setting.first)) continue;
-    choices.push_back(setting);
-    place.At(line_of(root["data"][setting.first] ? "data" : "factors", setting.first),
-             [&] { ResolveSettings(choices); });
+  for (const auto& choice : first) {
+    if (!IsChoice(choice.first)) continue;
+    choices.push_back(choice);
+    place.At(line_of(root["data"][choice.first] ? "data" : "factors", choice.first),
+             [&] { ResolveSettings({*scene, choice}); });
   }
   const auto resolve = [](Settings settings, const std::string& key, const std::string& value) {
     settings.emplace_back(key, value);
