@@ -73,7 +73,7 @@ class RecordBuffer {
 
  private:
   static constexpr std::chrono::milliseconds kWriteInterval{50};
-  static constexpr size_t kMaxWaiting = 10'000;
+  static constexpr size_t kMaxWaiting = 4'000;
 
   void Write() {
     {

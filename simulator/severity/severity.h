@@ -10,24 +10,33 @@
 
 namespace rcme {
 
-// Of the true inliers unless said otherwise. NaN: not defined (too few points, no translation).
+// Of the true inliers unless said otherwise. Unknown (NaN): not measured, or not defined (too few points, no
+// translation).
 struct Severity {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  double image_coverage = kUnknown;      // area of their convex hull in image 1, share of the image
-  double inlier_clark_evans = kUnknown;  // in image 1 (stats/spatial_pattern.h): 1 random, below 1 clustered
-  double outlier1_clark_evans = kUnknown;  // of the outliers in image 1
-  double outlier2_clark_evans = kUnknown;  // of the outliers in image 2
-  double parallax_median_deg = kUnknown;   // angle at the point between the rays to the two centres
-  double parallax_p10_deg = kUnknown;      // its 10th percentile
-  double planarity =
-      0.0;  // rms distance from their best plane / from their centroid: 0 plane, 0.58 round cloud
-  double homography_share = kUnknown;   // share that one homography explains (homography_share.h)
-  double log10_condition = kUnknown;    // of the information matrix of the motion (5x5, rad)
-  double crb_rotation_deg = kUnknown;   // Cramer-Rao bound: root mean square of the rotation error
-  double crb_direction_deg = kUnknown;  // ... of the error of the direction of translation
-  double chance_inlier_share =
-      kUnknown;  // share of uniform mismatches that the true motion would accept at 95 %
-  double undetectable_share = kUnknown;  // of all matches: wrong, but on the true epipolar line
+
+  // Area of their convex hull in image 1, share of the image.
+  double image_coverage = kUnknown;
+  // In image 1 (stats/spatial_pattern.h): 1 random, below 1 clustered; of the outliers in either image.
+  double inlier_clark_evans = kUnknown;
+  double outlier1_clark_evans = kUnknown;
+  double outlier2_clark_evans = kUnknown;
+  // Angle at a point between the rays to the two centres: median and 10th percentile.
+  double parallax_median_deg = kUnknown;
+  double parallax_p10_deg = kUnknown;
+  // Root mean square distance from their best plane over that from their centroid: 0 plane, 0.58 round cloud.
+  double planarity = kUnknown;
+  // Share that one homography explains (homography_share.h).
+  double homography_share = kUnknown;
+  // Condition number of the information matrix of the motion (5x5, rad).
+  double log10_condition = kUnknown;
+  // Cramer-Rao bounds: root mean square of the errors of rotation and direction of translation.
+  double crb_rotation_deg = kUnknown;
+  double crb_direction_deg = kUnknown;
+  // Share of uniform mismatches that the true motion would accept at 95 %.
+  double chance_inlier_share = kUnknown;
+  // Of all matches: wrong, but on the true epipolar line.
+  double undetectable_share = kUnknown;
 };
 
 // Noise of `sigma_px` per coordinate, normal: what the bounds are for. `rng` draws candidate homographies.

@@ -251,7 +251,7 @@ TEST(ParseStudyErrors, HostileYaml) {
 TEST(ParseStudyErrors, TooLarge) {
   EXPECT_TRUE(Refuses(SmallStudyYaml() + "#" + std::string(2'000'000, 'x'), {"larger than a study can be"}));
   std::string levels;
-  for (int i = 0; i < 120'000; ++i) levels += fmt::format("{},", i);
+  for (int i = 1; i <= 120'000; ++i) levels += fmt::format("{},", i);
   EXPECT_TRUE(Refuses(Edited("outlier_ratio: [0.0, 0.3]", "num_matches: [" + levels + "]"),
                       {":6:", "more than 100000 combinations"}));
 }
