@@ -54,11 +54,12 @@ def draw_directions(axes, trial, looks, side):
     right, up = side[0]
     centre = trial.views[1].centre_m
     axes.plot([0, centre[right]], [0, centre[up]], **TRUE_BASELINE, zorder=6)
-    for below, estimate in enumerate(reversed(trial.drawn)):  # equal ones: what lies below stays visible as a rim
+    for position, estimate in enumerate(reversed(trial.drawn)):
         if estimate.centre2_m is not None:
-            arrow = dict(arrowstyle="-|>", color=looks[estimate.label].color, linewidth=1.2 + 1.1 * below, shrinkA=0,
-                         shrinkB=0, mutation_scale=7 + 2.5 * below)
-            axes.annotate("", estimate.centre2_m[[right, up]], (0, 0), arrowprops=arrow, zorder=7 - 0.01 * below,
+            rim = position / max(len(trial.drawn) - 1, 2)  # of equal ones, those below stay visible as a rim
+            arrow = dict(arrowstyle="-|>", color=looks[estimate.label].color, linewidth=1.2 + 2.2 * rim, shrinkA=0,
+                         shrinkB=0, mutation_scale=7 + 5 * rim)
+            axes.annotate("", estimate.centre2_m[[right, up]], (0, 0), arrowprops=arrow, zorder=7 - rim / 2,
                           annotation_clip=False)
 
 
