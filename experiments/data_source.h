@@ -41,6 +41,7 @@ struct TrialData {
   std::string origin;   // for people: the scene or the file it came from
   double weight = 1.0;  // of the trial, where its number of outliers is drawn by importance (outlier_model.h)
   Severity severity;    // unknown for real pairs
+  std::vector<std::uint32_t> scene_point;  // per match, the one it is of or was of; empty: no scene
 };
 
 // All trials of one condition. Const and shared by threads.

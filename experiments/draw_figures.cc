@@ -8,6 +8,8 @@
 
 #include <filesystem>
 
+#include "parameters/input_error.h"
+
 extern char** environ;
 
 namespace rcme {
@@ -51,6 +53,19 @@ ScriptEnd RunPlotScript(const std::string& script, const std::vector<std::string
     return RunsWell(std::move(command)) ? ScriptEnd::kDone : ScriptEnd::kFailed;
   }
   return ScriptEnd::kNoPython;
+}
+
+void DrawOrThrow(const std::string& command, const std::string& script,
+                 const std::vector<std::string>& arguments) {
+  const ScriptEnd end = RunPlotScript(script, arguments);
+  if (end == ScriptEnd::kNoPython) {
+    throw InputError(fmt::format(
+        "{}: needs python3 with matplotlib and pandas; on Debian: apt-get install python3-matplotlib "
+        "python3-pandas",
+        command));
+  }
+  if (end == ScriptEnd::kFailed)
+    throw InputError(fmt::format("{}: nothing was drawn, for the reason above", command));
 }
 
 void DrawFigures(const std::string& script, const std::string& folder) {

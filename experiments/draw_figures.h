@@ -14,6 +14,11 @@ enum class ScriptEnd {
 // Runs a script of plots/ with these arguments; what it prints (the names of what it wrote) is dropped.
 ScriptEnd RunPlotScript(const std::string& script, const std::vector<std::string>& arguments);
 
+// The same, where the command's result is what the script draws. Throws InputError that begins with the
+// command's name and says what is missing.
+void DrawOrThrow(const std::string& command, const std::string& script,
+                 const std::vector<std::string>& arguments);
+
 // Runs a script of plots/ on a folder of results. A failure (no Python with matplotlib) is a message on
 // standard error that says how to draw the figures later: the results themselves are already written.
 void DrawFigures(const std::string& script, const std::string& folder);

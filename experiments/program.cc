@@ -27,6 +27,7 @@ int RunProgram(int argc, const char* const* argv) {
       "  rcme compare run.sqlite                                      each estimator against the first\n"
       "  rcme report run.sqlite --out report.html                     all of it on one page, with figures\n"
       "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
+      "  rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture\n"
       "  rcme audit --out audit                                       every claim of the paper, checked\n"
       "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
       "rcme"};
@@ -37,6 +38,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddCompareCommand(app);
   AddReportCommand(app);
   AddReplayCommand(app);
+  AddShowCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);
   AddEstimateCommand(app);

@@ -56,6 +56,7 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_na
                 std::move(observation.is_undetectable)};
   data.origin = "simulated";
   data.weight = observation.weight;
+  data.scene_point = std::move(observation.point);
   return data;
 }
 

@@ -41,6 +41,18 @@ def wrap(text, width, size, bold=False):
     return [line.rstrip() for line in lines if line.strip()] or [""]
 
 
+def fill(text, width, size, bold=False):
+    """The lines of a running text: broken between words, and within one only where it fills a line alone."""
+    lines = [""]
+    for word in text.split():
+        longer = f"{lines[-1]} {word}".strip()
+        if width_of(longer, size, bold) <= width:
+            lines[-1] = longer
+        else:
+            lines += wrap(word, width, size, bold)
+    return list(filter(None, lines)) or [""]
+
+
 def height_of(lines, size):
     """Inches of so many lines of a size."""
     return lines * size * LINE_HEIGHT

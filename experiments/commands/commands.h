@@ -12,6 +12,7 @@ void AddSummarizeCommand(CLI::App& app);
 void AddCompareCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
+void AddShowCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);
 void AddMatchCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/study_source.h"
 #include "experiments/result_store.h"
 #include "experiments/trial_fields.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -75,11 +75,7 @@ bool AreEqual(const TrialRecord& a, const TrialRecord& b) {
 void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t trial) {
   const ResultStore store = ResultStore::OpenForReading(run);
   const StudyPlan plan = store.Plan();
-  if (condition_index >= plan.conditions.size()) {
-    throw InputError(fmt::format("--condition: {} is not allowed; the study has conditions 0 to {}",
-                                 condition_index, plan.conditions.size() - 1));
-  }
-  const Condition& condition = plan.conditions[condition_index];
+  const Condition& condition = ChosenCondition(plan, condition_index);
   const TrialResult result = RunTrial(plan, condition, trial);
   PrintData(plan, condition, trial, result.data);
   const std::vector<TrialRecord> stored = store.RecordsOf(condition_index, trial);

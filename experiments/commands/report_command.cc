@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
 #include "experiments/report_data.h"
+#include "experiments/scratch_folder.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -18,26 +18,6 @@ namespace {
 struct ReportArguments {
   std::vector<std::string> runs;
   std::string against, out;
-};
-
-// A folder that is gone with everything in it when this object is.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rcme_report_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw InputError(fmt::format("{}: cannot be made", name));
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
 };
 
 // What cannot be written at the end had better be known before the figures are drawn.
@@ -52,13 +32,7 @@ void CheckOut(const std::string& out) {
 
 std::string PageFrom(const std::string& folder) {
   const std::string page = folder + "/report.html";
-  const ScriptEnd end = RunPlotScript("report.py", {folder, "--out", page});
-  if (end == ScriptEnd::kNoPython) {
-    throw InputError(
-        "report: needs python3 with matplotlib and pandas; on Debian: apt-get install python3-matplotlib "
-        "python3-pandas");
-  }
-  if (end == ScriptEnd::kFailed) throw InputError("report: the page was not written, for the reason above");
+  DrawOrThrow("report", "report.py", {folder, "--out", page});
   std::ostringstream text;
   text << std::ifstream(page, std::ios::binary).rdbuf();
   return text.str();

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/study_source.h"
 #include "experiments/progress.h"
 #include "experiments/run_until.h"
-#include "experiments/study_file.h"
 #include "experiments/summary_output.h"
 #include "parameters/input_error.h"
 
@@ -15,9 +15,8 @@ namespace {
 
 struct RunArguments {
   std::string study, out;
-  std::vector<std::string> overrides;
+  StudyChanges changes;
   std::int64_t trials = 0;
-  std::int64_t seed = -1;
   int threads = 0;
   std::string until, until_event = "failure";
   std::int64_t max_trials = UntilOptions{}.max_trials;
@@ -30,26 +29,9 @@ std::vector<std::string> EventNames() {
 }
 
 Study StudyFrom(const RunArguments& arguments) {
-  Study study = LoadStudy(arguments.study);
-  for (const std::string& text : arguments.overrides) {
-    const size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw InputError(fmt::format("--set: '{}' is not allowed; give key=value", text));
-    }
-    Override(&study, text.substr(0, equals), text.substr(equals + 1));
-  }
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
-  if (arguments.seed >= 0) study.seed = static_cast<std::uint64_t>(arguments.seed);
   return study;
-}
-
-// The plan of a study; what is wrong with the study as a whole names its file.
-StudyPlan PlanOf(const Study& study, const std::string& path) {
-  try {
-    return MakePlan(study);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", path, error.what()));
-  }
 }
 
 // What every condition took, as a table.
@@ -110,12 +92,7 @@ void AddRunCommand(CLI::App& app) {
       ->add_option("-o,--out", arguments->out,
                    "result file (SQLite); a run that was cut off is resumed, another study is refused")
       ->required();
-  command
-      ->add_option(
-          "--set", arguments->overrides,
-          "key=value, repeatable: a data key (sigma_px=1), an option of all estimators (mu=-2) or of one "
-          "(rcme.mu=-2), or a failure bound")
-      ->allow_extra_args(false);
+  AddStudyOptions(command, &arguments->changes);
   command->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{2'000'000'000}));
   CLI::Option* until =
@@ -133,8 +110,6 @@ void AddRunCommand(CLI::App& app) {
       ->check(CLI::Range(std::int64_t{100}, std::int64_t{2'000'000'000}))
       ->capture_default_str()
       ->needs(until);
-  command->add_option("--seed", arguments->seed, "seed of all random streams")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")

@@ -234,6 +234,7 @@ TEST(Help, IsThereForEveryCommand) {
                                                   {"compare"},
                                                   {"report"},
                                                   {"replay"},
+                                                  {"show"},
                                                   {"estimate"},
                                                   {"match"},
                                                   {"list"}}) {

@@ -1,0 +1,32 @@
+// The study a command works on, with what the command line changes in it, and one condition of it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "experiments/study_plan.h"
+
+namespace rcme {
+
+struct StudyChanges {
+  std::vector<std::string> overrides;  // key=value each
+  std::int64_t seed = -1;              // negative: the study's own
+
+  bool AreAny() const { return !overrides.empty() || seed >= 0; }
+};
+
+// The options --set and --seed.
+void AddStudyOptions(CLI::App* command, StudyChanges* changes);
+
+// The study of a YAML file, changed. Throws InputError (study_file.h).
+Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
+
+// The plan of a study; what is wrong with the study as a whole names its file.
+StudyPlan PlanOf(const Study& study, const std::string& path);
+
+// The condition that --condition names. Throws InputError that says which there are.
+const Condition& ChosenCondition(const StudyPlan& plan, std::uint32_t index);
+
+}  // namespace rcme
