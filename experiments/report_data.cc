@@ -7,6 +7,7 @@
 
 #include "experiments/comparison_output.h"
 #include "experiments/file_output.h"
+#include "experiments/report_findings.h"
 #include "experiments/summary_output.h"
 #include "parameters/input_error.h"
 
@@ -109,6 +110,7 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["trials_done"] = summary.num_trials_done;
   json["reference"] = comparison.reference;
   json["caution"] = comparison.caution;
+  json["findings"] = FindingsOf(summary, comparison);
   // Names are whatever bytes the study and the command line hold: what is no UTF-8 is replaced.
   WriteFileWhole(folder + "/run.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));

@@ -69,15 +69,19 @@ def study_link(run):
 
 
 def results_section(run):
-    return joined([tables.results(run), tables.quantities(run),
+    return joined([*(element("p", sentence) for sentence in run.facts.get("findings", [])),
+                   tables.results(run), tables.quantities(run),
                    details("Every number", tables.every_number(run))])
 
 
 def comparison_section(run):
     """Against the reference, a table per event; the first is open."""
     if run.comparison is None:
-        return element("p", "The study has one estimator: there is nothing to compare.", class_="note")
+        reason = run.facts.get("caution") or "the study has one estimator: there is nothing to compare"
+        return element("p", f"{reason[:1].upper()}{reason[1:]}.", class_="note")
+    caution = run.facts.get("caution")
     return joined([
+        *([element("p", f"Caution: {caution}.", class_="note")] if caution else []),
         element("p", "All estimators saw the same problems, so every trial is a pair. Positive differences are more "
                 "trials with the event than ", label_of(run.facts["reference"]), " had."),
         *(details(event["name"].replace("_", " ").capitalize(), tables.comparison(run, event), is_open=position == 0)
