@@ -20,6 +20,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "estimator/hypothesis.h"
 #include "estimator/motion_estimate.h"
@@ -103,7 +104,14 @@ std::string SuccessMessage(int num_inliers, int num_matches);
 template <typename Matches>
 void RefineWinner(const Matches& matches, const RansacOptions& options, const Sample& sample,
                   const typename Matches::Set& support, MotionEstimate* estimate) {
-  Hypothesis winner = InstantiateModel(matches.problem(), sample).value();
+  const std::optional<Hypothesis> instantiated = InstantiateModel(matches.problem(), sample);
+  if (!instantiated) {  // on the border of what has a model: the loop's arithmetic found one, this one does
+                        // not
+    estimate->status = MotionStatus::kRefinementDiverged;
+    estimate->message = "the winning sample is degenerate to rounding";
+    return;
+  }
+  Hypothesis winner = *instantiated;
   winner.pose = matches.SelectPose(winner.projection, support);
   estimate->initial_pose = winner.pose;
   const Fit<Matches> fit = Refine(matches, options.refinement, &winner, support);

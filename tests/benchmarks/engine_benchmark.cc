@@ -10,6 +10,7 @@
 #include "experiments/run_study.h"
 #include "experiments/summarize.h"
 #include "tests/benchmarks/engine_fixture.h"
+#include "tests/test_support/add_records.h"
 
 namespace rcme {
 namespace {
@@ -39,7 +40,7 @@ void BM_EngineStoreRecords(benchmark::State& state) {
     ResultStore store = ResultStore::OpenForRun(file.path(), plan);
     for (std::uint32_t trial = 0; trial < 100'000;) {
       for (TrialRecord& record : records) record.trial = trial++;
-      store.Add(records);
+      AddRecords(store, records);
     }
     store.Commit();
   }

@@ -114,6 +114,29 @@ TEST_P(EstimatorContract, SurvivesHostileMatches) {
   EXPECT_TRUE(Estimate(eight).pose_cov.allFinite());
 }
 
+// Cameras that cannot be true (the principal point far outside of the image, a focal length of one pixel or
+// of a million) leave samples on the border of rounding: any answer, with finite numbers if it is a motion.
+TEST_P(EstimatorContract, AnswersWhateverTheCamerasAreSaidToBe) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    for (const double principal_point_error_px : {-1e5, 0.0, 1e5}) {
+      for (const double scale : {1.0 / 700.0, 1.0, 1e6 / 700.0}) {
+        MotionProblem problem = MakePair(20, 0.5, 0.2, trial).problem;
+        for (Camera* camera : {&problem.camera1, &problem.camera2}) {
+          camera->cx += principal_point_error_px;
+          camera->cy += principal_point_error_px;
+          camera->fx *= scale;
+          camera->fy *= scale;
+        }
+        const MotionEstimate estimate = Estimate(problem, trial);
+        EXPECT_FALSE(estimate.message.empty());
+        if (estimate.status != MotionStatus::kOk) continue;
+        EXPECT_TRUE(estimate.cam2_from_cam1.R.allFinite() && estimate.cam2_from_cam1.t.allFinite());
+        EXPECT_TRUE(estimate.pose_cov.allFinite());
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Registry, EstimatorContract,
                          testing::Combine(testing::ValuesIn(EstimatorRegistry()),
                                           testing::Values(Reading::kAsPrinted, Reading::kRankAware),
