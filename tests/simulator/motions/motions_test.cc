@@ -1,0 +1,130 @@
+// The motions' laws, and the contract of every motion in the registry.
+#include "simulator/motions/motions.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "simulator/motion_registry.h"
+#include "stats/goodness_of_fit.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr std::uint32_t kNumMotions = 2000;
+
+Motion Draw(const MotionModel& model, std::uint32_t trial) {
+  RandomStream rng({1, 0, trial, 1});
+  return model.Draw(5.0, rng);
+}
+
+Eigen::Vector3d Centre2(const Motion& motion) {  // in camera 1, over the baseline
+  return -(motion.cam2_from_cam1.R.transpose() * motion.cam2_from_cam1.t);
+}
+
+double UniformCdf(double u) { return std::clamp(u, 0.0, 1.0); }
+
+class MotionContract : public testing::TestWithParam<MotionEntry> {};
+
+TEST_P(MotionContract, DrawsRotationsAndUnitDirectionsFromTheStreamAlone) {
+  const std::unique_ptr<MotionModel> model = GetParam().make();
+  for (std::uint32_t trial = 0; trial < 50; ++trial) {
+    const Motion motion = Draw(*model, trial), again = Draw(*model, trial);
+    const Eigen::Matrix3d& R = motion.cam2_from_cam1.R;
+    EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    EXPECT_GT(R.determinant(), 0.0);
+    EXPECT_NEAR(motion.cam2_from_cam1.t.norm(), 1.0, 1e-14);
+    EXPECT_GE(motion.baseline_m, 0.0);
+    EXPECT_EQ(R, again.cam2_from_cam1.R);
+    EXPECT_EQ(motion.cam2_from_cam1.t, again.cam2_from_cam1.t);
+  }
+  for (const Parameter& parameter : model->Parameters()) {
+    const std::string value = parameter.Value();
+    parameter.SetFromText(value);
+    EXPECT_EQ(parameter.Value(), value) << parameter.name();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, MotionContract, testing::ValuesIn(MotionRegistry()),
+                         [](const auto& motion) { return motion.param.name; });
+
+// Angle uniform up to the bound, direction uniform on the sphere (each coordinate uniform on [-1, 1]);
+// Kolmogorov-Smirnov at 1e-4. The same test sees angles that are uniform in their square.
+TEST(GeneralMotion, FollowsItsLaw) {
+  const std::unique_ptr<MotionModel> model = MakeGeneralMotion();
+  std::vector<double> angles, squares, tx, tz;
+  for (std::uint32_t trial = 0; trial < kNumMotions; ++trial) {
+    const RelativePose pose = Draw(*model, trial).cam2_from_cam1;
+    angles.push_back(VectorFromRotation(pose.R).norm() * kDegPerRad / 10.0);
+    squares.push_back(angles.back() * angles.back());
+    tx.push_back(0.5 * (pose.t.x() + 1.0));
+    tz.push_back(0.5 * (pose.t.z() + 1.0));
+  }
+  for (const std::vector<double>& sample : {angles, tx, tz}) {
+    EXPECT_GT(TestKolmogorovSmirnov(sample, UniformCdf).p_value, 1e-4);
+  }
+  EXPECT_LT(TestKolmogorovSmirnov(squares, UniformCdf).p_value, 1e-10);
+}
+
+// Camera 2 stands within 5 deg of the axis, uniform on the cap: (1 - cos angle) / (1 - cos 5 deg) is uniform.
+TEST(DirectedMotions, StandUniformlyInACone) {
+  for (const bool is_forward : {true, false}) {
+    const std::unique_ptr<MotionModel> model = is_forward ? MakeForwardMotion() : MakeSidewaysMotion();
+    std::vector<double> heights;
+    int num_left = 0;
+    for (std::uint32_t trial = 0; trial < kNumMotions; ++trial) {
+      const Eigen::Vector3d centre2 = Centre2(Draw(*model, trial));
+      const double along = is_forward ? centre2.z() : std::abs(centre2.x());
+      num_left += centre2.x() < 0.0;
+      heights.push_back((1.0 - along) / (1.0 - std::cos(5.0 / kDegPerRad)));
+    }
+    EXPECT_LE(*std::ranges::max_element(heights), 1.0 + 1e-9);
+    EXPECT_GT(TestKolmogorovSmirnov(heights, UniformCdf).p_value, 1e-4);
+    EXPECT_NEAR(num_left, kNumMotions / 2, 4.0 * std::sqrt(kNumMotions / 4.0));  // 6e-5
+  }
+}
+
+// The point on the first optical axis at distance b / (2 sin(angle / 2)) stays in the middle, as far away.
+TEST(Orbit, LooksAtTheSamePointFromTheSameDistance) {
+  const std::unique_ptr<MotionModel> model = MakeOrbit();
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const Motion motion = Draw(*model, trial);
+    const double distance_m = motion.baseline_m / (2.0 * std::sin(3.0 / kDegPerRad));
+    const Eigen::Vector3d point(0.0, 0.0, distance_m);
+    const Eigen::Vector3d in_cam2 =
+        motion.cam2_from_cam1.R * point + motion.baseline_m * motion.cam2_from_cam1.t;
+    EXPECT_LT((in_cam2 - point).norm(), 1e-12 * distance_m);
+  }
+}
+
+// Planar, and the chord makes half the yaw with the heading.
+TEST(Ackermann, IsACircularArc) {
+  const std::unique_ptr<MotionModel> model = MakeAckermann();
+  for (std::uint32_t trial = 0; trial < 50; ++trial) {
+    const Motion motion = Draw(*model, trial);
+    const Eigen::Vector3d turn = VectorFromRotation(motion.cam2_from_cam1.R);
+    const Eigen::Vector3d centre2 = Centre2(motion);
+    EXPECT_NEAR(turn.x(), 0.0, 1e-15);
+    EXPECT_NEAR(turn.z(), 0.0, 1e-15);
+    EXPECT_NEAR(centre2.y(), 0.0, 1e-15);
+    EXPECT_NEAR(std::atan2(centre2.x(), centre2.z()), -0.5 * turn.y(), 1e-12);  // y points down
+    EXPECT_LE(std::abs(turn.y()) * kDegPerRad, 5.0 + 1e-12);
+  }
+}
+
+TEST(PureRotation, HasNoBaseline) { EXPECT_EQ(Draw(*MakePureRotation(), 0).baseline_m, 0.0); }
+
+// A sideways baseline seen from the middle of it at depth 5 m subtends the parallax.
+TEST(BaselineLength, IsMetresOrParallax) {
+  Baseline baseline;
+  EXPECT_EQ(baseline.Length(5.0), 0.5);
+  baseline.parallax_deg = 4.0;
+  EXPECT_NEAR(2.0 * std::atan2(0.5 * baseline.Length(5.0), 5.0) * kDegPerRad, 4.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace rcme
