@@ -108,7 +108,6 @@ void SceneGenerator::DrawPart(const World& world, size_t part, size_t num_points
     for (size_t i = 0; i < PointBlock::kSize; ++i) {
       points[num_accepted] = {candidates.x_m[i], candidates.y_m[i], candidates.z_m[i]};
       num_accepted += std::min(clearance1[i], clearance2[i]) >= 0.0;
-      if (num_accepted >= points.size()) break;
     }
   }
   if (num_accepted < num_wanted) {

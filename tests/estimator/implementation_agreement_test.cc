@@ -461,7 +461,8 @@ void ExpectAgreement(const std::string& label, std::int64_t n, const std::vector
 
 std::uint32_t NumTrials() {
   const char* text = std::getenv("RCME_AGREEMENT_TRIALS");
-  return text ? static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10)) : 144;  // 4 of every condition
+  const size_t one_of_every_condition = 36 * SceneRegistry().size();
+  return static_cast<std::uint32_t>(text ? std::strtoul(text, nullptr, 10) : one_of_every_condition);
 }
 
 TEST(Implementations, AgreeOnWholeEstimates) {
