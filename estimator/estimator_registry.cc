@@ -10,14 +10,13 @@ namespace rcme {
 namespace {
 
 std::vector<EstimatorEntry>& Table() {
-  using SampleTest = RcmeEstimator::SampleTest;
   static std::vector<EstimatorEntry> registry = {
       {"standard", "RANSAC by inlier count, then Gold Standard refinement",
-       [](const RansacOptions& o) { return std::make_unique<StandardEstimator>(o); }},
+       [](const RansacOptions& o) { return MakeStandard(o); }},
       {"prcme", "RCME without the test of the model against its sample",
-       [](const RansacOptions& o) { return std::make_unique<RcmeEstimator>(o, SampleTest::kOff); }},
+       [](const RansacOptions& o) { return MakeRcme(o, SampleTest::kOff); }},
       {"rcme", "RCME: model-sample test, inlier set quality test, selection by entropy, refinement",
-       [](const RansacOptions& o) { return std::make_unique<RcmeEstimator>(o, SampleTest::kOn); }},
+       [](const RansacOptions& o) { return MakeRcme(o, SampleTest::kOn); }},
   };
   return registry;
 }

@@ -30,9 +30,11 @@ Sample::iterator KeepFirstOfEach(Sample* sample) {
 Thresholds Thresholds::For(const MotionProblem& problem, const RansacOptions& options, int point_dof) {
   const double confidence = 1.0 - options.significance_level;
   const double diagonal_px = std::hypot(problem.camera2.width, problem.camera2.height);
-  const double sample = ChiSquareQuantile(3, confidence);
-  return {point_dof == 3 ? sample : ChiSquareQuantile(point_dof, confidence), sample,
-          NormalQuantile(confidence), std::log(std::max(diagonal_px / problem.sigma_px, 1.0))};
+  const double sample_level = options.SampleLevelOrDefault();
+  const double sample = ChiSquareQuantile(3, 1.0 - sample_level);
+  const bool is_same = point_dof == 3 && sample_level == options.significance_level;
+  return {is_same ? sample : ChiSquareQuantile(point_dof, confidence), sample, NormalQuantile(confidence),
+          std::log(std::max(diagonal_px / problem.sigma_px, 1.0))};
 }
 
 Sample DrawSample(int n, RandomStream& rng) {

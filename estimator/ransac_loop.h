@@ -36,7 +36,7 @@ namespace rcme {
 // Quantiles of the tests, computed once per call.
 struct Thresholds {
   double point = 0.0;   // F_dof^-1(1 - alpha) of the point test
-  double sample = 0.0;  // chi2_3 quantile of the joint sample test
+  double sample = 0.0;  // chi2_3 quantile of the sample test, of all points jointly or of each
   double normal = 0.0;  // Phi^-1(1 - alpha)
   double outlier_cost =
       0.0;  // negative log-likelihood of an outlier: uniform over the image diagonal, units of sigma

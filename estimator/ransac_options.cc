@@ -11,11 +11,17 @@ double RansacOptions::MuOrDefault() const {
   return reading == Reading::kAsPrinted ? -3.53 : 6.0;
 }
 
+double RansacOptions::SampleLevelOrDefault() const {
+  return std::isnan(sample_significance_level) ? significance_level : sample_significance_level;
+}
+
 std::vector<Parameter> Parameters(RansacOptions& o) {
   return {
       Parameter::Integer("num_iterations", &o.num_iterations, {1, 1e6}, "hypotheses N of Algorithm 1"),
       Parameter::Real("significance_level", &o.significance_level, {1e-9, 0.5}, "",
                       "alpha of the sample, inlier and quality tests"),
+      Parameter::RealOrWord("sample_significance_level", &o.sample_significance_level, {1e-9, 0.5},
+                            "significance_level", "", "alpha of the sample test, where it has its own"),
       Parameter::Choice<Reading>("reading", &o.reading,
                                  {{"as_printed", Reading::kAsPrinted}, {"rank_aware", Reading::kRankAware}},
                                  "how the covariance of the Sampson vector is read"),

@@ -49,7 +49,8 @@ enum class Implementation {
 // Options of the RANSAC family (standard, prcme, rcme). Defaults are the paper's where it gives a value.
 struct RansacOptions {
   int num_iterations = 200;          // N, all of them unless early_stop_entropy says otherwise
-  double significance_level = 0.05;  // alpha of every test
+  double significance_level = 0.05;  // alpha of every test, the sample test's unless that has its own
+  double sample_significance_level = std::numeric_limits<double>::quiet_NaN();  // NaN: significance_level
   Reading reading = Reading::kAsPrinted;
   double mu = std::numeric_limits<double>::quiet_NaN();  // entropy threshold, nats; NaN: MuOrDefault
   QualityTest quality_test = QualityTest::kAsPrinted;
@@ -66,6 +67,7 @@ struct RansacOptions {
   // rank-aware, 6 nats of excess entropy: at 40 % outliers 3 nats refused 23 % of 150 trials and 6 nats 5 %,
   // with no more failures.
   double MuOrDefault() const;
+  double SampleLevelOrDefault() const;
 };
 
 // The fields by name, for study files and the command line. Valid as long as `options` lives.

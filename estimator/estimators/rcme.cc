@@ -1,6 +1,6 @@
 #include "estimator/estimators/rcme.h"
 
-#include "estimator/run_pipeline.h"
+#include "estimator/estimators/pipeline_estimator.h"
 #include "estimator/sample_consistency.h"
 
 namespace rcme {
@@ -11,7 +11,7 @@ struct PerPointSampleTest {
   static constexpr bool kTestsSample = true;
   static bool Passes(const MotionProblem& problem, const Hypothesis& hypothesis, const AsPrintedTest& test,
                      const Thresholds& thresholds) {
-    return EverySamplePointFits(problem, hypothesis, test, thresholds.point);
+    return EverySamplePointFits(problem, hypothesis, test, thresholds.sample);
   }
 };
 
@@ -33,13 +33,13 @@ struct NoSampleTest {
   }
 };
 
-template <typename PointTestT, typename SampleTest>
+template <typename PointTestT, typename SampleTestT>
 struct RcmePipeline {
   using PointTest = PointTestT;
-  static constexpr bool kTestsSample = SampleTest::kTestsSample;
+  static constexpr bool kTestsSample = SampleTestT::kTestsSample;
   static bool SampleIsConsistent(const MotionProblem& problem, const Hypothesis& hypothesis,
                                  const PointTest& test, const Thresholds& thresholds) {
-    return SampleTest::Passes(problem, hypothesis, test, thresholds);
+    return SampleTestT::Passes(problem, hypothesis, test, thresholds);
   }
   static bool InlierSetIsGood(double z, const RansacOptions& options, const Thresholds& thresholds) {
     return PassesQualityTest(z, thresholds.normal, options.quality_test);
@@ -53,19 +53,14 @@ struct RcmePipeline {
 
 }  // namespace
 
-RcmeEstimator::RcmeEstimator(const RansacOptions& options, SampleTest sample_test)
-    : options_(options), sample_test_(sample_test) {
-  Validate(options);
-}
-
-MotionEstimate RcmeEstimator::Estimate(const MotionProblem& problem, RandomStream& rng) const {
-  const bool tests_sample = sample_test_ == SampleTest::kOn;
-  if (options_.reading == Reading::kAsPrinted) {
-    return tests_sample ? RunPipeline<RcmePipeline<AsPrintedTest, PerPointSampleTest>>(problem, options_, rng)
-                        : RunPipeline<RcmePipeline<AsPrintedTest, NoSampleTest>>(problem, options_, rng);
+std::unique_ptr<RansacEstimator> MakeRcme(const RansacOptions& options, SampleTest sample_test) {
+  const bool tests_sample = sample_test == SampleTest::kOn;
+  if (options.reading == Reading::kAsPrinted) {
+    return tests_sample ? MakePipelineEstimator<RcmePipeline<AsPrintedTest, PerPointSampleTest>>(options)
+                        : MakePipelineEstimator<RcmePipeline<AsPrintedTest, NoSampleTest>>(options);
   }
-  return tests_sample ? RunPipeline<RcmePipeline<RankAwareTest, JointSampleTest>>(problem, options_, rng)
-                      : RunPipeline<RcmePipeline<RankAwareTest, NoSampleTest>>(problem, options_, rng);
+  return tests_sample ? MakePipelineEstimator<RcmePipeline<RankAwareTest, JointSampleTest>>(options)
+                      : MakePipelineEstimator<RcmePipeline<RankAwareTest, NoSampleTest>>(options);
 }
 
 }  // namespace rcme

@@ -1,6 +1,6 @@
 #include "estimator/estimators/standard.h"
 
-#include "estimator/run_pipeline.h"
+#include "estimator/estimators/pipeline_estimator.h"
 
 namespace rcme {
 namespace {
@@ -20,8 +20,8 @@ struct StandardPipeline {
 
 }  // namespace
 
-MotionEstimate StandardEstimator::Estimate(const MotionProblem& problem, RandomStream& rng) const {
-  return RunPipeline<StandardPipeline>(problem, options_, rng);
+std::unique_ptr<RansacEstimator> MakeStandard(const RansacOptions& options) {
+  return MakePipelineEstimator<StandardPipeline>(options);
 }
 
 }  // namespace rcme

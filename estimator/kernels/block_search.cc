@@ -42,7 +42,7 @@ void BlockSearch::InstantiateSamples() {
 
 std::uint8_t BlockSearch::FindConsistent() const {
   if (!tests_.tests_sample) return 0xff;
-  if (tests_.reading == Reading::kAsPrinted) return FindConsistentSamples(block_, thresholds_.point);
+  if (tests_.reading == Reading::kAsPrinted) return FindConsistentSamples(block_, thresholds_.sample);
   unsigned consistent = 0;
   for (int lane = 0; lane < kBlockSize; ++lane) {
     consistent |= static_cast<unsigned>(block_.sample_statistic[lane] <= thresholds_.sample) << lane;

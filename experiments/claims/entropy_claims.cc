@@ -144,7 +144,7 @@ bool SelectionFails(const Case& made, Selection selection) {
   options.selection = selection;
   RandomStream sampling_rng = StreamFor(made.name, StreamPurpose::kSampling);
   return FailsOrRefuses(Score(
-      RunReferencePipeline<SelectionPipeline<PointTest>>(made.problem(), options, sampling_rng), made.data, 0.0));
+      RunPipeline<SelectionPipeline<PointTest>>(made.problem(), options, sampling_rng), made.data, 0.0));
 }
 
 Outcome SelectionStatistic(Case& made) {

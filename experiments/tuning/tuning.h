@@ -24,6 +24,9 @@ struct TunedOption {
 
 inline constexpr size_t kMaxTunedSettings = 20'000;  // combinations of levels
 
+// A mu above any entropy, the upper end of its range: every inlier set passes.
+inline constexpr double kNoQualityTest = 1000.0;
+
 struct Tuning {
   std::string estimator;  // label in the study
   std::vector<TunedOption> options;

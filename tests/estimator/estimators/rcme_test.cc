@@ -29,13 +29,13 @@ MotionEstimate RunOn(const MotionEstimator& estimator, const MotionProblem& prob
   return estimator.Estimate(problem, rng);
 }
 
-constexpr auto kOn = RcmeEstimator::SampleTest::kOn;
-constexpr auto kOff = RcmeEstimator::SampleTest::kOff;
+constexpr auto kOn = SampleTest::kOn;
+constexpr auto kOff = SampleTest::kOff;
 
 TEST(Rcme, TheSampleTestIsTheOnlyDifferenceToPrcme) {
   const MotionProblem problem = MakeProblem(0.2, 0);
-  const LoopCounts with = RunOn(RcmeEstimator({}, kOn), problem).counts;
-  const LoopCounts without = RunOn(RcmeEstimator({}, kOff), problem).counts;
+  const LoopCounts with = RunOn(*MakeRcme({}, kOn), problem).counts;
+  const LoopCounts without = RunOn(*MakeRcme({}, kOff), problem).counts;
   EXPECT_EQ(without.num_inconsistent_samples, 0);
   EXPECT_GT(with.num_inconsistent_samples, 100);  // 83 % of samples hold an outlier
   EXPECT_EQ(with.num_degenerate_samples, without.num_degenerate_samples);
@@ -46,7 +46,7 @@ TEST(Rcme, AStricterMuRefusesMore) {
   const auto run_at = [&](double mu) {
     RansacOptions options;
     options.mu = mu;
-    return RunOn(RcmeEstimator(options, kOff), problem);
+    return RunOn(*MakeRcme(options, kOff), problem);
   };
   EXPECT_EQ(run_at(-1000.0).status, MotionStatus::kNoCandidate);
   EXPECT_EQ(run_at(-1000.0).counts.num_poor_inlier_sets, 200);
@@ -57,9 +57,9 @@ TEST(Rcme, AStricterMuRefusesMore) {
 TEST(Rcme, TheLevelAlphaTestPassesNoMoreThanThePrintedOne) {
   const MotionProblem problem = MakeProblem(0.2, 0);
   RansacOptions options;
-  const int printed = RunOn(RcmeEstimator(options, kOff), problem).counts.num_poor_inlier_sets;
+  const int printed = RunOn(*MakeRcme(options, kOff), problem).counts.num_poor_inlier_sets;
   options.quality_test = QualityTest::kLevelAlpha;
-  const int level = RunOn(RcmeEstimator(options, kOff), problem).counts.num_poor_inlier_sets;
+  const int level = RunOn(*MakeRcme(options, kOff), problem).counts.num_poor_inlier_sets;
   EXPECT_GE(level, printed);
 }
 
@@ -69,20 +69,20 @@ TEST(Rcme, TheSizeConditionUsesTheGivenInlierRatio) {
   options.mu = 1000.0;
   options.lambda = 1.0;
   options.inlier_ratio = 1.0;  // no model can have all matches as inliers
-  const MotionEstimate refused = RunOn(RcmeEstimator(options, kOff), problem);
+  const MotionEstimate refused = RunOn(*MakeRcme(options, kOff), problem);
   EXPECT_EQ(refused.status, MotionStatus::kNoCandidate);
   EXPECT_GT(refused.counts.num_too_small_inlier_sets, 0);
   options.inlier_ratio = 0.0;
-  EXPECT_EQ(RunOn(RcmeEstimator(options, kOff), problem).counts.num_too_small_inlier_sets, 0);
+  EXPECT_EQ(RunOn(*MakeRcme(options, kOff), problem).counts.num_too_small_inlier_sets, 0);
 }
 
 TEST(Rcme, EarlyStopEndsAtTheFirstCandidateBelowTheThreshold) {
   const MotionProblem problem = MakeProblem(0.0, 0);
   RansacOptions options;
-  const MotionEstimate whole = RunOn(RcmeEstimator(options, kOn), problem);
+  const MotionEstimate whole = RunOn(*MakeRcme(options, kOn), problem);
   EXPECT_EQ(whole.counts.num_hypotheses, options.num_iterations);
   options.early_stop_entropy = 1000.0;
-  const MotionEstimate early = RunOn(RcmeEstimator(options, kOn), problem);
+  const MotionEstimate early = RunOn(*MakeRcme(options, kOn), problem);
   EXPECT_LT(early.counts.num_hypotheses, options.num_iterations);
   EXPECT_EQ(early.counts.num_candidates, 1);
 }
@@ -91,16 +91,16 @@ TEST(Rcme, SelectionTakesTheLeastMeanEntropy) {
   const MotionProblem problem = MakeProblem(0.0, 0);
   RansacOptions options;
   options.lambda = 0.0;
-  const double of_many = RunOn(RcmeEstimator(options, kOn), problem).mean_entropy;
+  const double of_many = RunOn(*MakeRcme(options, kOn), problem).mean_entropy;
   options.num_iterations = 20;
-  EXPECT_LE(of_many, RunOn(RcmeEstimator(options, kOn), problem).mean_entropy);
+  EXPECT_LE(of_many, RunOn(*MakeRcme(options, kOn), problem).mean_entropy);
 }
 
 TEST(Rcme, RefinementNoneReturnsTheWinnerItself) {
   const MotionProblem problem = MakeProblem(0.0, 0);
   RansacOptions options;
   options.refinement = Refinement::kNone;
-  const MotionEstimate estimate = RunOn(RcmeEstimator(options, kOn), problem);
+  const MotionEstimate estimate = RunOn(*MakeRcme(options, kOn), problem);
   EXPECT_EQ(estimate.cam2_from_cam1.R, estimate.initial_pose.R);
   EXPECT_EQ(estimate.num_consistent_before, estimate.num_consistent_after);
 }
@@ -125,7 +125,7 @@ TEST(Standard, AgreesWithOpenCv) {
       for (int col = 0; col < 3; ++col) cv_pose.R(r, col) = R.at<double>(r, col);
       cv_pose.t(r) = t.at<double>(r);
     }
-    const MotionEstimate estimate = RunOn(StandardEstimator({}), problem, trial);
+    const MotionEstimate estimate = RunOn(*MakeStandard({}), problem, trial);
     ASSERT_EQ(estimate.status, MotionStatus::kOk);
     EXPECT_LT(RotationAngleBetween(estimate.cam2_from_cam1.R, cv_pose.R), 0.02);
     EXPECT_LT(AngleBetween(estimate.cam2_from_cam1.t, cv_pose.t), 0.15);

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "estimator/ransac_estimator.h"
+#include "estimator/run_pipeline.h"
+
+namespace rcme {
+
+// The estimator of a pipeline (ransac_loop.h) in one implementation.
+template <typename Pipeline, typename Engine>
+class PipelineEstimator : public RansacEstimator {
+ public:
+  explicit PipelineEstimator(const RansacOptions& options) : options_(options) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return RunPipeline<Pipeline, Engine>(problem, options_, rng);
+  }
+  HypothesisTrace Trace(const MotionProblem& problem, RandomStream& rng) const override {
+    return TracePipeline<Engine>(problem, options_, rng);
+  }
+  LoopResult Decide(const HypothesisTrace& trace) const override {
+    if (trace.hypotheses.empty()) return {};
+    TraceSearch search(trace);
+    return RunRansacLoop<Pipeline>(options_, trace.num_matches, search);
+  }
+  MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop) const override {
+    return FinishPipeline<Engine>(problem, options_, loop);
+  }
+
+ private:
+  RansacOptions options_;
+};
+
+// Throws InputError if the options contradict each other.
+template <typename Pipeline>
+std::unique_ptr<RansacEstimator> MakePipelineEstimator(const RansacOptions& options) {
+  Validate(options);
+  if (options.implementation == Implementation::kReference) {
+    return std::make_unique<PipelineEstimator<Pipeline, ReferenceEngine<Pipeline>>>(options);
+  }
+  return std::make_unique<PipelineEstimator<Pipeline, FastEngine<Pipeline>>>(options);
+}
+
+}  // namespace rcme

@@ -1,0 +1,50 @@
+// Every hypothesis of a call with its verdict and score: what the loop decides from scores can be decided
+// again, under other thresholds, without a new estimation.
+#pragma once
+
+#include <vector>
+
+#include "estimator/ransac_loop.h"
+
+namespace rcme {
+
+struct ScoredHypothesis {
+  Proposal proposal;
+  InlierScore score;  // of all matches; only where the sample is consistent
+};
+
+struct HypothesisTrace {
+  int num_matches = 0;
+  Thresholds thresholds;
+  std::vector<ScoredHypothesis> hypotheses;  // in the order of the loop; empty: refused before it
+};
+
+// Every hypothesis that `search` makes. The decisions of the loop play no part.
+template <typename Search>
+HypothesisTrace TraceHypotheses(int num_iterations, int num_matches, Search& search) {
+  HypothesisTrace trace{num_matches, search.thresholds(), {}};
+  trace.hypotheses.reserve(static_cast<size_t>(num_iterations));
+  for (int j = 0; j < num_iterations; ++j) {
+    ScoredHypothesis hypothesis{search.Next(), {}};
+    if (hypothesis.proposal.verdict == SampleVerdict::kConsistent) hypothesis.score = search.Score();
+    trace.hypotheses.push_back(hypothesis);
+  }
+  return trace;
+}
+
+// A search (ransac_loop.h) over hypotheses made before.
+class TraceSearch {
+ public:
+  explicit TraceSearch(const HypothesisTrace& trace)
+      : thresholds_(trace.thresholds), next_(trace.hypotheses.begin()) {}
+
+  const Thresholds& thresholds() const { return thresholds_; }
+  Proposal Next() { return (next_++)->proposal; }
+  InlierScore Score() const { return std::prev(next_)->score; }
+
+ private:
+  const Thresholds& thresholds_;
+  std::vector<ScoredHypothesis>::const_iterator next_;
+};
+
+}  // namespace rcme

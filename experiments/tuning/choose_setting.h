@@ -1,0 +1,48 @@
+// Which setting meets the target, from two sets of trials.
+//
+// The exploration proposes: the settings that no other beats in both what the target limits and what is to be
+// least (the Pareto front), in the order of how surely they meet the target. The calibration, on trials that
+// played no part in that, certifies them one after the other (stats/risk_control.h) until the first that is
+// not; of the certified ones the best is chosen. Hence P(the chosen setting violates the target) <= delta,
+// whatever the exploration proposed.
+//
+// A target on the risk has nothing to certify: the exploration chooses, the calibration bounds its risk.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/tuning/setting_counts.h"
+#include "experiments/tuning/tuning.h"
+
+namespace rcme {
+
+struct Choice {
+  std::optional<size_t> setting;  // nothing: `why` says why not
+  std::vector<size_t> path;       // in the order of testing
+  size_t num_certified = 0;       // of the path
+  double risk_bound = 0.0;        // target risk: the risk is at most this, except with probability delta
+  std::string why;                // the nearest reachable figure, and how many trials would do
+};
+
+// What the target limits: false refusals or failures.
+ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count);
+
+// Whether these rates are above the target's limits.
+bool ViolatesTarget(const Tuning& tuning, const SettingCount& count);
+
+// cost_of_failure * failure rate + cost_of_refusal * refusal rate.
+double Risk(const Tuning& tuning, const SettingCount& count);
+
+// Both hold one count per setting, of disjoint sets of trials; `settings` names them in messages.
+Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& settings,
+                     const std::vector<SettingCount>& explored, const std::vector<SettingCount>& calibrated);
+
+// Why `num_trials` of calibration are too few for the target, whatever they show; empty if they are not.
+std::string WhyTooFewTrials(const Tuning& tuning, std::int64_t num_trials);
+
+// "at most 5 % of ..., except with probability 0.05", for people.
+std::string TargetInWords(const Tuning& tuning);
+
+}  // namespace rcme

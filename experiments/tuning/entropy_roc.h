@@ -1,0 +1,30 @@
+// Whether psi, the mean entropy of an inlier set, tells good models from others: what a threshold mu can do
+// at all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/progress.h"
+#include "experiments/result_store.h"
+#include "experiments/study_plan.h"
+#include "stats/thresholds.h"
+
+namespace rcme {
+
+struct EntropyRoc {
+  size_t estimator = 0;  // in the study
+  // "samples": of a trial the first model of eight true matches (good) and the first of a sample with a wrong
+  // one (bad), among those that pass the sample test. "winners": the model that is selected without a quality
+  // test, good where the estimate is within the bounds.
+  std::string of;
+  std::vector<double> good, bad;  // psi; at most one of each per trial
+  AreaUnderCurve area;            // P(psi of a good one < psi of a bad one)
+};
+
+// For every estimator of the plan that has entropies; without those where no good or no bad one was seen.
+// Advances `progress` by one per trial.
+std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange trials, int num_threads,
+                                           Progress* progress);
+
+}  // namespace rcme

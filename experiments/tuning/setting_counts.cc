@@ -1,0 +1,140 @@
+#include "experiments/tuning/setting_counts.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <atomic>
+#include <map>
+
+#include "experiments/for_each_index.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+enum class Ending { kGood, kFailed, kRefused };
+
+// All settings in one trial.
+class TrialDecisions {
+ public:
+  TrialDecisions(const StudyPlan& plan, const Condition& condition, std::uint32_t trial)
+      : name_{plan.study.seed, condition.index, trial, 0},
+        bounds_(plan.study.failure),
+        data_(condition.source->Make(name_)) {
+    if (data_.weight != 1.0) throw InputError("tune: tilted_to: trials with weights cannot be tuned on");
+  }
+
+  // How each setting of the group ends, and how it would without the quality test.
+  template <typename Visit>
+  void ForEachSetting(const SettingPlan& plan, const TraceGroup& group, Visit visit) {
+    endings_.clear();
+    decided_.clear();
+    const RansacEstimator* tracer = AsRansac(*group.tracer);
+    if (tracer) {
+      RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
+      trace_ = tracer->Trace(data_.problem, rng);
+    }
+    for (const size_t s : group.settings) {
+      const Ending ending = EndingOf(*plan.estimators[s]);
+      const MotionEstimator* without = plan.without_quality_test[s].get();
+      const auto known = decided_.find(without);
+      visit(s, ending, known == decided_.end() ? decided_[without] = EndingOf(*without) : known->second);
+    }
+  }
+
+ private:
+  Ending EndingOf(const MotionEstimator& estimator) {
+    const RansacEstimator* parts = AsRansac(estimator);
+    if (!parts) {
+      RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
+      return EndingOf(estimator.Estimate(data_.problem, rng));
+    }
+    const LoopResult loop = parts->Decide(trace_);
+    if (!loop.winner) return Ending::kRefused;
+    const auto known = endings_.find(loop.winner->sample);  // the winner's sample decides what follows
+    if (known != endings_.end()) return known->second;
+    return endings_[loop.winner->sample] = EndingOf(parts->Finish(data_.problem, loop));
+  }
+
+  Ending EndingOf(const MotionEstimate& estimate) const {
+    const TrialRecord record = Score(estimate, data_, 0.0);
+    if (record.status != MotionStatus::kOk) return Ending::kRefused;
+    return HasFailed(record, bounds_) ? Ending::kFailed : Ending::kGood;
+  }
+
+  StreamName name_;
+  const FailureBounds& bounds_;
+  TrialData data_;
+  HypothesisTrace trace_;
+  std::map<Sample, Ending> endings_;
+  std::map<const MotionEstimator*, Ending> decided_;
+};
+
+// Counters of one condition and setting that several threads add to.
+struct SharedCount {
+  std::array<std::atomic<std::int64_t>, 4> of{};  // failures, refusals, good, false refusals
+  void Add(Ending ending, Ending without_quality_test) {
+    const bool is_refused = ending == Ending::kRefused, is_good = without_quality_test == Ending::kGood;
+    of[0] += ending == Ending::kFailed;
+    of[1] += is_refused;
+    of[2] += is_good;
+    of[3] += is_refused && is_good;
+  }
+};
+
+void CheckTrialsAreFresh(const StudyPlan& plan) {
+  for (const auto& [key, value] : plan.study.data) {
+    if (key == "scene" && value == kMatchFilesScene) {
+      throw InputError(
+          "tune: scene: match_files: the pairs of a folder repeat, so that no fresh trials are left to "
+          "verify a setting on; tune in simulation, then `rcme run` the pairs with --add-estimator");
+    }
+  }
+}
+
+}  // namespace
+
+SettingCount& SettingCount::operator+=(const SettingCount& other) {
+  n += other.n;
+  failures += other.failures;
+  refusals += other.refusals;
+  good += other.good;
+  false_refusals += other.false_refusals;
+  return *this;
+}
+
+SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials,
+                            int num_threads, Progress* progress) {
+  CheckTrialsAreFresh(plan);
+  const auto num_settings = settings.settings.size(), num_conditions = plan.conditions.size();
+  const auto per_condition = static_cast<std::int64_t>(trials.end - trials.first);
+  std::vector<SharedCount> shared(num_conditions * num_settings);
+  ForEachIndex(per_condition * static_cast<std::int64_t>(num_conditions), num_threads,
+               [&](std::int64_t index) {
+                 const auto condition = static_cast<size_t>(index / per_condition);
+                 const auto trial = trials.first + static_cast<std::uint32_t>(index % per_condition);
+                 TrialDecisions decisions(plan, plan.conditions[condition], trial);
+                 for (const TraceGroup& group : settings.groups) {
+                   decisions.ForEachSetting(settings, group, [&](size_t s, Ending ending, Ending without) {
+                     shared[condition * num_settings + s].Add(ending, without);
+                   });
+                 }
+                 progress->Advance(1);
+               });
+  SettingCounts counts(num_conditions, std::vector<SettingCount>(num_settings));
+  for (size_t i = 0; i < shared.size(); ++i) {
+    const auto& of = shared[i].of;
+    counts[i / num_settings][i % num_settings] = {per_condition, of[0], of[1], of[2], of[3]};
+  }
+  return counts;
+}
+
+std::vector<SettingCount> SumOver(const SettingCounts& counts, const std::vector<std::uint32_t>& conditions) {
+  std::vector<SettingCount> sums(counts.front().size());
+  for (const std::uint32_t condition : conditions) {
+    for (size_t s = 0; s < sums.size(); ++s) sums[s] += counts[condition][s];
+  }
+  return sums;
+}
+
+}  // namespace rcme

@@ -1,0 +1,37 @@
+// What every setting of a tuning does in the same trials.
+#pragma once
+
+#include <vector>
+
+#include "experiments/progress.h"
+#include "experiments/result_store.h"
+#include "experiments/study_plan.h"
+#include "experiments/tuning/setting_plan.h"
+#include "stats/risk_control.h"
+
+namespace rcme {
+
+// Over some trials. A trial is good where the setting without its quality test returns a motion within the
+// bounds; refused nevertheless, it is a false refusal.
+struct SettingCount {
+  std::int64_t n = 0, failures = 0, refusals = 0, good = 0, false_refusals = 0;
+
+  ErrorCount Failure() const { return {failures, n}; }
+  ErrorCount Refusal() const { return {refusals, n}; }
+  ErrorCount FalseRefusal() const { return {false_refusals, good}; }
+  SettingCount& operator+=(const SettingCount& other);
+};
+
+// [condition][setting].
+using SettingCounts = std::vector<std::vector<SettingCount>>;
+
+// The same trials of every condition of the plan. A function of the plan, the settings and the range alone.
+// Advances `progress` by one per trial. Throws InputError if a condition has weighted trials, or its trials
+// are not fresh (real pairs).
+SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials,
+                            int num_threads, Progress* progress);
+
+// One per setting: the sum over some conditions.
+std::vector<SettingCount> SumOver(const SettingCounts& counts, const std::vector<std::uint32_t>& conditions);
+
+}  // namespace rcme

@@ -1,0 +1,109 @@
+#include "experiments/tuning/setting_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "estimator/estimator_registry.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+std::vector<std::vector<std::string>> Combinations(const std::vector<TunedOption>& options) {
+  std::vector<std::vector<std::string>> rows = {{}};
+  for (const TunedOption& option : options) {
+    if (option.levels.size() * rows.size() > kMaxTunedSettings) {
+      throw InputError(fmt::format("tune: more than {} combinations of levels", kMaxTunedSettings));
+    }
+    std::vector<std::vector<std::string>> longer;
+    for (const std::vector<std::string>& row : rows) {
+      for (const std::string& level : option.levels) {
+        longer.push_back(row);
+        longer.back().push_back(level);
+      }
+    }
+    rows = std::move(longer);
+  }
+  return rows;
+}
+
+// What the options have in common of those that share a trace, as text.
+std::string TraceKey(RansacOptions options) {
+  std::string key;
+  for (const Parameter& parameter : Parameters(options)) {
+    if (std::ranges::find(kDecisionOptions, parameter.name()) == std::end(kDecisionOptions)) {
+      key += parameter.Value() + ' ';
+    }
+  }
+  return key;
+}
+
+// The options whose trace serves all of them: as many hypotheses as any looks at, with likelihoods if any
+// selects by them, none left out by an early stop.
+RansacOptions TraceOptions(const SettingPlan& plan, const std::vector<size_t>& settings) {
+  RansacOptions options = plan.settings[settings.front()].spec.options;
+  options.early_stop_entropy = RansacOptions().early_stop_entropy;
+  for (const size_t s : settings) {
+    const RansacOptions& other = plan.settings[s].spec.options;
+    options.num_iterations = std::max(options.num_iterations, other.num_iterations);
+    if (other.selection == Selection::kPredictiveLikelihood) options.selection = other.selection;
+  }
+  return options;
+}
+
+void AddEstimators(const EstimatorEntry& entry, SettingPlan* plan) {
+  std::map<std::string, std::shared_ptr<const MotionEstimator>> shared;
+  for (const TunedSetting& setting : plan->settings) {
+    plan->estimators.push_back(entry.make(setting.spec.options));
+    RansacOptions options = setting.spec.options;
+    options.mu = kNoQualityTest;
+    std::string key;
+    for (const Parameter& parameter : Parameters(options)) key += parameter.Value() + ' ';
+    std::shared_ptr<const MotionEstimator>& estimator = shared[key];
+    if (!estimator) estimator = entry.make(options);
+    plan->without_quality_test.push_back(estimator);
+  }
+}
+
+void AddGroups(const EstimatorEntry& entry, SettingPlan* plan) {
+  std::map<std::string, std::vector<size_t>> groups;
+  for (size_t s = 0; s < plan->settings.size(); ++s) {
+    const bool shares = AsRansac(*plan->estimators[s]) != nullptr;
+    groups[shares ? TraceKey(plan->settings[s].spec.options) : fmt::format("{}", s)].push_back(s);
+  }
+  for (const auto& [key, settings] : groups) {
+    plan->groups.push_back({entry.make(TraceOptions(*plan, settings)), settings});
+  }
+}
+
+}  // namespace
+
+const EstimatorSpec& TunedEstimator(const Study& study, const Tuning& tuning) {
+  std::vector<std::string> labels;
+  for (const EstimatorSpec& spec : study.estimators) {
+    if (spec.label == tuning.estimator) return spec;
+    labels.push_back(spec.label);
+  }
+  throw InputError(fmt::format("tune: estimator: '{}' is not in the study; its labels: {}", tuning.estimator,
+                               fmt::join(labels, ", ")));
+}
+
+SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning) {
+  const EstimatorSpec& base = TunedEstimator(study, tuning);
+  SettingPlan plan;
+  for (std::vector<std::string>& levels : Combinations(tuning.options)) {
+    EstimatorSpec spec = base;
+    for (size_t i = 0; i < levels.size(); ++i) {
+      FindParameter(Parameters(spec.options), tuning.options[i].name).SetFromText(levels[i]);
+    }
+    plan.settings.push_back({std::move(levels), std::move(spec)});
+  }
+  const EstimatorEntry& entry = FindEstimator(base.name);
+  AddEstimators(entry, &plan);
+  AddGroups(entry, &plan);
+  return plan;
+}
+
+}  // namespace rcme

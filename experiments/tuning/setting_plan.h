@@ -1,0 +1,43 @@
+// The settings of a tuning, and how few estimations they take: settings that differ in decision options alone
+// (estimator/ransac_estimator.h) share one trace per trial.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimator/ransac_estimator.h"
+#include "experiments/study.h"
+#include "experiments/tuning/tuning.h"
+
+namespace rcme {
+
+// One combination of levels.
+struct TunedSetting {
+  std::vector<std::string> levels;  // one per tuned option
+  EstimatorSpec spec;               // the study's estimator with these levels
+};
+
+// Settings that share a trace.
+struct TraceGroup {
+  std::shared_ptr<const MotionEstimator> tracer;
+  std::vector<size_t> settings;
+};
+
+struct SettingPlan {
+  std::vector<TunedSetting> settings;                              // the first option slowest
+  std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // of each setting
+  // The same without the quality test, mu at its upper end: whatever it refuses is no matter of quality.
+  // Settings that differ in mu alone share one.
+  std::vector<std::shared_ptr<const MotionEstimator>> without_quality_test;
+  std::vector<TraceGroup> groups;
+};
+
+// Throws InputError: no such estimator or option, a value that is not allowed, more settings than
+// kMaxTunedSettings.
+SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning);
+
+// The estimator of the study that is tuned. Throws InputError that lists the labels.
+const EstimatorSpec& TunedEstimator(const Study& study, const Tuning& tuning);
+
+}  // namespace rcme

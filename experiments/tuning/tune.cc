@@ -1,0 +1,128 @@
+#include "experiments/tuning/tune.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+std::vector<std::uint32_t> AllConditions(const StudyPlan& plan) {
+  std::vector<std::uint32_t> all(plan.conditions.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+std::vector<std::string> NamesOf(const Tuning& tuning, const SettingPlan& settings) {
+  std::vector<std::string> names;
+  for (const TunedSetting& setting : settings.settings) names.push_back(SettingInWords(tuning, setting));
+  return names;
+}
+
+void CheckTrialsSuffice(const StudyPlan& plan) {
+  const Tuning& tuning = *plan.study.tuning;
+  const auto num_conditions = static_cast<std::int64_t>(plan.conditions.size());
+  const std::string why = WhyTooFewTrials(tuning, tuning.calibrate * num_conditions);
+  if (!why.empty()) {
+    throw InputError(fmt::format("tune: calibrate: {} per condition, {} conditions: {}", tuning.calibrate,
+                                 num_conditions, why));
+  }
+}
+
+std::vector<SettingCount> CountAll(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials,
+                                   int num_threads, Progress* progress) {
+  return SumOver(CountOutcomes(plan, settings, trials, num_threads, progress), AllConditions(plan));
+}
+
+// The plan of the study with the tuned estimator before its own.
+StudyPlan PlanWithTuned(const StudyPlan& plan, const SettingPlan& settings, size_t tuned) {
+  StudyPlan with = plan;
+  with.study.estimators.insert(with.study.estimators.begin(), settings.settings[tuned].spec);
+  with.estimators.insert(with.estimators.begin(), settings.estimators[tuned]);
+  return with;
+}
+
+// What the plain estimator does must be what was decided from traces.
+void CheckAgreement(const VerifiedEstimator& plain, const SettingCount& decided) {
+  if (plain.failure.errors == decided.failures && plain.refusal.errors == decided.refusals) return;
+  throw std::logic_error(
+      fmt::format("tune: {} failures and {} refusals by plain calls, {} and {} decided from traces",
+                  plain.failure.errors, plain.refusal.errors, decided.failures, decided.refusals));
+}
+
+}  // namespace
+
+TuningTrials::TuningTrials(const Tuning& tuning) {
+  std::uint32_t first = 0;
+  const auto next = [&first](int n) {
+    const TrialRange range{first, first + static_cast<std::uint32_t>(n)};
+    first = range.end;
+    return range;
+  };
+  explore = next(tuning.explore);
+  calibrate = next(tuning.calibrate);
+  verify = next(tuning.verify);
+}
+
+std::string SettingInWords(const Tuning& tuning, const TunedSetting& setting) {
+  std::vector<std::string> words;
+  for (size_t i = 0; i < setting.levels.size(); ++i) {
+    words.push_back(fmt::format("{} = {}", tuning.options[i].name, setting.levels[i]));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_threads) {
+  CheckTrialsSuffice(plan);
+  const Tuning& tuning = *plan.study.tuning;
+  const TuningTrials trials(tuning);
+  TuneResult result;
+  const std::int64_t per_condition = tuning.explore + tuning.calibrate + 2LL * tuning.verify;
+  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
+  result.settings = NamesOf(tuning, settings);
+  result.explored = CountAll(plan, settings, trials.explore, num_threads, &progress);
+  result.calibrated = CountAll(plan, settings, trials.calibrate, num_threads, &progress);
+  result.choice = ChooseSetting(tuning, result.settings, result.explored, result.calibrated);
+  result.verified = CountAll(plan, settings, trials.verify, num_threads, &progress);
+  if (!result.choice.setting) return result;
+  const size_t tuned = *result.choice.setting;
+  result.estimators =
+      VerifyEstimators(PlanWithTuned(plan, settings, tuned), trials.verify, num_threads, &progress);
+  CheckAgreement(result.estimators.front(), result.verified[tuned]);
+  return result;
+}
+
+Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int n, int num_threads) {
+  CheckTrialsSuffice(plan);
+  const Tuning& tuning = *plan.study.tuning;
+  if (tuning.target == TuneTarget::kRisk) {
+    throw InputError("--repeat: target: risk: the least risk is no limit that a repetition could violate");
+  }
+  const TuningTrials trials(tuning);
+  const std::vector<std::string> names = NamesOf(tuning, settings);
+  Repetitions repetitions;
+  const std::int64_t per_condition = n * (tuning.explore + 1LL * tuning.calibrate) + tuning.verify;
+  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
+  repetitions.reference = CountAll(plan, settings, trials.verify, num_threads, &progress);
+  repetitions.num_chosen.resize(names.size());
+  for (int r = 1; r <= n; ++r) {
+    StudyPlan fresh = plan;
+    fresh.study.seed += static_cast<std::uint64_t>(r);
+    const Choice choice =
+        ChooseSetting(tuning, names, CountAll(fresh, settings, trials.explore, num_threads, &progress),
+                      CountAll(fresh, settings, trials.calibrate, num_threads, &progress));
+    ++repetitions.num_done;
+    if (!choice.setting) {
+      ++repetitions.num_without_choice;
+      continue;
+    }
+    ++repetitions.num_chosen[*choice.setting];
+    repetitions.num_violations += ViolatesTarget(tuning, repetitions.reference[*choice.setting]);
+  }
+  return repetitions;
+}
+
+}  // namespace rcme

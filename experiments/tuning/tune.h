@@ -1,0 +1,44 @@
+// From a study with a `tune` block to a setting that is certified, and measured on fresh trials.
+#pragma once
+
+#include "experiments/tuning/choose_setting.h"
+#include "experiments/tuning/setting_counts.h"
+#include "experiments/tuning/verify_setting.h"
+
+namespace rcme {
+
+// Three sets of trials of every condition that have none in common.
+struct TuningTrials {
+  TrialRange explore, calibrate, verify;
+  explicit TuningTrials(const Tuning& tuning);
+};
+
+struct TuneResult {
+  std::vector<std::string> settings;  // "mu = 2, lambda = 0.5", one per setting
+  std::vector<SettingCount> explored, calibrated, verified;
+  Choice choice;
+  // The tuned estimator first, then those of the study, on the trials for verification; empty without a
+  // choice.
+  std::vector<VerifiedEstimator> estimators;
+};
+
+// The plan is that of the study, whose tune block there is. Throws InputError: CountOutcomes', or too few
+// trials for the target.
+TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_threads);
+
+// A setting for people: "mu = 2, lambda = 0.5".
+std::string SettingInWords(const Tuning& tuning, const TunedSetting& setting);
+
+// A tuning repeated with fresh seeds: how often does what it chose violate the target?
+struct Repetitions {
+  std::int64_t num_done = 0, num_without_choice = 0;
+  std::int64_t num_violations = 0;       // the chosen setting's rates in `reference` violate the target
+  std::vector<std::int64_t> num_chosen;  // per setting
+  std::vector<SettingCount> reference;   // per setting: many trials that no repetition saw
+};
+
+// Explores and calibrates with the seeds seed + 1, ..., seed + n; the reference are the study's trials for
+// verification. Throws as Tune; InputError for a target on the risk, which nothing can violate.
+Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int n, int num_threads);
+
+}  // namespace rcme

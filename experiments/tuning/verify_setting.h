@@ -1,0 +1,28 @@
+// The tuned estimator and those of the study on trials that played no part in tuning: plain calls, the same
+// problems for all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/progress.h"
+#include "experiments/result_store.h"
+#include "experiments/study_plan.h"
+#include "stats/paired.h"
+#include "stats/risk_control.h"
+
+namespace rcme {
+
+struct VerifiedEstimator {
+  EstimatorSpec spec;
+  ErrorCount failure, refusal, failure_or_refusal;
+  // In how many trials failure or refusal happened to the first estimator (first) and to this one (second).
+  PairedCounts against_first;
+};
+
+// Every estimator of the plan in these trials of every condition, in the plan's order. Advances `progress` by
+// one per trial.
+std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials, int num_threads,
+                                                Progress* progress);
+
+}  // namespace rcme

@@ -1,0 +1,204 @@
+// Estimation taken apart: trace, decide, finish.
+#include "estimator/ransac_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include "estimator/estimator_registry.h"
+#include "simulator/noise/noise_laws.h"
+#include "simulator/observe.h"
+#include "simulator/scene_generator.h"
+
+namespace rcme {
+namespace {
+
+MotionProblem MakeProblem(double outlier_ratio, int num_matches, std::uint32_t trial) {
+  SceneGenerator model("uniform_volume");
+  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
+  RandomStream scene_rng({1, 3, trial, 1}), noise_rng({1, 3, trial, 2}), outlier_rng({1, 3, trial, 3});
+  const Scene scene = model.Generate(scene_rng);
+  return {
+      Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(outlier_ratio), noise_rng, outlier_rng).matches,
+      scene.camera1, scene.camera2, 0.5};
+}
+
+// Few matches refuse, many outliers leave no candidate, identical matches are degenerate.
+std::vector<MotionProblem> Problems() {
+  std::vector<MotionProblem> problems = {MakeProblem(0.2, 120, 0), MakeProblem(0.5, 120, 1),
+                                         MakeProblem(0.8, 60, 2), MakeProblem(0.0, 9, 3),
+                                         MakeProblem(0.0, 20, 4)};
+  problems.back().matches.resize(7);
+  problems.push_back(problems.front());
+  std::fill(problems.back().matches.begin() + 1, problems.back().matches.end(), problems.back().matches[0]);
+  return problems;
+}
+
+RandomStream SamplingStream() { return RandomStream({1, 3, 0, 4}); }
+
+MotionEstimate EstimateWith(const MotionEstimator& estimator, const MotionProblem& problem) {
+  RandomStream rng = SamplingStream();
+  return estimator.Estimate(problem, rng);
+}
+
+void ExpectEqual(const MotionEstimate& a, const MotionEstimate& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.message, b.message);
+  EXPECT_EQ(a.cam2_from_cam1.R, b.cam2_from_cam1.R);
+  EXPECT_EQ(a.cam2_from_cam1.t, b.cam2_from_cam1.t);
+  EXPECT_EQ(a.pose_cov, b.pose_cov);
+  EXPECT_EQ(a.inliers, b.inliers);
+  EXPECT_EQ(a.num_support, b.num_support);
+  EXPECT_EQ(a.mean_entropy, b.mean_entropy);
+  EXPECT_EQ(a.z_statistic, b.z_statistic);
+  EXPECT_EQ(a.num_consistent_after, b.num_consistent_after);
+  EXPECT_EQ(a.counts.num_hypotheses, b.counts.num_hypotheses);
+  EXPECT_EQ(a.counts.num_inconsistent_samples, b.counts.num_inconsistent_samples);
+  EXPECT_EQ(a.counts.num_poor_inlier_sets, b.counts.num_poor_inlier_sets);
+  EXPECT_EQ(a.counts.num_candidates, b.counts.num_candidates);
+}
+
+std::vector<RansacOptions> BothReadings() {
+  std::vector<RansacOptions> both(2);
+  both[1].reading = Reading::kRankAware;
+  for (RansacOptions& options : both) options.num_iterations = 60;
+  return both;
+}
+
+TEST(RansacEstimator, EstimateIsFinishOfDecideOfTrace) {
+  for (const EstimatorEntry& entry : EstimatorRegistry()) {
+    for (RansacOptions options : BothReadings()) {
+      for (const Implementation implementation : {Implementation::kFast, Implementation::kReference}) {
+        options.implementation = implementation;
+        const auto estimator = entry.make(options);
+        const RansacEstimator* parts = AsRansac(*estimator);
+        ASSERT_NE(parts, nullptr) << entry.name;
+        for (const MotionProblem& problem : Problems()) {
+          SCOPED_TRACE(entry.name);
+          RandomStream rng = SamplingStream();
+          ExpectEqual(parts->Finish(problem, parts->Decide(parts->Trace(problem, rng))),
+                      EstimateWith(*estimator, problem));
+        }
+      }
+    }
+  }
+}
+
+// One trace decided under other options is what an estimation with these options gives.
+TEST(RansacEstimator, ATraceServesAllDecisionOptions) {
+  const std::vector<std::pair<std::string, std::string>> changes = {{"mu", "-1000"},
+                                                                    {"mu", "-5"},
+                                                                    {"mu", "1.5"},
+                                                                    {"mu", "1000"},
+                                                                    {"lambda", "0"},
+                                                                    {"lambda", "0.9"},
+                                                                    {"lambda", "1"},
+                                                                    {"inlier_ratio", "0.5"},
+                                                                    {"inlier_ratio", "1"},
+                                                                    {"quality_test", "level_alpha"},
+                                                                    {"early_stop_entropy", "2"},
+                                                                    {"early_stop_entropy", "-4"},
+                                                                    {"num_iterations", "1"},
+                                                                    {"num_iterations", "37"},
+                                                                    {"selection", "mean_entropy"}};
+  for (const MotionProblem& problem : Problems()) {
+    for (RansacOptions options : BothReadings()) {
+      if (options.reading == Reading::kRankAware) options.selection = Selection::kPredictiveLikelihood;
+      const auto traced = FindEstimator("rcme").make(options);
+      RandomStream rng = SamplingStream();
+      const HypothesisTrace trace = AsRansac(*traced)->Trace(problem, rng);
+      for (const auto& [key, value] : changes) {
+        SCOPED_TRACE(key + " = " + value);
+        RansacOptions changed = options;
+        FindParameter(Parameters(changed), key).SetFromText(value);
+        const auto estimator = FindEstimator("rcme").make(changed);
+        const RansacEstimator* parts = AsRansac(*estimator);
+        ExpectEqual(parts->Finish(problem, parts->Decide(trace)), EstimateWith(*estimator, problem));
+      }
+    }
+  }
+}
+
+TEST(RansacEstimator, DecisionOptionsAreOptions) {
+  RansacOptions options;
+  const std::vector<Parameter> parameters = Parameters(options);
+  for (const char* name : kDecisionOptions) EXPECT_NO_THROW(FindParameter(parameters, name)) << name;
+}
+
+// The sample test has its own level; as long as none is given it is alpha.
+TEST(RansacEstimator, TheSampleTestHasALevelOfItsOwn) {
+  const MotionProblem problem = MakeProblem(0.0, 120, 5);
+  for (RansacOptions options : BothReadings()) {
+    const auto num_inconsistent = [&](double level) {
+      options.sample_significance_level = level;
+      return EstimateWith(*FindEstimator("rcme").make(options), problem).counts.num_inconsistent_samples;
+    };
+    const int at_alpha = num_inconsistent(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_EQ(num_inconsistent(options.significance_level), at_alpha);
+    EXPECT_GT(num_inconsistent(0.5), at_alpha);
+    EXPECT_LT(num_inconsistent(1e-6), at_alpha);
+  }
+}
+
+// A change of the unit of length in the image.
+MotionProblem InUnits(MotionProblem problem, int scale) {
+  for (Correspondence& match : problem.matches) {
+    match.x1_px *= scale;
+    match.x2_px *= scale;
+  }
+  for (Camera* camera : {&problem.camera1, &problem.camera2}) {
+    camera->fx *= scale;
+    camera->fy *= scale;
+    camera->cx *= scale;
+    camera->cy *= scale;
+    camera->width *= scale;
+    camera->height *= scale;
+  }
+  problem.sigma_px *= scale;
+  return problem;
+}
+
+struct Verdict {
+  MotionStatus status;
+  int num_candidates, num_poor_inlier_sets, num_inconsistent_samples, num_support;
+  std::vector<int> inliers;
+  friend bool operator==(const Verdict&, const Verdict&) = default;
+};
+Verdict VerdictOf(const RansacOptions& options, const MotionProblem& problem) {
+  const MotionEstimate e = EstimateWith(*FindEstimator("rcme").make(options), problem);
+  return {e.status,
+          e.counts.num_candidates,
+          e.counts.num_poor_inlier_sets,
+          e.counts.num_inconsistent_samples,
+          e.num_support,
+          e.inliers};
+}
+
+// Pixels times 1000: excess entropy has no unit, so no verdict may change. A mu among the entropies, so that
+// some sets pass and some do not.
+TEST(RansacEstimator, RankAwareVerdictsDoNotDependOnTheUnitOfLength) {
+  RansacOptions options;
+  options.reading = Reading::kRankAware;
+  options.mu = 2.0;
+  int num_passed = 0, num_poor = 0;
+  for (const Selection selection : {Selection::kMeanEntropy, Selection::kPredictiveLikelihood}) {
+    options.selection = selection;
+    for (std::uint32_t trial = 0; trial < 20; ++trial) {
+      const MotionProblem problem = MakeProblem(0.2, 150, trial);
+      const Verdict verdict = VerdictOf(options, problem);
+      EXPECT_EQ(verdict, VerdictOf(options, InUnits(problem, 1000))) << "trial " << trial;
+      num_passed += verdict.num_candidates;
+      num_poor += verdict.num_poor_inlier_sets;
+    }
+  }
+  EXPECT_GT(num_passed, 50);
+  EXPECT_GT(num_poor, 50);
+}
+
+// As printed, h grows by 4 log(1000) = 27.6 nats, and mu = -3.53 px refuses everything.
+TEST(RansacEstimator, PrintedVerdictsDependOnTheUnitOfLength) {
+  const MotionProblem problem = MakeProblem(0.1, 150, 0);
+  EXPECT_EQ(VerdictOf({}, problem).status, MotionStatus::kOk);
+  EXPECT_EQ(VerdictOf({}, InUnits(problem, 1000)).status, MotionStatus::kNoCandidate);
+}
+
+}  // namespace
+}  // namespace rcme
