@@ -16,22 +16,6 @@ std::vector<std::uint32_t> AllConditions(const StudyPlan& plan) {
   return all;
 }
 
-std::vector<std::string> NamesOf(const Tuning& tuning, const SettingPlan& settings) {
-  std::vector<std::string> names;
-  for (const TunedSetting& setting : settings.settings) names.push_back(SettingInWords(tuning, setting));
-  return names;
-}
-
-void CheckTrialsSuffice(const StudyPlan& plan) {
-  const Tuning& tuning = *plan.study.tuning;
-  const auto num_conditions = static_cast<std::int64_t>(plan.conditions.size());
-  const std::string why = WhyTooFewTrials(tuning, tuning.calibrate * num_conditions);
-  if (!why.empty()) {
-    throw InputError(fmt::format("tune: calibrate: {} per condition, {} conditions: {}", tuning.calibrate,
-                                 num_conditions, why));
-  }
-}
-
 std::vector<SettingCount> CountAll(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials,
                                    int num_threads, Progress* progress) {
   return SumOver(CountOutcomes(plan, settings, trials, num_threads, progress), AllConditions(plan));
@@ -67,22 +51,35 @@ TuningTrials::TuningTrials(const Tuning& tuning) {
   verify = next(tuning.verify);
 }
 
-std::string SettingInWords(const Tuning& tuning, const TunedSetting& setting) {
-  std::vector<std::string> words;
-  for (size_t i = 0; i < setting.levels.size(); ++i) {
-    words.push_back(fmt::format("{} = {}", tuning.options[i].name, setting.levels[i]));
+void CheckTrialsSuffice(const Tuning& tuning, size_t num_conditions) {
+  const std::string why =
+      WhyTooFewTrials(tuning, tuning.calibrate * static_cast<std::int64_t>(num_conditions));
+  if (!why.empty()) {
+    throw InputError(fmt::format("tune: calibrate: {} per condition, {} conditions: {}", tuning.calibrate,
+                                 num_conditions, why));
   }
-  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan& settings) {
+  std::vector<std::string> names;
+  for (const TunedSetting& setting : settings.settings) {
+    std::vector<std::string> words;
+    for (size_t i = 0; i < setting.levels.size(); ++i) {
+      words.push_back(fmt::format("{} = {}", tuning.options[i].name, setting.levels[i]));
+    }
+    names.push_back(fmt::format("{}", fmt::join(words, ", ")));
+  }
+  return names;
 }
 
 TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_threads) {
-  CheckTrialsSuffice(plan);
   const Tuning& tuning = *plan.study.tuning;
+  CheckTrialsSuffice(tuning, plan.conditions.size());
   const TuningTrials trials(tuning);
   TuneResult result;
   const std::int64_t per_condition = tuning.explore + tuning.calibrate + 2LL * tuning.verify;
   Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
-  result.settings = NamesOf(tuning, settings);
+  result.settings = SettingsInWords(tuning, settings);
   result.explored = CountAll(plan, settings, trials.explore, num_threads, &progress);
   result.calibrated = CountAll(plan, settings, trials.calibrate, num_threads, &progress);
   result.choice = ChooseSetting(tuning, result.settings, result.explored, result.calibrated);
@@ -96,13 +93,13 @@ TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_thre
 }
 
 Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int n, int num_threads) {
-  CheckTrialsSuffice(plan);
   const Tuning& tuning = *plan.study.tuning;
+  CheckTrialsSuffice(tuning, plan.conditions.size());
   if (tuning.target == TuneTarget::kRisk) {
     throw InputError("--repeat: target: risk: the least risk is no limit that a repetition could violate");
   }
   const TuningTrials trials(tuning);
-  const std::vector<std::string> names = NamesOf(tuning, settings);
+  const std::vector<std::string> names = SettingsInWords(tuning, settings);
   Repetitions repetitions;
   const std::int64_t per_condition = n * (tuning.explore + 1LL * tuning.calibrate) + tuning.verify;
   Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));

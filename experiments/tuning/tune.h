@@ -26,8 +26,12 @@ struct TuneResult {
 // trials for the target.
 TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_threads);
 
-// A setting for people: "mu = 2, lambda = 0.5".
-std::string SettingInWords(const Tuning& tuning, const TunedSetting& setting);
+// For people: "mu = 2, lambda = 0.5", one per setting.
+std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan& settings);
+
+// Throws InputError if the calibration of so many conditions cannot certify the target, whatever it shows;
+// the message says how many trials could.
+void CheckTrialsSuffice(const Tuning& tuning, size_t num_conditions);
 
 // A tuning repeated with fresh seeds: how often does what it chose violate the target?
 struct Repetitions {

@@ -1,0 +1,102 @@
+#include "experiments/tuning/transfer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "parameters/input_error.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+namespace {
+
+std::string ConditionInWords(const StudyPlan& plan, const Condition& condition) {
+  std::vector<std::string> words;
+  for (size_t f = 0; f < plan.factor_names.size(); ++f) {
+    words.push_back(fmt::format("{} = {}", plan.factor_names[f], condition.levels[f]));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+// A condition of a one-at-a-time study in short: what differs from the first condition.
+std::string DifferenceInWords(const StudyPlan& plan, const Condition& condition) {
+  std::vector<std::string> words;
+  for (size_t f = 0; f < plan.factor_names.size(); ++f) {
+    if (condition.levels[f] == plan.conditions.front().levels[f]) continue;
+    words.push_back(fmt::format("{} = {}", plan.factor_names[f], condition.levels[f]));
+  }
+  return words.empty() ? "base" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::vector<Family> EveryCondition(const StudyPlan& plan) {
+  std::vector<Family> families;
+  for (const Condition& condition : plan.conditions) {
+    families.push_back({plan.study.design == Design::kOneAtATime ? DifferenceInWords(plan, condition)
+                                                                 : ConditionInWords(plan, condition),
+                        {condition.index},
+                        {}});
+  }
+  return families;
+}
+
+std::vector<Family> FamiliesBy(const StudyPlan& plan, const std::string& by) {
+  if (by.empty()) return EveryCondition(plan);
+  const auto factor = std::ranges::find(plan.factor_names, by);
+  if (factor == plan.factor_names.end()) {
+    throw InputError(fmt::format("--by {}: the study has no such factor; its factors: {}", by,
+                                 fmt::join(plan.factor_names, ", ")));
+  }
+  const auto f = static_cast<size_t>(factor - plan.factor_names.begin());
+  std::vector<Family> families;
+  for (const Condition& condition : plan.conditions) {
+    const std::string words = fmt::format("{} = {}", by, condition.levels[f]);
+    auto family = std::ranges::find(families, words, &Family::words);
+    if (family == families.end()) family = families.insert(families.end(), {words, {}, {}});
+    family->conditions.push_back(condition.index);
+  }
+  return families;
+}
+
+void CheckFamilies(const StudyPlan& plan, const std::vector<Family>& families) {
+  const Tuning& tuning = *plan.study.tuning;
+  if (tuning.target == TuneTarget::kRisk) {
+    throw InputError("transfer: target: risk: the least risk is no promise that could be kept or broken");
+  }
+  if (families.size() < 2) throw InputError("transfer: the study has one family of scenes; two are needed");
+  for (const Family& family : families) {
+    CheckTrialsSuffice(tuning, family.conditions.size());
+  }
+}
+
+}  // namespace
+
+TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
+                               int num_threads) {
+  const Tuning& tuning = *plan.study.tuning;
+  TransferResult result;
+  result.families = FamiliesBy(plan, by);
+  CheckFamilies(plan, result.families);
+  result.settings = SettingsInWords(tuning, settings);
+  const TuningTrials trials(tuning);
+  Progress progress("trials", (trials.verify.end - 0LL) * static_cast<std::int64_t>(plan.conditions.size()));
+  const auto count = [&](TrialRange range) {
+    return CountOutcomes(plan, settings, range, num_threads, &progress);
+  };
+  const SettingCounts explored = count(trials.explore), calibrated = count(trials.calibrate);
+  const SettingCounts verified = count(trials.verify);
+  for (Family& family : result.families) {
+    family.choice = ChooseSetting(tuning, result.settings, SumOver(explored, family.conditions),
+                                  SumOver(calibrated, family.conditions));
+    result.verified.push_back(SumOver(verified, family.conditions));
+  }
+  return result;
+}
+
+TransferVerdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
+  const ErrorCount targeted = TargetedCount(tuning, count);
+  const Interval interval = ExactBinomialInterval(targeted.errors, targeted.n);
+  if (interval.upper <= tuning.at_most) return TransferVerdict::kHolds;
+  return interval.lower > tuning.at_most ? TransferVerdict::kViolated : TransferVerdict::kUndecided;
+}
+
+}  // namespace rcme

@@ -1,0 +1,97 @@
+#include "experiments/tuning/transfer_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/file_output.h"
+#include "experiments/summary_output.h"
+#include "experiments/tuning/tune_output.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string VerdictName(TransferVerdict verdict) {
+  switch (verdict) {
+    case TransferVerdict::kHolds:
+      return "holds";
+    case TransferVerdict::kViolated:
+      return "violated";
+    case TransferVerdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+// The other families on which a family's choice has this verdict.
+std::vector<std::string> OthersWith(TransferVerdict verdict, const Tuning& tuning,
+                                    const TransferResult& result, size_t family) {
+  std::vector<std::string> words;
+  for (size_t other = 0; other < result.families.size(); ++other) {
+    if (other == family) continue;
+    const SettingCount& count = result.verified[other][*result.families[family].choice.setting];
+    if (VerdictOf(tuning, count) == verdict) words.push_back(result.families[other].words);
+  }
+  return words;
+}
+
+}  // namespace
+
+std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result) {
+  const Tuning& tuning = *plan.study.tuning;
+  std::vector<std::vector<std::string>> rows = {{"tuned on", "setting", "there, fresh trials",
+                                                 "others: holds", "undecided", "violated", "violated on"}};
+  for (size_t f = 0; f < result.families.size(); ++f) {
+    const Family& family = result.families[f];
+    if (!family.choice.setting) {
+      rows.push_back({family.words, "none: " + family.choice.why, "", "", "", "", ""});
+      continue;
+    }
+    const auto with = [&](TransferVerdict verdict) { return OthersWith(verdict, tuning, result, f); };
+    const std::vector<std::string> violated = with(TransferVerdict::kViolated);
+    rows.push_back({family.words, result.settings[*family.choice.setting],
+                    RateForTable(TargetedCount(tuning, result.verified[f][*family.choice.setting])),
+                    fmt::format("{}", with(TransferVerdict::kHolds).size()),
+                    fmt::format("{}", with(TransferVerdict::kUndecided).size()),
+                    fmt::format("{}", violated.size()), fmt::format("{}", fmt::join(violated, "; "))});
+  }
+  return fmt::format(
+      "{}: {} tuned on one family, verified on all; {} trials to verify a family of one condition\nTarget: "
+      "{}\n\n{}",
+      plan.study.name, tuning.estimator, tuning.verify, TargetInWords(tuning), FormatColumns(rows));
+}
+
+std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, const TransferResult& result) {
+  const Tuning& tuning = *plan.study.tuning;
+  Json families = Json::array(), cells = Json::array();
+  for (size_t f = 0; f < result.families.size(); ++f) {
+    const Family& family = result.families[f];
+    const std::optional<size_t>& s = family.choice.setting;
+    families.push_back({{"words", family.words},
+                        {"levels", s ? Json(settings.settings[*s].levels) : Json(nullptr)},
+                        {"why", family.choice.why}});
+    for (size_t other = 0; s && other < result.families.size(); ++other) {
+      const SettingCount& count = result.verified[other][*s];
+      cells.push_back({{"tuned_on", f},
+                       {"verified_on", other},
+                       {"rate", RateAsJson(TargetedCount(tuning, count))},
+                       {"failure", RateAsJson(count.Failure())},
+                       {"refusal", RateAsJson(count.Refusal())},
+                       {"false_refusal", RateAsJson(count.FalseRefusal())},
+                       {"verdict", VerdictName(VerdictOf(tuning, count))}});
+    }
+  }
+  const Json json = {{"kind", "transfer"},
+                     {"study", plan.study.name},
+                     {"estimator", tuning.estimator},
+                     {"seed", plan.study.seed},
+                     {"target", TargetAsJson(tuning)},
+                     {"options", OptionsAsJson(tuning)},
+                     {"families", families},
+                     {"cells", cells}};
+  return json.dump(1) + "\n";
+}
+
+}  // namespace rcme

@@ -1,0 +1,300 @@
+#include "experiments/tuning/tune_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/field_text.h"
+#include "experiments/file_output.h"
+#include "experiments/summary_output.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<std::vector<std::string>>;
+
+constexpr size_t kMaxCurvePoints = 300;
+
+double RateOf(const ErrorCount& count) {
+  return static_cast<double>(count.errors) / static_cast<double>(count.n);
+}
+
+std::string TrialsInWords(const StudyPlan& plan) {
+  const Tuning& tuning = *plan.study.tuning;
+  const auto c = static_cast<std::int64_t>(plan.conditions.size());
+  return fmt::format("{} conditions; {} trials to explore, {} to calibrate, {} to verify", c,
+                     c * tuning.explore, c * tuning.calibrate, c * tuning.verify);
+}
+
+// Tuned, verified and the optimism of the tuned figure, rate by rate.
+std::string VerifiedAsTable(const TuneResult& result) {
+  const SettingCount& tuned = result.calibrated[*result.choice.setting];
+  const SettingCount& verified = result.verified[*result.choice.setting];
+  Rows rows = {{"rate", "verified, fresh trials", "n", "as tuned", "n", "optimism (tuned minus verified)"}};
+  const auto add = [&](const std::string& name, const ErrorCount& fresh, const ErrorCount& seen) {
+    rows.push_back(
+        {name, RateForTable(fresh), fmt::format("{}", fresh.n), RateForTable(seen), fmt::format("{}", seen.n),
+         fresh.n > 0 && seen.n > 0 ? fmt::format("{:+.2f} %", 100.0 * (RateOf(seen) - RateOf(fresh))) : "-"});
+  };
+  add("failure", verified.Failure(), tuned.Failure());
+  add("refusal", verified.Refusal(), tuned.Refusal());
+  add("false refusal", verified.FalseRefusal(), tuned.FalseRefusal());
+  return FormatColumns(rows);
+}
+
+std::string EstimatorsAsTable(const std::vector<VerifiedEstimator>& estimators) {
+  Rows rows = {{"estimator", "failure", "refusal", "failure or refusal", "tuned minus this", "p (McNemar)"}};
+  for (size_t e = 0; e < estimators.size(); ++e) {
+    const VerifiedEstimator& of = estimators[e];
+    const Interval difference = RiskDifferenceInterval(of.against_first);
+    rows.push_back(
+        {e == 0 ? "tuned" : of.spec.label, RateForTable(of.failure), RateForTable(of.refusal),
+         RateForTable(of.failure_or_refusal),
+         e == 0 ? ""
+                : fmt::format("{:+.2f} % [{:+.2f}, {:+.2f}]", 100.0 * of.against_first.RiskDifference(),
+                              100.0 * difference.lower, 100.0 * difference.upper),
+         e == 0 ? "" : fmt::format("{:.2g}", McNemarExactPValue(of.against_first))});
+  }
+  return FormatColumns(rows);
+}
+
+std::string RocsAsTable(const StudyPlan& plan, const std::vector<EntropyRoc>& rocs) {
+  Rows rows = {{"estimator", "models", "area under the curve", "good", "bad"}};
+  for (const EntropyRoc& roc : rocs) {
+    rows.push_back({plan.study.estimators[roc.estimator].label, roc.of,
+                    fmt::format("{:.3f} [{:.3f}, {:.3f}]", roc.area.value, roc.area.interval.lower,
+                                roc.area.interval.upper),
+                    fmt::format("{}", roc.good.size()), fmt::format("{}", roc.bad.size())});
+  }
+  return FormatColumns(rows);
+}
+
+// Whether the tuned setting met the limits of its target on fresh trials.
+std::string VerdictInWords(const Tuning& tuning, const TuneResult& result) {
+  const SettingCount& verified = result.verified[*result.choice.setting];
+  if (tuning.target == TuneTarget::kRisk) {
+    return fmt::format("verified risk {:.4g}; bound {:.4g}, exceeded with probability {} at most",
+                       Risk(tuning, verified), result.choice.risk_bound, tuning.delta);
+  }
+  return ViolatesTarget(tuning, verified) ? "the verified rates are ABOVE the target"
+                                          : "the verified rates meet the target";
+}
+
+Json EstimatorAsJson(const VerifiedEstimator& of) {
+  return {{"failure", RateAsJson(of.failure)},
+          {"refusal", RateAsJson(of.refusal)},
+          {"failure_or_refusal", RateAsJson(of.failure_or_refusal)}};
+}
+
+// The levels of the tuned options at which another estimator is the tuned one; null if it differs in more.
+Json LevelsOf(const Tuning& tuning, EstimatorSpec tuned, EstimatorSpec other) {
+  if (tuned.name != other.name) return nullptr;
+  Json levels = Json::array();
+  const auto tuned_options = Parameters(tuned.options), other_options = Parameters(other.options);
+  for (const TunedOption& option : tuning.options) {
+    const Parameter& of_other = FindParameter(other_options, option.name);
+    levels.push_back(option.name == "mu" ? fmt::format("{}", other.options.MuOrDefault()) : of_other.Value());
+    FindParameter(tuned_options, option.name).SetFromText(of_other.Value());
+  }
+  for (size_t i = 0; i < tuned_options.size(); ++i) {
+    if (tuned_options[i].Value() != other_options[i].Value()) return nullptr;
+  }
+  return levels;
+}
+
+Json OthersAsJson(const Tuning& tuning, const std::vector<VerifiedEstimator>& estimators) {
+  Json others = Json::array();
+  for (size_t e = 1; e < estimators.size(); ++e) {
+    Json other = {{"label", estimators[e].spec.label},
+                  {"words", "as in the study"},
+                  {"levels", LevelsOf(tuning, estimators.front().spec, estimators[e].spec)}};
+    other.update(EstimatorAsJson(estimators[e]));
+    others.push_back(std::move(other));
+  }
+  return others;
+}
+
+double ShareAtMost(const std::vector<double>& values, double limit) {
+  return static_cast<double>(std::ranges::count_if(values, [&](double x) { return x <= limit; })) /
+         static_cast<double>(values.size());
+}
+
+// [mu, share of the bad ones accepted, share of the good ones accepted], psi at most mu.
+Json CurveAsJson(const EntropyRoc& roc) {
+  std::vector<double> thresholds = roc.good;
+  thresholds.insert(thresholds.end(), roc.bad.begin(), roc.bad.end());
+  std::ranges::sort(thresholds);
+  Json curve = Json::array({Json::array({nullptr, 0.0, 0.0})});
+  const size_t step = 1 + thresholds.size() / kMaxCurvePoints;
+  for (size_t i = 0; i < thresholds.size(); i += step) {
+    const double mu = thresholds[i];
+    curve.push_back({mu, ShareAtMost(roc.bad, mu), ShareAtMost(roc.good, mu)});
+  }
+  curve.push_back({nullptr, 1.0, 1.0});
+  return curve;
+}
+
+Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
+  const EstimatorSpec& spec = plan.study.estimators[roc.estimator];
+  const double mu = spec.options.MuOrDefault();
+  const bool is_printed = spec.options.reading == Reading::kAsPrinted;
+  return {
+      {"estimator", spec.label},
+      {"of", roc.of},
+      {"score", is_printed ? "psi, nats" : "excess entropy, nats"},
+      {"auc",
+       {{"value", roc.area.value}, {"lower", roc.area.interval.lower}, {"upper", roc.area.interval.upper}}},
+      {"num_good", roc.good.size()},
+      {"num_bad", roc.bad.size()},
+      {"curve", CurveAsJson(roc)},
+      {"marks", Json::array({{{"words", fmt::format("mu = {}", mu)},
+                              {"false_accept_rate", ShareAtMost(roc.bad, mu)},
+                              {"true_accept_rate", ShareAtMost(roc.good, mu)}}})}};
+}
+
+Json SettingsAsJson(const SettingPlan& settings, const TuneResult& result) {
+  Json all = Json::array();
+  const std::vector<size_t>& path = result.choice.path;
+  for (size_t s = 0; s < settings.settings.size(); ++s) {
+    const auto place = std::ranges::find(path, s);
+    all.push_back(
+        {{"levels", settings.settings[s].levels},
+         {"failure", RateAsJson(result.verified[s].Failure())},
+         {"refusal", RateAsJson(result.verified[s].Refusal())},
+         {"false_refusal", RateAsJson(result.verified[s].FalseRefusal())},
+         {"is_on_path", place != path.end()},
+         {"is_certified", place - path.begin() < static_cast<std::ptrdiff_t>(result.choice.num_certified)}});
+  }
+  return all;
+}
+
+}  // namespace
+
+Json RateAsJson(const ErrorCount& count) {
+  const Interval interval = ExactBinomialInterval(count.errors, count.n);
+  return {{"value", count.n > 0 ? Json(RateOf(count)) : Json(nullptr)},
+          {"lower", interval.lower},
+          {"upper", interval.upper},
+          {"n", count.n}};
+}
+
+std::string RateForTable(const ErrorCount& count) {
+  if (count.n == 0) return "-";
+  const Interval interval = ExactBinomialInterval(count.errors, count.n);
+  return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * RateOf(count), 100.0 * interval.lower,
+                     100.0 * interval.upper);
+}
+
+Json TargetAsJson(const Tuning& tuning) {
+  Tuning copy = tuning;
+  const bool is_risk = tuning.target == TuneTarget::kRisk, is_failure = tuning.target == TuneTarget::kFailure;
+  return {{"kind", FindParameter(Parameters(copy), "target").Value()},
+          {"at_most", is_risk ? Json(nullptr) : Json(tuning.at_most)},
+          {"max_refusal", is_failure ? Json(tuning.max_refusal) : Json(nullptr)},
+          {"delta", tuning.delta},
+          {"words", TargetInWords(tuning)}};
+}
+
+Json OptionsAsJson(const Tuning& tuning) {
+  RansacOptions names;
+  Json options = Json::array();
+  for (const TunedOption& option : tuning.options) {
+    const auto parameters = Parameters(names);
+    options.push_back({{"name", option.name},
+                       {"unit", FindParameter(parameters, option.name).unit()},
+                       {"levels", option.levels}});
+  }
+  return options;
+}
+
+std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
+                        const std::vector<EntropyRoc>& rocs) {
+  const Tuning& tuning = *plan.study.tuning;
+  std::string text =
+      fmt::format("{}: {} settings of {}, {}\nTarget: {}\n", plan.study.name, result.settings.size(),
+                  tuning.estimator, TrialsInWords(plan), TargetInWords(tuning));
+  if (!result.choice.setting) return text + fmt::format("Not reached: {}\n", result.choice.why);
+  text += fmt::format(
+      "Tuned: {} ({} of {} settings in the order of testing certified); {}\n\n{}\n"
+      "On the trials for verification, all with the same problems (exact 95 % intervals; differences: "
+      "Tango)\n\n{}",
+      result.settings[*result.choice.setting], result.choice.num_certified, result.choice.path.size(),
+      VerdictInWords(tuning, result), VerifiedAsTable(result), EstimatorsAsTable(result.estimators));
+  if (rocs.empty()) return text;
+  return text +
+         fmt::format("\nDoes psi tell good models from bad ones? (1: always, 0.5: chance; DeLong 95 %)\n\n{}",
+                     RocsAsTable(plan, rocs));
+}
+
+std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& settings,
+                               const Repetitions& repetitions) {
+  const Tuning& tuning = *plan.study.tuning;
+  const std::vector<std::string> names = SettingsInWords(tuning, settings);
+  const ErrorCount violations{repetitions.num_violations, repetitions.num_done};
+  Rows rows = {{"chosen", "times", "failure", "refusal", "false refusal", "meets the target"}};
+  for (size_t s = 0; s < names.size(); ++s) {
+    if (repetitions.num_chosen[s] == 0) continue;
+    const SettingCount& count = repetitions.reference[s];
+    rows.push_back({names[s], fmt::format("{}", repetitions.num_chosen[s]), RateForTable(count.Failure()),
+                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()),
+                    ViolatesTarget(tuning, count) ? "no" : "yes"});
+  }
+  return fmt::format(
+      "{}: tuned {} times with fresh seeds ({} trials to explore, {} to calibrate each)\nTarget: {}\n"
+      "Violated: {} of {}: {}, promised at most {:.3g} %; without a choice: {}\n\n"
+      "What was chosen, on {} further trials\n\n{}",
+      plan.study.name, repetitions.num_done,
+      tuning.explore * static_cast<std::int64_t>(plan.conditions.size()),
+      tuning.calibrate * static_cast<std::int64_t>(plan.conditions.size()), TargetInWords(tuning),
+      violations.errors, violations.n, RateForTable(violations), 100.0 * tuning.delta,
+      repetitions.num_without_choice, repetitions.reference.front().n, FormatColumns(rows));
+}
+
+std::string TuneAsJson(const StudyPlan& plan, const SettingPlan& settings, const TuneResult& result,
+                       const std::vector<EntropyRoc>& rocs) {
+  const Tuning& tuning = *plan.study.tuning;
+  Json json = {{"kind", "tune"},
+               {"study", plan.study.name},
+               {"estimator", tuning.estimator},
+               {"seed", plan.study.seed},
+               {"target", TargetAsJson(tuning)},
+               {"options", OptionsAsJson(tuning)},
+               {"settings", SettingsAsJson(settings, result)},
+               {"tuned", nullptr},
+               {"others", Json::array()},
+               {"roc", Json::array()}};
+  if (result.choice.setting) {
+    const size_t s = *result.choice.setting;
+    json["tuned"] = EstimatorAsJson(result.estimators.front());
+    json["tuned"]["levels"] = settings.settings[s].levels;
+    json["tuned"]["false_refusal"] = RateAsJson(result.verified[s].FalseRefusal());
+    json["others"] = OthersAsJson(tuning, result.estimators);
+  }
+  for (const EntropyRoc& roc : rocs) json["roc"].push_back(RocAsJson(plan, roc));
+  return json.dump(1) + "\n";
+}
+
+std::vector<std::pair<std::string, std::string>> ProvenanceOf(const StudyPlan& plan,
+                                                              const TuneResult& result) {
+  const Tuning& tuning = *plan.study.tuning;
+  const size_t s = result.choice.setting.value();
+  const auto rates = [](const SettingCount& count) {
+    return fmt::format("failure {} of {}, refusal {}, false refusal {} of {}", RateForTable(count.Failure()),
+                       count.n, RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()),
+                       count.good);
+  };
+  return {{"study", plan.study.name},
+          {"seed", fmt::format("{}", plan.study.seed)},
+          {"estimator", tuning.estimator},
+          {"tuned", result.settings[s]},
+          {"target", TargetInWords(tuning)},
+          {"trials", TrialsInWords(plan)},
+          {"as_tuned", rates(result.calibrated[s])},
+          {"verified", rates(result.verified[s])},
+          {"verdict", VerdictInWords(tuning, result)},
+          {"program", "rcme " RCME_VERSION}};
+}
+
+}  // namespace rcme
