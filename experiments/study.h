@@ -7,6 +7,7 @@
 
 #include "estimator/ransac_options.h"
 #include "experiments/data_source.h"
+#include "experiments/tuning/tuning.h"
 
 namespace rcme {
 
@@ -54,6 +55,7 @@ struct Study {
   std::vector<Factor> factors;
   std::vector<EstimatorSpec> estimators;
   FailureBounds failure;
+  std::optional<Tuning> tuning;  // what `rcme tune` does with it
 };
 
 // The parts of an Ademp with their keys, in order.

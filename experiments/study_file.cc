@@ -9,6 +9,7 @@
 #include "estimator/estimator_registry.h"
 #include "experiments/estimator_entry.h"
 #include "experiments/estimator_file.h"
+#include "experiments/tuning/tuning_file.h"
 
 namespace rcme {
 namespace {
@@ -168,7 +169,7 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
   study.name = std::filesystem::path(path).stem().string();
   for (const auto& [key, node] : Entries(place, root, "study",
                                          {"name", "description", "ademp", "seed", "trials", "data", "design",
-                                          "factors", "estimators", "failure"})) {
+                                          "factors", "estimators", "failure", "tune"})) {
     if (key == "name") study.name = Scalar(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
@@ -196,6 +197,7 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
   if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
   CheckData(place, root, study);
+  if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
   return study;
 }
 
@@ -218,6 +220,7 @@ void Override(Study* study, const std::string& key, const std::string& value) {
     }
     if (!is_used)
       throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
+    if (study->tuning) CheckCombinations(*study->tuning, study->estimators);
   } else if (is_in(Parameters(bound_names), key)) {
     FindParameter(Parameters(study->failure), key).SetFromText(value);
   } else if (dot != std::string::npos) {
@@ -270,6 +273,10 @@ std::string ToYaml(const Study& study) {
   out << YAML::Key << "failure" << YAML::Value << YAML::BeginMap;
   for (const Parameter& p : Parameters(bounds)) out << YAML::Key << p.name() << YAML::Value << p.Value();
   out << YAML::EndMap;
+  if (study.tuning) {
+    out << YAML::Key << "tune" << YAML::Value;
+    WriteTuning(*study.tuning, &out);
+  }
   out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }
