@@ -117,7 +117,7 @@ void AddEstimateCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("estimate", "Estimate the motion between two images from a file of matches");
   command->footer(
-      "Without a word about the estimator it is rcme with the paper's settings. An estimator file (YAML)\n"
+      "Without a word about the estimator it is rcme with its default options. An estimator file (YAML)\n"
       "holds a name, a label and options, so that an estimator that was tuned by simulation runs on a real\n"
       "pair with the very options that were validated; the answer goes by its label. It may be as short as\n"
       "  name: rcme\n"
