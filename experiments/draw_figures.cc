@@ -68,10 +68,10 @@ void DrawOrThrow(const std::string& command, const std::string& script,
     throw InputError(fmt::format("{}: nothing was drawn, for the reason above", command));
 }
 
-void DrawFigures(const std::string& script, const std::string& folder) {
-  if (RunPlotScript(script, {folder}) == ScriptEnd::kDone) return;
+void DrawFigures(const std::string& script, const std::vector<std::string>& arguments) {
+  if (RunPlotScript(script, arguments) == ScriptEnd::kDone) return;
   fmt::print(stderr, "the figures were not drawn; with matplotlib and pandas installed: python3 {} {}\n",
-             ScriptPath(script), folder);
+             ScriptPath(script), fmt::join(arguments, " "));
 }
 
 }  // namespace rcme

@@ -19,8 +19,8 @@ ScriptEnd RunPlotScript(const std::string& script, const std::vector<std::string
 void DrawOrThrow(const std::string& command, const std::string& script,
                  const std::vector<std::string>& arguments);
 
-// Runs a script of plots/ on a folder of results. A failure (no Python with matplotlib) is a message on
+// The same where the figures are not all there is. A failure (no Python with matplotlib) is a message on
 // standard error that says how to draw the figures later: the results themselves are already written.
-void DrawFigures(const std::string& script, const std::string& folder);
+void DrawFigures(const std::string& script, const std::vector<std::string>& arguments);
 
 }  // namespace rcme

@@ -28,6 +28,7 @@ int RunProgram(int argc, const char* const* argv) {
       "  rcme report run.sqlite --out report.html                     all of it on one page, with figures\n"
       "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
       "  rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture\n"
+      "  rcme tune experiments/studies/tune_mu_lambda.yaml --out tuned.yaml   thresholds with a guarantee\n"
       "  rcme audit --out audit                                       every claim of the paper, checked\n"
       "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
       "rcme"};
@@ -39,6 +40,8 @@ int RunProgram(int argc, const char* const* argv) {
   AddReportCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);
+  AddTuneCommand(app);
+  AddTransferCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);
   AddEstimateCommand(app);

@@ -1,67 +1,24 @@
 #include "experiments/study_file.h"
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <set>
 
 #include "estimator/estimator_registry.h"
-#include "parameters/input_error.h"
+#include "experiments/estimator_entry.h"
+#include "experiments/estimator_file.h"
+#include "experiments/tuning/tuning_file.h"
 
 namespace rcme {
 namespace {
 
-constexpr size_t kMaxStudyBytes = size_t{1} << 20;
 constexpr int kMaxTrials = 2'000'000'000;
 
-// Where a message points to: "file:line: key".
-class Place {
- public:
-  explicit Place(std::string path) : path_(std::move(path)) {}
-  [[noreturn]] void Fail(const YAML::Node& node, const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", path_, std::max(node.Mark().line, 0) + 1, what));
-  }
-  // Runs `action`; an InputError from it gets file and line.
-  template <typename Action>
-  void At(const YAML::Node& node, Action action) const {
-    try {
-      action();
-    } catch (const InputError& error) {
-      Fail(node, error.what());
-    }
-  }
-
- private:
-  std::string path_;
-};
-
-std::string Scalar(const Place& place, const YAML::Node& node, const std::string& key) {
-  if (!node.IsScalar()) place.Fail(node, fmt::format("{}: one value is needed, not a list or a map", key));
-  return node.Scalar();
-}
-
-// The entries of a map; unknown keys (if `known` is not empty) and repeated ones are errors.
-std::vector<std::pair<std::string, YAML::Node>> Entries(const Place& place, const YAML::Node& map,
-                                                        const std::string& name,
-                                                        const std::set<std::string>& known) {
-  if (!map.IsMap()) place.Fail(map, fmt::format("{}: a map of keys and values is needed", name));
-  std::set<std::string> seen;
-  std::vector<std::pair<std::string, YAML::Node>> entries;
-  for (const auto& entry : map) {
-    const std::string key = Scalar(place, entry.first, name);
-    if (!known.empty() && known.count(key) == 0) {
-      place.Fail(entry.first,
-                 fmt::format("{}: unknown key '{}'; known keys: {}", name, key, fmt::join(known, ", ")));
-    }
-    if (!seen.insert(key).second)
-      place.Fail(entry.first, fmt::format("{}: key '{}' stands twice", name, key));
-    entries.emplace_back(key, entry.second);
-  }
-  return entries;
+const FileKind& StudyFileKind() {
+  static const FileKind kind = {"study file", "a study"};
+  return kind;
 }
 
 long long WholeNumber(const Place& place, const YAML::Node& node, const std::string& key, long long min,
@@ -99,21 +56,19 @@ Parameter DesignParameter(Design* design) {
       "which combinations of the factors' levels are run");
 }
 
+// An entry of the list of estimators; {file: tuned.yaml} is that file's, seen from the study's folder.
 EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
+  if (!node.IsMap() || !node["file"]) return ReadEstimatorEntry(place, node, "estimators", {"file"});
   EstimatorSpec spec;
-  for (const auto& [key, value] : Entries(place, node, "estimators", {"name", "label", "options"})) {
-    if (key == "name") spec.name = Scalar(place, value, key);
-    if (key == "label") spec.label = Scalar(place, value, key);
-    if (key != "options") continue;
-    for (const auto& [option, text] : Entries(place, value, "options", {})) {
-      place.At(text, [&, option = option, text = text] {
-        FindParameter(Parameters(spec.options), option).SetFromText(Scalar(place, text, option));
-      });
-    }
+  std::string label;
+  for (const auto& [key, value] : Entries(place, node, "estimators: file", {"file", "label"})) {
+    const std::string text = Scalar(place, value, key);
+    if (key == "label") label = text;
+    if (key != "file") continue;
+    const std::filesystem::path path = std::filesystem::path(place.path()).parent_path() / text;
+    place.At(value, [&] { spec = LoadEstimatorFile(path.string()); });
   }
-  if (spec.name.empty()) place.Fail(node, "estimators: key 'name' is missing");
-  if (spec.label.empty()) spec.label = spec.name;
-  place.At(node, [&] { FindEstimator(spec.name).make(spec.options); });
+  if (!label.empty()) spec.label = label;
   return spec;
 }
 
@@ -154,8 +109,9 @@ void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
   for (const auto& choice : first) {
     if (!IsChoice(choice.first)) continue;
     choices.push_back(choice);
-    place.At(line_of(root["data"][choice.first] ? "data" : "factors", choice.first),
-             [&] { ResolveSettings({*scene, choice}); });
+    place.At(line_of(root["data"][choice.first] ? "data" : "factors", choice.first), [&] {
+      ResolveSettings({*scene, choice});
+    });
   }
   const auto resolve = [](Settings settings, const std::string& key, const std::string& value) {
     settings.emplace_back(key, value);
@@ -195,19 +151,6 @@ Design ReadDesign(const Place& place, const YAML::Node& node) {
   return design;
 }
 
-YAML::Node ParseYaml(const std::string& yaml, const std::string& path) {
-  if (yaml.size() > kMaxStudyBytes)
-    throw InputError(fmt::format("{}: larger than a study can be (1 MiB)", path));
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
-    if (documents.size() > 1)
-      throw InputError(fmt::format("{}: holds more than one YAML document (---)", path));
-    return documents.empty() ? YAML::Node() : documents[0];
-  } catch (const YAML::Exception& error) {
-    throw InputError(fmt::format("{}:{}: not valid YAML: {}", path, error.mark.line + 1, error.msg));
-  }
-}
-
 // Every data parameter with its value; where a factor chooses a part of the simulation, so that the
 // parameters differ from condition to condition, only those that were given.
 Settings WrittenData(const Study& study) {
@@ -217,25 +160,16 @@ Settings WrittenData(const Study& study) {
 
 }  // namespace
 
-Study LoadStudy(const std::string& path) {
-  if (std::filesystem::is_directory(path))
-    throw InputError(fmt::format("{}: is a folder, not a study", path));
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: no such study file, or not readable", path));
-  std::string text(kMaxStudyBytes + 1, '\0');  // one more than ParseStudy accepts: the path may be endless
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<size_t>(file.gcount()));
-  return ParseStudy(text, path);
-}
+Study LoadStudy(const std::string& path) { return ParseStudy(ReadInputText(path, StudyFileKind()), path); }
 
 Study ParseStudy(const std::string& yaml, const std::string& path) {
   const Place place(path);
-  const YAML::Node root = ParseYaml(yaml, path);
+  const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
   Study study;
   study.name = std::filesystem::path(path).stem().string();
   for (const auto& [key, node] : Entries(place, root, "study",
                                          {"name", "description", "ademp", "seed", "trials", "data", "design",
-                                          "factors", "estimators", "failure"})) {
+                                          "factors", "estimators", "failure", "tune"})) {
     if (key == "name") study.name = Scalar(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
@@ -263,6 +197,7 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
   if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
   CheckData(place, root, study);
+  if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
   return study;
 }
 
@@ -285,6 +220,7 @@ void Override(Study* study, const std::string& key, const std::string& value) {
     }
     if (!is_used)
       throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
+    if (study->tuning) CheckCombinations(*study->tuning, study->estimators);
   } else if (is_in(Parameters(bound_names), key)) {
     FindParameter(Parameters(study->failure), key).SetFromText(value);
   } else if (dot != std::string::npos) {
@@ -327,19 +263,21 @@ std::string ToYaml(const Study& study) {
     out << YAML::EndMap;
   }
   out << YAML::Key << "estimators" << YAML::Value << YAML::Block << YAML::BeginSeq;
-  for (EstimatorSpec spec : study.estimators) {
-    out << YAML::BeginMap << YAML::Key << "name" << YAML::Value << spec.name;
-    out << YAML::Key << "label" << YAML::Value << spec.label;
-    out << YAML::Key << "options" << YAML::Value << YAML::BeginMap;
-    for (const Parameter& p : Parameters(spec.options))
-      out << YAML::Key << p.name() << YAML::Value << p.Value();
-    out << YAML::EndMap << YAML::EndMap;
+  for (const EstimatorSpec& spec : study.estimators) {
+    out << YAML::BeginMap;
+    WriteEstimatorKeys(spec, &out);
+    out << YAML::EndMap;
   }
   out << YAML::EndSeq;
   FailureBounds bounds = study.failure;
   out << YAML::Key << "failure" << YAML::Value << YAML::BeginMap;
   for (const Parameter& p : Parameters(bounds)) out << YAML::Key << p.name() << YAML::Value << p.Value();
-  out << YAML::EndMap << YAML::EndMap;
+  out << YAML::EndMap;
+  if (study.tuning) {
+    out << YAML::Key << "tune" << YAML::Value;
+    WriteTuning(*study.tuning, &out);
+  }
+  out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }
 

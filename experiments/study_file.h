@@ -12,7 +12,9 @@
 //   estimators:
 //     - {name: standard}
 //     - {name: rcme, label: rcme_rank_aware, options: {reading: rank_aware}}
+//     - {file: tuned.yaml, label: other}  # of estimator_file.h, beside the study; the label is optional
 //   failure: {max_rotation_error_deg: 3, max_direction_error_deg: 15}
+//   tune: {estimator: rcme_rank_aware, options: {mu: [3, 6, 9]}}    # see tuning/tuning_file.h
 #pragma once
 
 #include <string>
@@ -23,20 +25,22 @@
 
 namespace rcme {
 
-// Reads and validates a study. Throws InputError with file, line, key and what is allowed for anything that
-// is not: unknown or repeated keys, wrong types, values out of range, empty factors, unknown scenes and
-// estimators.
+// Reads and validates a study, and the estimator files it names, seen from its own folder. Throws InputError
+// with file, line, key and what is allowed for anything that is not: unknown or repeated keys, wrong types,
+// values out of range, empty factors, unknown scenes and estimators.
 Study LoadStudy(const std::string& path);
 
 // The same from text; `path` is what the messages call it.
 Study ParseStudy(const std::string& yaml, const std::string& path);
 
 // One `--set key=value`: a data key; an estimator option, for all estimators (`mu`) or one (`rcme.mu`); or a
-// failure bound. A factor that is set becomes that one level. Throws InputError.
+// failure bound. A factor that is set becomes that one level. Throws InputError, also where the options of an
+// estimator, or a combination of the study's tuning, then contradict each other.
 void Override(Study* study, const std::string& key, const std::string& value);
 
-// The study with every parameter written out, defaults included: ParseStudy gives the same study back. Two
-// runs may share a result file if this text, trials and description aside, is the same.
+// The study with every parameter written out, defaults and the estimators of files included: ParseStudy gives
+// the same study back. Two runs may share a result file if this text, trials, description and tuning aside,
+// is the same.
 std::string ToYaml(const Study& study);
 
 }  // namespace rcme

@@ -30,6 +30,7 @@ std::string Identity(const StudyPlan& plan) {
   same.trials = 1;  // more trials extend a run
   same.description.clear();
   same.ademp.reset();
+  same.tuning.reset();
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
   for (const Condition& condition : plan.conditions) {
     const std::string data = condition.source->Identity();

@@ -15,6 +15,8 @@ void AddReplayCommand(CLI::App& app);
 void AddShowCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);
 void AddMatchCommand(CLI::App& app);
+void AddTuneCommand(CLI::App& app);
+void AddTransferCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
 void AddListCommand(CLI::App& app);
 

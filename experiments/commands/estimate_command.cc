@@ -6,6 +6,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/commands/commands.h"
+#include "experiments/estimator_file.h"
 #include "experiments/real_data/match_file.h"
 #include "experiments/trial.h"
 #include "parameters/input_error.h"
@@ -15,6 +16,7 @@ namespace {
 
 struct EstimateArguments {
   std::string matches, estimator = "rcme";
+  std::optional<std::string> estimator_file;
   double sigma_px = 0.5;
   std::int64_t seed = 1;
   std::vector<std::string> overrides;
@@ -72,15 +74,22 @@ void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, c
   }
 }
 
-void RunEstimate(const EstimateArguments& arguments) {
-  if (!std::isfinite(arguments.sigma_px)) throw InputError("--sigma: give a number in [1e-9, 1000]");
-  RansacOptions options;
+// By name or from a file, with what --set changes in it.
+EstimatorSpec ChosenEstimator(const EstimateArguments& arguments) {
+  EstimatorSpec spec = arguments.estimator_file ? LoadEstimatorFile(*arguments.estimator_file)
+                                                : EstimatorSpec{arguments.estimator, arguments.estimator, {}};
   for (const std::string& text : arguments.overrides) {
     const size_t equals = std::min(text.find('='), text.size());
     const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
-    FindParameter(Parameters(options), text.substr(0, equals)).SetFromText(value);
+    FindParameter(Parameters(spec.options), text.substr(0, equals)).SetFromText(value);
   }
-  const std::unique_ptr<MotionEstimator> estimator = FindEstimator(arguments.estimator).make(options);
+  return spec;
+}
+
+void RunEstimate(const EstimateArguments& arguments) {
+  if (!std::isfinite(arguments.sigma_px)) throw InputError("--sigma: give a number in [1e-9, 1000]");
+  const EstimatorSpec spec = ChosenEstimator(arguments);
+  const std::unique_ptr<MotionEstimator> estimator = FindEstimator(spec.name).make(spec.options);
   MatchFile file = ReadMatchFile(arguments.matches);
   TrialData data;
   data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments.sigma_px};
@@ -90,9 +99,9 @@ void RunEstimate(const EstimateArguments& arguments) {
   const MotionEstimate estimate = estimator->Estimate(data.problem, rng);
   const TrialRecord record = Score(estimate, data, 0.0);
   if (arguments.as_json) {
-    fmt::print("{}\n", AsJson(estimate, record, arguments.estimator).dump(2));
+    fmt::print("{}\n", AsJson(estimate, record, spec.label).dump(2));
   } else {
-    PrintForPeople(estimate, record, arguments.estimator);
+    PrintForPeople(estimate, record, spec.label);
   }
   // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
   // answer.
@@ -107,21 +116,42 @@ void RunEstimate(const EstimateArguments& arguments) {
 void AddEstimateCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("estimate", "Estimate the motion between two images from a file of matches");
+  command->footer(
+      "Without a word about the estimator it is rcme with its default options. An estimator file (YAML)\n"
+      "holds a name, a label and options, so that an estimator that was tuned by simulation runs on a real\n"
+      "pair with the very options that were validated; the answer goes by its label. It may be as short as\n"
+      "  name: rcme\n"
+      "  label: rcme_tuned\n"
+      "  options: {reading: rank_aware, mu: 5.25, lambda: 0.6}\n"
+      "and the same file serves `rcme run STUDY --add-estimator tuned.yaml`.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme estimate matches.csv.gz --sigma 0.7 --json\n"
+      "  rcme estimate matches.csv.gz --estimator standard --set num_iterations=1000\n"
+      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml\n"
+      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml --set mu=6      the file's options but mu");
   auto arguments = std::make_shared<EstimateArguments>();
   command
       ->add_option("matches", arguments->matches,
                    "match file, plain or gzip: header '# size1: w h', '# K1_fx_fy_cx_cy: ...' (and 2), rows "
                    "x1,y1,x2,y2")
       ->required();
-  command->add_option("--estimator", arguments->estimator, "see `rcme list estimators`")
-      ->capture_default_str();
+  CLI::Option* estimator =
+      command->add_option("--estimator", arguments->estimator, "see `rcme list estimators`")
+          ->capture_default_str();
+  command
+      ->add_option("--estimator-file", arguments->estimator_file,
+                   "estimator file: name and options from there, in place of --estimator")
+      ->excludes(estimator);
   command->add_option("--sigma", arguments->sigma_px, "noise standard deviation per coordinate, px")
       ->check(CLI::Range(1e-9, 1000.0))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str();
-  command->add_option("--set", arguments->overrides, "option=value, repeatable; see `rcme list options`")
+  command
+      ->add_option("--set", arguments->overrides,
+                   "option=value, repeatable, after those of --estimator-file; see `rcme list options`")
       ->allow_extra_args(false);
   command->add_flag("--json", arguments->as_json,
                     "one JSON object; R row-major (9), pose_cov row-major (25), rad^2");

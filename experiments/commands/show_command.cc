@@ -40,8 +40,8 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
   }
   if (arguments.changes.AreAny()) {
     throw InputError(
-        fmt::format("{}: a result file has a study and a seed of its own; --set and --seed go with "
-                    "a study file (YAML)",
+        fmt::format("{}: a result file has a study and a seed of its own; --set, --add-estimator "
+                    "and --seed go with a study file (YAML)",
                     arguments.study));
   }
   return ResultStore::OpenForReading(arguments.study).Plan();

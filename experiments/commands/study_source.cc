@@ -2,12 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
+#include "experiments/estimator_file.h"
 #include "experiments/study_file.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
+namespace {
+
+void AddEstimatorOfFile(const std::string& path, Study* study) {
+  EstimatorSpec spec = LoadEstimatorFile(path);
+  if (std::ranges::count(study->estimators, spec.label, &EstimatorSpec::label) > 0) {
+    throw InputError(
+        fmt::format("--add-estimator: {}: the study has an estimator '{}' already; give the file another "
+                    "label, or list it in the study as {{file: {}, label: ANOTHER}}",
+                    path, spec.label, path));
+  }
+  study->estimators.push_back(std::move(spec));
+}
+
+}  // namespace
 
 void AddStudyOptions(CLI::App* command, StudyChanges* changes) {
   command
@@ -16,12 +32,18 @@ void AddStudyOptions(CLI::App* command, StudyChanges* changes) {
           "key=value, repeatable: a data key (sigma_px=1), an option of all estimators (mu=-2) or of one "
           "(rcme.mu=-2), or a failure bound")
       ->allow_extra_args(false);
+  command
+      ->add_option("--add-estimator", changes->estimators,
+                   "estimator file (YAML: name, label, options), repeatable: one more estimator on the same "
+                   "trials; --set reaches it by its label")
+      ->allow_extra_args(false);
   command->add_option("--seed", changes->seed, "seed of all random streams")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
 }
 
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
   Study study = LoadStudy(path);
+  for (const std::string& file : changes.estimators) AddEstimatorOfFile(file, &study);
   for (const std::string& text : changes.overrides) {
     const size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) {

@@ -11,16 +11,18 @@
 namespace rcme {
 
 struct StudyChanges {
-  std::vector<std::string> overrides;  // key=value each
-  std::int64_t seed = -1;              // negative: the study's own
+  std::vector<std::string> overrides;   // key=value each
+  std::vector<std::string> estimators;  // estimator files, to be added
+  std::int64_t seed = -1;               // negative: the study's own
 
-  bool AreAny() const { return !overrides.empty() || seed >= 0; }
+  bool AreAny() const { return !overrides.empty() || !estimators.empty() || seed >= 0; }
 };
 
-// The options --set and --seed.
+// The options --set, --add-estimator and --seed.
 void AddStudyOptions(CLI::App* command, StudyChanges* changes);
 
-// The study of a YAML file, changed. Throws InputError (study_file.h).
+// The study of a YAML file, changed: estimators are added first, so that --set reaches them too. Throws
+// InputError (study_file.h, estimator_file.h), also for a label that the study has already.
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
 
 // The plan of a study; what is wrong with the study as a whole names its file.

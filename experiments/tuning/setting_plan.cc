@@ -11,24 +11,6 @@
 namespace rcme {
 namespace {
 
-std::vector<std::vector<std::string>> Combinations(const std::vector<TunedOption>& options) {
-  std::vector<std::vector<std::string>> rows = {{}};
-  for (const TunedOption& option : options) {
-    if (option.levels.size() * rows.size() > kMaxTunedSettings) {
-      throw InputError(fmt::format("tune: more than {} combinations of levels", kMaxTunedSettings));
-    }
-    std::vector<std::vector<std::string>> longer;
-    for (const std::vector<std::string>& row : rows) {
-      for (const std::string& level : option.levels) {
-        longer.push_back(row);
-        longer.back().push_back(level);
-      }
-    }
-    rows = std::move(longer);
-  }
-  return rows;
-}
-
 // What the options have in common of those that share a trace, as text.
 std::string TraceKey(RansacOptions options) {
   std::string key;
@@ -93,12 +75,10 @@ const EstimatorSpec& TunedEstimator(const Study& study, const Tuning& tuning) {
 SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning) {
   const EstimatorSpec& base = TunedEstimator(study, tuning);
   SettingPlan plan;
-  for (std::vector<std::string>& levels : Combinations(tuning.options)) {
-    EstimatorSpec spec = base;
-    for (size_t i = 0; i < levels.size(); ++i) {
-      FindParameter(Parameters(spec.options), tuning.options[i].name).SetFromText(levels[i]);
-    }
-    plan.settings.push_back({std::move(levels), std::move(spec)});
+  for (size_t s = 0; s < NumSettings(tuning); ++s) {
+    TunedSetting setting{LevelsOfSetting(tuning, s), base};
+    setting.spec.options = WithLevels(tuning, setting.levels, base.options);
+    plan.settings.push_back(std::move(setting));
   }
   const EstimatorEntry& entry = FindEstimator(base.name);
   AddEstimators(entry, &plan);

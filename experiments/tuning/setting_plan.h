@@ -33,8 +33,7 @@ struct SettingPlan {
   std::vector<TraceGroup> groups;
 };
 
-// Throws InputError: no such estimator or option, a value that is not allowed, more settings than
-// kMaxTunedSettings.
+// The tuning is one that was read for the study (tuning_file.h).
 SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning);
 
 // The estimator of the study that is tuned. Throws InputError that lists the labels.

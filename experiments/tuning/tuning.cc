@@ -25,4 +25,28 @@ std::vector<Parameter> Parameters(Tuning& t) {
   };
 }
 
+size_t NumSettings(const Tuning& tuning) {
+  size_t num_settings = 1;
+  for (const TunedOption& option : tuning.options) num_settings *= option.levels.size();
+  return num_settings;
+}
+
+std::vector<std::string> LevelsOfSetting(const Tuning& tuning, size_t setting) {
+  std::vector<std::string> levels(tuning.options.size());
+  for (size_t o = levels.size(); o-- > 0;) {
+    const std::vector<std::string>& all = tuning.options[o].levels;
+    levels[o] = all[setting % all.size()];
+    setting /= all.size();
+  }
+  return levels;
+}
+
+RansacOptions WithLevels(const Tuning& tuning, const std::vector<std::string>& levels,
+                         RansacOptions options) {
+  for (size_t o = 0; o < levels.size(); ++o) {
+    FindParameter(Parameters(options), tuning.options[o].name).SetFromText(levels[o]);
+  }
+  return options;
+}
+
 }  // namespace rcme

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/ransac_options.h"
 #include "parameters/parameter.h"
 
 namespace rcme {
@@ -41,5 +42,13 @@ struct Tuning {
 
 // The fields that are single values, by name.
 std::vector<Parameter> Parameters(Tuning& tuning);
+
+// A setting is a combination of levels. How many there are, and the levels of one, one per option, the first
+// option slowest.
+size_t NumSettings(const Tuning& tuning);
+std::vector<std::string> LevelsOfSetting(const Tuning& tuning, size_t setting);
+
+// `options` with the tuned options at these levels.
+RansacOptions WithLevels(const Tuning& tuning, const std::vector<std::string>& levels, RansacOptions options);
 
 }  // namespace rcme

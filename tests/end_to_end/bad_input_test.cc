@@ -219,6 +219,63 @@ TEST_F(BadInput, Set) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
+TEST_F(BadInput, TuneBlock) {
+  const auto refuses = [&](const std::string& mu, const std::vector<std::string>& fragments) {
+    const std::string block = "tune:\n  estimator: ours\n  options:\n    mu: " + mu + "\n";
+    const std::string bad = folder_.Write("bad.yaml", SmallStudyYaml() + block);
+    return IsRefused(RunRcme({"run", bad, "--out", out_}), fragments);
+  };
+  EXPECT_TRUE(refuses("[3, .nan]", {"bad.yaml:13: mu: '.nan'", "a number in [-1000, 1000] or auto"}));
+  EXPECT_TRUE(refuses("{from: 3, to: 1, step: 1}", {"bad.yaml:13:", "from: '3'", "<= to"}));
+  EXPECT_TRUE(refuses("{from: 0, to: 1, step: 0}", {"bad.yaml:13:", "step: '0'", "a number > 0"}));
+  EXPECT_TRUE(refuses("{from: 0, to: 1, step: -1}", {"bad.yaml:13:", "step: '-1'", "a number > 0"}));
+  EXPECT_TRUE(refuses("{from: 0, to: 1, step: 1e-300}", {"bad.yaml:13:", "step", "more than 20000 levels"}));
+  EXPECT_TRUE(refuses("{from: 0, to: 1, pace: 1}", {"bad.yaml:13:", "'pace'", "from, step, to"}));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+// Both commands that take an estimator file, with a file that is none.
+TEST_F(BadInput, EstimatorFiles) {
+  const std::string matches = folder_.Write("m.csv", MatchHeader() + MatchRows(50));
+  const auto refuses = [&](const std::string& file, const std::vector<std::string>& fragments) {
+    const testing::AssertionResult is_refused =
+        IsRefused(Run({"--out", out_, "--add-estimator", file}), fragments);
+    return is_refused ? IsRefused(RunRcme({"estimate", matches, "--estimator-file", file}), fragments)
+                      : is_refused;
+  };
+  EXPECT_TRUE(refuses(folder_.Path("none.yaml"), {"none.yaml", "no such estimator file"}));
+  EXPECT_TRUE(refuses(folder_.path(), {folder_.path(), "is a folder"}));
+  EXPECT_TRUE(refuses("", {"''", "the path of an estimator file"}));
+  EXPECT_TRUE(refuses("/dev/zero", {"/dev/zero", "larger than an estimator file can be"}));
+  const std::string huge = "name: rcme\n#" + std::string(5'000'000, 'x');
+  EXPECT_TRUE(
+      refuses(folder_.Write("huge.yaml", huge), {"huge.yaml", "larger than an estimator file can be"}));
+  EXPECT_TRUE(refuses(folder_.Write("broken.yaml", "name: [rcme\n"), {"broken.yaml:", "not valid YAML"}));
+  EXPECT_TRUE(refuses(folder_.Write("text.yaml", "rcme\n"), {"text.yaml:1: estimator", "a map"}));
+  EXPECT_TRUE(refuses(study_, {"small.yaml:2:", "unknown key 'seed'", "label, name, options"}));
+  EXPECT_TRUE(refuses(folder_.Write("nan.yaml", "name: rcme\noptions: {mu: nan}\n"),
+                      {"nan.yaml:2: mu: 'nan'", "a number in [-1000, 1000] or auto"}));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+TEST_F(BadInput, EstimatorFilesThatClash) {
+  const std::string file = folder_.Write("tuned.yaml", "name: rcme\nlabel: ours\n");
+  EXPECT_TRUE(IsRefused(Run({"--out", out_, "--add-estimator", file}),
+                        {"--add-estimator", "tuned.yaml", "'ours' already", "another label", "{file: "}));
+  const std::string other = folder_.Write("other.yaml", "name: prcme\n");
+  EXPECT_TRUE(IsRefused(Run({"--out", out_, "--add-estimator", other, "--add-estimator", other}),
+                        {"other.yaml", "'prcme' already"}));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", study_, "--estimator", "rcme", "--estimator-file", file}),
+                        {"--estimator-file", "--estimator"}));
+  EXPECT_TRUE(IsRefused(
+      RunRcme({"estimate", study_, "--estimator-file", file, "--set", "selection=predictive_likelihood"}),
+      {"selection", "needs reading: rank_aware"}));
+  ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
+  EXPECT_TRUE(IsRefused(RunRcme({"show", out_, "--condition", "0", "--trial", "0", "--add-estimator", other}),
+                        {"run.sqlite", "--add-estimator", "study file"}));
+}
+
 TEST_F(BadInput, Replay) {
   ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
   EXPECT_TRUE(IsRefused(RunRcme({"replay", out_, "--condition", "2", "--trial", "0"}),

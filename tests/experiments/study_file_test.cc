@@ -136,7 +136,7 @@ TEST(ParseStudyErrors, UnknownKeys) {
   EXPECT_TRUE(Refuses(Edited("outlier_ratio:", "outlier_rate:"),
                       {":6:", "'outlier_rate'", "known keys", "outlier_ratio"}));
   EXPECT_TRUE(Refuses(Edited("label: ours", "alias: ours"),
-                      {":9:", "'alias'", "known keys", "label, name, options"}));
+                      {":9:", "'alias'", "known keys", "file, label, name, options, provenance"}));
   EXPECT_TRUE(Refuses(Edited("reading: rank_aware", "readings: x"),
                       {":9:", "'readings'", "known keys", "num_iterations"}));
   EXPECT_TRUE(Refuses(SmallStudyYaml() + "failure:\n  max_error: 3\n",

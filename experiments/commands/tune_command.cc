@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "experiments/commands/commands.h"
+#include "experiments/commands/tuning_source.h"
+#include "experiments/draw_figures.h"
+#include "experiments/estimator_file.h"
+#include "experiments/file_output.h"
+#include "experiments/tuning/tune_output.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct TuneArguments : TuningArguments {
+  std::string out, figures;
+  int repeat = 0;
+};
+
+std::vector<EntropyRoc> MeasureRocs(const StudyPlan& plan, int num_threads) {
+  const TrialRange trials = TuningTrials(*plan.study.tuning).verify;
+  Progress progress("trials for the curves",
+                    static_cast<std::int64_t>(plan.conditions.size()) * (trials.end - trials.first));
+  return MeasureEntropyRocs(plan, trials, num_threads, &progress);
+}
+
+void WriteFigures(const std::string& folder, const std::string& json) {
+  const std::string path = (std::filesystem::path(folder) / "tune.json").string();
+  WriteFileWhole(path, json);
+  DrawFigures("tune.py", {path, "--out", (std::filesystem::path(folder) / "tune").string()});
+}
+
+void WriteEstimator(const std::string& path, const StudyPlan& plan, const SettingPlan& settings,
+                    const TuneResult& result) {
+  EstimatorSpec spec = settings.settings[*result.choice.setting].spec;
+  spec.label += "_tuned";
+  WriteFileWhole(path, EstimatorFileText(spec, ProvenanceOf(plan, result)));
+  fmt::print(stderr, "{}: estimator {}; next: rcme run STUDY --add-estimator {} --out run.sqlite\n", path,
+             spec.label, path);
+}
+
+void RunTune(const TuneArguments& arguments) {
+  const StudyPlan plan = TuningPlanOf(arguments);
+  const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
+  if (arguments.repeat > 0) {
+    fmt::print("{}", RepetitionsAsTable(plan, settings,
+                                        RepeatTuning(plan, settings, arguments.repeat, arguments.threads)));
+    return;
+  }
+  if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
+  if (!arguments.figures.empty()) MakeResultFolder(arguments.figures);
+  const TuneResult result = Tune(plan, settings, arguments.threads);
+  const std::vector<EntropyRoc> rocs = MeasureRocs(plan, arguments.threads);
+  fmt::print("{}", TuneAsTable(plan, result, rocs));
+  if (!arguments.figures.empty()) {
+    WriteFigures(arguments.figures, TuneAsJson(plan, settings, result, rocs));
+  }
+  if (!result.choice.setting) throw InputError(fmt::format("{}: {}", arguments.study, result.choice.why));
+  WriteEstimator(arguments.out, plan, settings, result);
+}
+
+}  // namespace
+
+void AddTuneCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "tune", "Find an estimator's thresholds that meet a target, with a guarantee, and verify them");
+  command->footer(
+      "The study's block `tune` names the estimator, the options and their levels, and the target:\n"
+      "  false_refusal  of the trials that would be good without the quality test, at most at_most are "
+      "refused;\n"
+      "                 then the least failure\n"
+      "  failure        at most at_most fail and at most max_refusal are refused; then the least refusal\n"
+      "  risk           cost_of_failure * failure + cost_of_refusal * refusal is least\n"
+      "Trials to explore propose settings, trials to calibrate certify one by exact binomial tests in a "
+      "fixed\n"
+      "order, so that it violates the target with probability at most delta; trials to verify, which played "
+      "no\n"
+      "part in either, give the figures that are printed, beside what tuning promised. All settings are\n"
+      "decided from the same scores, so that more levels of mu or lambda cost no further estimation.\n"
+      "Where no setting is certified, nothing is written: the message says what is nearest, or how many "
+      "trials\n"
+      "would do (exit code 2).\n"
+      "\n"
+      "Examples:\n"
+      "  rcme tune experiments/studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned\n"
+      "  rcme tune STUDY --out tuned.yaml --tune target=false_refusal --tune at_most=0.02\n"
+      "  rcme tune STUDY --repeat 200              is the guarantee kept? 200 tunings with fresh seeds\n"
+      "  rcme run STUDY --add-estimator tuned.yaml --out run.sqlite\n"
+      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml");
+  auto arguments = std::make_shared<TuneArguments>();
+  AddTuningOptions(command, arguments.get());
+  CLI::Option* out = command->add_option("-o,--out", arguments->out,
+                                         "the tuned estimator, a file for studies "
+                                         "and `rcme estimate`");
+  command->add_option("--figures", arguments->figures,
+                      "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
+  command
+      ->add_option("--repeat", arguments->repeat,
+                   "tune so many times with fresh seeds, and count how often the target is violated")
+      ->check(CLI::Range(1, 100'000))
+      ->excludes(out);
+  command->callback([arguments] { RunTune(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,44 @@
+#include "experiments/commands/tuning_source.h"
+
+#include <fmt/format.h>
+
+#include "experiments/study_file.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+
+void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
+  command->add_option("study", arguments->study, "study file (YAML) with a block `tune`")->required();
+  AddStudyOptions(command, &arguments->changes);
+  command
+      ->add_option(
+          "--tune", arguments->overrides,
+          "key=value of the block `tune`, repeatable: target=false_refusal, at_most=0.02, delta=0.1, "
+          "calibrate=1000, ...")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+}
+
+StudyPlan TuningPlanOf(const TuningArguments& arguments) {
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
+  if (!study.tuning) {
+    throw InputError(
+        fmt::format("{}: has no block 'tune' (estimator, target, options); see "
+                    "experiments/studies/tune_mu_lambda.yaml",
+                    arguments.study));
+  }
+  for (const std::string& text : arguments.overrides) {
+    const size_t equals = std::min(text.find('='), text.size());
+    const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
+    FindParameter(Parameters(*study.tuning), text.substr(0, equals)).SetFromText(value);
+  }
+  const auto scene = std::ranges::find(study.data, "scene", &Settings::value_type::first);
+  const bool is_simulated = scene == study.data.end() || scene->second != kMatchFilesScene;
+  if (is_simulated) Override(&study, "severity", "skipped");  // no one looks at it here
+  return PlanOf(study, arguments.study);
+}
+
+}  // namespace rcme

@@ -1,0 +1,23 @@
+// The study that `rcme tune` and `rcme transfer` work on.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "experiments/commands/study_source.h"
+
+namespace rcme {
+
+struct TuningArguments {
+  std::string study;
+  StudyChanges changes;
+  std::vector<std::string> overrides;  // key=value each, of the tune block
+  int threads = 0;
+};
+
+void AddTuningOptions(CLI::App* command, TuningArguments* arguments);
+
+// The plan of the study, its tune block changed; the severity of the problems is not measured. Throws
+// InputError, also if the study has no tune block.
+StudyPlan TuningPlanOf(const TuningArguments& arguments);
+
+}  // namespace rcme
