@@ -8,12 +8,12 @@ Keys beyond these are not drawn and not looked at. A null is "none": no nominal 
 measured value.
 """
 
-import json
 import math
 import re
 from dataclasses import dataclass
 
 from command_line import PlotError
+from json_file import is_finite, read_object
 
 FORMAT = "rcme audit 1"
 HOLDS, HOLDS_AT_SMALL_NOISE, DOES_NOT_HOLD = "holds", "holds in the small-noise limit only", "does not hold"
@@ -76,61 +76,6 @@ class Audit:
                 for family in dict.fromkeys(claim.family for claim in self.claims)}
 
 
-class Node:
-    """One object of the file and its place there, so that every complaint can say where."""
-
-    def __init__(self, path, place, value):
-        self.path, self.place, self.value = path, place, value
-        if not isinstance(value, dict):
-            raise self.error(f"must be an object, not {shown(value)}")
-
-    def error(self, complaint):
-        return PlotError(f"{self.path}: {self.place} {complaint}.")
-
-    def get(self, key, is_right, expected):
-        if key not in self.value:
-            raise self.error(f"has no key '{key}'; expected the output of 'rcme audit --out DIR'")
-        value = self.value[key]
-        if not is_right(value):
-            raise self.error(f"has '{key}': {shown(value)}; expected {expected}")
-        return value
-
-    def text(self, key):
-        return self.get(key, lambda value: isinstance(value, str), "a text")
-
-    def one_of(self, key, allowed):
-        return self.get(key, lambda value: isinstance(value, str) and value in allowed,
-                        "one of " + ", ".join(f"'{name}'" for name in allowed))
-
-    def fraction(self, key):
-        return float(self.get(key, lambda value: is_finite(value) and 0 <= value <= 1, "a number in 0..1"))
-
-    def number_or(self, key, if_null):
-        value = self.get(key, lambda value: value is None or is_finite(value), "a finite number or null")
-        return if_null if value is None else float(value)
-
-    def count(self, key):
-        return self.get(key, lambda value: isinstance(value, int) and not isinstance(value, bool) and value >= 0,
-                        "a whole number from 0")
-
-    def nodes(self, key, name):
-        values = self.get(key, lambda value: isinstance(value, list), "a list")
-        place = "" if self.place == "the file" else self.place + ", "
-        return [Node(self.path, f"{place}{name} {number}", value) for number, value in enumerate(values, 1)]
-
-
-def shown(value):
-    text = json.dumps(value)
-    return text if len(text) <= 40 else text[:37] + "..."
-
-
-def is_finite(value):
-    try:
-        return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
-    except OverflowError:  # a whole number beyond all floating-point numbers
-        return False
-
-
 def read_target(node):
     interval = node.get("interval", is_interval, "null or [lower, upper], each a finite number or null")
     lower, upper = interval or (None, None)
@@ -175,22 +120,11 @@ def read_claim(node):
     return claim
 
 
-def refuse_constant(name):
-    raise ValueError(f"{name} is not a number of JSON")
-
-
 def read_audit(path):
     """The Audit in the file `path`; a cut-off or foreign file is an error, never a shorter audit."""
-    try:
-        with open(path, encoding="utf-8-sig") as file:
-            value = json.load(file, parse_constant=refuse_constant)
-    except OSError as error:
-        raise PlotError(f"{path}: cannot be read ({error.strerror}).")
-    except (ValueError, RecursionError) as error:
-        raise PlotError(f"{path}: is not a whole JSON file ({error}); is it cut off?")
-    node = Node(path, "the file", value)
+    node = read_object(path, "rcme audit --out DIR")
     node.one_of("format", (FORMAT,))
-    audit = Audit(path, seed=node.get("seed", lambda seed: type(seed) is int, "a whole number"),
+    audit = Audit(path, seed=node.whole_number("seed"),
                   budget=node.text("budget"), confidence_per_target=node.fraction("confidence_per_target"),
                   claims=tuple(map(read_claim, node.nodes("claims", "claim"))))
     if not audit.claims:

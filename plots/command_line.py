@@ -58,7 +58,13 @@ def run(name, make, arguments):
 
 def draw_figure(name, parse, draw, arguments):
     """`run` of a script that draws one figure: options = parse(arguments), draw(options) is the figure."""
+    return draw_figures(name, parse, lambda options: {"": draw(options)}, arguments)
+
+
+def draw_figures(name, parse, draw, arguments):
+    """The same of a script that draws several: draw(options) is {what its name adds to --out: figure}, all of them
+    before the first is written."""
     def make(arguments):
         options = parse(arguments)
-        return style.save(draw(options), options.out)
+        return [path for more, figure in draw(options).items() for path in style.save(figure, options.out + more)]
     return run(name, make, arguments)

@@ -71,11 +71,11 @@ def rows_that_vary(rows, other_factors):
     return rows[num_places > 1] if (num_places > 1).any() else rows
 
 
-def split_into_panel_rows(path, rows, other_factors):
-    """[(title, rows)]: one row of panels per combination of levels of the factors that are not on the x axis."""
+def split_into_panel_rows(path, rows, other_factors, in_words=style.level_in_words):
+    """[(title, rows)]: one row of panels per combination of levels of the factors that are on no axis."""
     varying = [factor for factor in other_factors if rows[factor].nunique() > 1]
     combinations = rows[varying].drop_duplicates()
-    parts = [(", ".join(map(style.level_in_words, varying, levels)), rows[(rows[varying] == levels).all(axis=1)])
+    parts = [(", ".join(map(in_words, varying, levels)), rows[(rows[varying] == levels).all(axis=1)])
              for levels in combinations.itertuples(index=False, name=None)] if varying else [("", rows)]
     if len(parts) > MAX_PANEL_ROWS:
         raise PlotError(f"{path}: {len(parts)} combinations of {', '.join(varying)} need more than {MAX_PANEL_ROWS} "

@@ -85,6 +85,11 @@ def luminance(color):
     return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
 
 
+def text_color(color):
+    """Readable on that colour."""
+    return "white" if luminance(color) < 0.5 else "black"
+
+
 def in_per_cent(fraction):
     return f"{100 * fraction:.1f}"
 
@@ -97,7 +102,7 @@ def draw_cell(axes, left, bottom, row, scale):
         axes.text(left + 0.5, bottom + 0.5, "n = 0", ha="center", va="center", fontsize=5.6, color="0.3")
         return
     color = COLORS(scale(row.value))
-    text = dict(ha="center", va="center", color="white" if luminance(color) < 0.5 else "black")
+    text = dict(ha="center", va="center", color=text_color(color))
     axes.fill_between([left, left + 1], bottom, bottom + 1, facecolor=color, **box)
     axes.text(left + 0.5, bottom + 0.64, in_per_cent(row.value), fontsize=7.5, **text)
     axes.text(left + 0.5, bottom + 0.25, f"[{in_per_cent(row.lower)}, {in_per_cent(row.upper)}]", fontsize=5.2, **text)

@@ -92,22 +92,27 @@ def same_level(text, wanted):
 
 def where(summary, conditions):
     """The rows with key = value for each 'key=value'; a key given more than once allows any of its values."""
-    allowed_keys = ["study", "condition", *summary.factors, "estimator"]
-    wanted = {}
+    keys = ["study", "condition", *summary.factors, "estimator"]
+    return summary.with_rows(rows_where(summary.path, summary.rows, keys, conditions))
+
+
+def rows_where(path, rows, allowed_keys, conditions):
+    """The same of any rows whose columns `allowed_keys` are texts."""
+    wanted, is_wanted = {}, [True] * len(rows)
     for condition in conditions:
         key, equals, level = condition.partition("=")
         if not equals or key not in allowed_keys:
             raise PlotError(f"--where {condition}: expected key=value with a key among {', '.join(allowed_keys)}.")
-        levels = list(dict.fromkeys(summary.rows[key]))
+        levels = list(dict.fromkeys(rows[key]))
         if not any(same_level(text, level) for text in levels):
-            raise PlotError(f"--where {condition}: {summary.path} has no such {key}; it has {', '.join(levels)}.")
+            raise PlotError(f"--where {condition}: {path} has no such {key}; it has {', '.join(levels)}.")
         wanted.setdefault(key, []).append(level)
-    rows = summary.rows
     for key, levels in wanted.items():
-        rows = rows[[any(same_level(text, level) for level in levels) for text in rows[key]]]
-    if rows.empty:
-        raise PlotError(f"{summary.path}: no row has {' and '.join(conditions)} together.")
-    return summary.with_rows(rows)
+        is_wanted = [so_far and any(same_level(text, level) for level in levels)
+                     for so_far, text in zip(is_wanted, rows[key])]
+    if not any(is_wanted):
+        raise PlotError(f"{path}: no row has {' and '.join(conditions)} together.")
+    return rows[is_wanted]
 
 
 def numbers(table, column, may_be_empty=False):

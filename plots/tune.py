@@ -1,0 +1,53 @@
+#!/usr/bin/python3
+"""Draws what `rcme tune` found, three figures, each as PNG and PDF:
+  PREFIX_surface  failure and refusal over the options, with the tuned setting, certified ones and other estimators
+  PREFIX_front    failure against refusal of every setting, with the path of those tested
+  PREFIX_roc      how well the score tells good models from bad ones (if the file has such curves)
+It draws what the file says and computes nothing: rates, intervals, areas and the tuned setting are those of the
+program. Colours and lines between settings are interpolated.
+"""
+
+import argparse
+import sys
+
+from command_line import Parser, check_figure_path, draw_figures
+from tune_front import draw_front
+from tune_json import read_tune
+from tune_roc import draw_roc
+from tune_surface import draw_surface
+
+EXAMPLE = """
+example:
+  plots/tune.py tune.json --out tune
+draws tune_surface.png, tune_front.png, tune_roc.png and the same as PDF.
+
+  plots/tune.py tune.json --out tune_1 --where significance_level=0.05
+draws of the surface only the part with one level of a further option; front and ROC curves are of all settings.
+"""
+
+
+def parse(arguments):
+    parser = Parser(prog="tune.py", description=__doc__, epilog=EXAMPLE,
+                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tune", metavar="TUNE.json", help="file that 'rcme tune' wrote")
+    parser.add_argument("--out", required=True, metavar="PREFIX",
+                        help="where to write: the figures' names begin with it")
+    parser.add_argument("--where", action="append", default=[], metavar="OPTION=LEVEL",
+                        help="draw only this part of the surface; repeatable")
+    options = parser.parse_args(arguments)
+    check_figure_path(options.out)
+    return options
+
+
+def draw_for(options):
+    tune = read_tune(options.tune)
+    figures = {"_surface": draw_surface(tune, options.where), "_front": draw_front(tune)}
+    return {**figures, "_roc": draw_roc(tune)} if tune.rocs else figures
+
+
+def main(arguments=None):
+    return draw_figures("tune.py", parse, draw_for, arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
