@@ -88,15 +88,26 @@ Json EstimatorAsJson(const VerifiedEstimator& of) {
           {"failure_or_refusal", RateAsJson(of.failure_or_refusal)}};
 }
 
-// The levels of the tuned options at which another estimator is the tuned one; null if it differs in more.
+bool IsNumber(const std::string& text) {
+  double number = 0.0;
+  return ParseReal(text, &number);
+}
+
+// The levels of the tuned options at which another estimator is the tuned one; null if it differs in more, or
+// has a word ("auto") where the levels are numbers.
 Json LevelsOf(const Tuning& tuning, EstimatorSpec tuned, EstimatorSpec other) {
   if (tuned.name != other.name) return nullptr;
+  for (RansacOptions* options : {&tuned.options, &other.options}) {
+    options->mu = options->MuOrDefault();
+    options->sample_significance_level = options->SampleLevelOrDefault();
+  }
   Json levels = Json::array();
   const auto tuned_options = Parameters(tuned.options), other_options = Parameters(other.options);
   for (const TunedOption& option : tuning.options) {
-    const Parameter& of_other = FindParameter(other_options, option.name);
-    levels.push_back(option.name == "mu" ? fmt::format("{}", other.options.MuOrDefault()) : of_other.Value());
-    FindParameter(tuned_options, option.name).SetFromText(of_other.Value());
+    const std::string level = FindParameter(other_options, option.name).Value();
+    if (std::ranges::all_of(option.levels, IsNumber) && !IsNumber(level)) return nullptr;
+    levels.push_back(level);
+    FindParameter(tuned_options, option.name).SetFromText(level);
   }
   for (size_t i = 0; i < tuned_options.size(); ++i) {
     if (tuned_options[i].Value() != other_options[i].Value()) return nullptr;
