@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "estimator/hypothesis.h"
@@ -25,14 +26,23 @@ class CandidateSet {
   bool MeetsSizeCondition(const Candidate& candidate) const;
   int CountMembers() const;
 
-  // The best member in the order of `Better` (the first one at a tie); nothing if C is empty.
+  // The best members in the order of `better` (the first one first at a tie), at most `count`; none if C is
+  // empty.
   template <typename Better>
-  std::optional<Candidate> Select(Better better) const {
-    const Candidate* best = nullptr;
+  std::vector<Candidate> SelectBest(int count, Better better) const {
+    std::vector<const Candidate*> members;
+    members.reserve(passed_.size());
     for (const Candidate& candidate : passed_) {
-      if (MeetsSizeCondition(candidate) && (!best || better(candidate.score, best->score))) best = &candidate;
+      if (MeetsSizeCondition(candidate)) members.push_back(&candidate);
     }
-    return best ? std::optional<Candidate>(*best) : std::nullopt;
+    const auto end = members.begin() + std::min<std::ptrdiff_t>(count, std::ssize(members));
+    std::partial_sort(members.begin(), end, members.end(), [&](const Candidate* a, const Candidate* b) {
+      return better(a->score, b->score) || (!better(b->score, a->score) && a < b);
+    });
+    std::vector<Candidate> best;
+    best.reserve(static_cast<size_t>(end - members.begin()));
+    std::transform(members.begin(), end, std::back_inserter(best), [](const Candidate* c) { return *c; });
+    return best;
   }
 
  private:

@@ -3,8 +3,13 @@
 namespace rcme {
 
 const std::string& StatusName(MotionStatus status) {
-  static const std::vector<std::string> names = {
-      "ok", "no_candidate", "too_few_matches", "degenerate_matches", "refinement_diverged", "invalid_input"};
+  static const std::vector<std::string> names = {"ok",
+                                                 "no_candidate",
+                                                 "too_few_matches",
+                                                 "degenerate_matches",
+                                                 "refinement_diverged",
+                                                 "too_few_explained",
+                                                 "invalid_input"};
   return names[static_cast<size_t>(status)];
 }
 
@@ -14,6 +19,7 @@ const std::vector<MotionStatus>& AllStatuses() {
                                                 MotionStatus::kTooFewMatches,
                                                 MotionStatus::kDegenerateMatches,
                                                 MotionStatus::kRefinementDiverged,
+                                                MotionStatus::kTooFewExplained,
                                                 MotionStatus::kInvalidInput};
   return all;
 }

@@ -14,6 +14,7 @@ enum class MotionStatus {
   kTooFewMatches,       // fewer distinct matches than a minimal sample needs
   kDegenerateMatches,   // the matches cannot determine a motion (collinear, or every sample is singular)
   kRefinementDiverged,  // the refinement found no finite optimum, or no more than five matches agree with it
+  kTooFewExplained,     // the refined motion explains a smaller share of the matches than was asked for
   kInvalidInput,        // NaN or infinite coordinates, a singular camera, a noise level that is not positive
 };
 
@@ -49,6 +50,11 @@ struct MotionEstimate {
   int num_consistent_before = 0;  // n_I
   int num_consistent_after = 0;   // n*_I
   bool failed_by_kappa = false;   // n*_I / n_I <= kappa
+
+  // Matches, of all, that agree with the refined motion: squared Sampson distance within
+  // ConsistencyThreshold (refine_winner.h). The motion's covariance plays no part: a motion that is hardly
+  // determined explains no more for that.
+  int num_explained = 0;
 
   LoopCounts counts;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 
 #include "estimator/hypothesis_trace.h"
@@ -7,23 +8,35 @@
 
 namespace rcme {
 
+// Of the hypotheses of one problem, by sample: the estimate from each, whatever the others are.
+using Refinements = std::map<Sample, MotionEstimate>;
+
 // An estimator whose loop can be taken apart: make and score the hypotheses, decide, finish. Whatever the
-// options, Estimate(problem, rng) is Finish(problem, Decide(Trace(problem, rng))).
+// options, Estimate(problem, rng) is Finish(problem, Decide(Trace(problem, rng)), &refinements).
 //
 // Decide is the cheap part. The trace of one estimator may be decided by another whose options differ in
 // those of kDecisionOptions alone, as long as the trace has at least num_iterations hypotheses and, where
-// likelihood selects, was made by an estimator that selects by likelihood too.
+// likelihood selects, was made by an estimator that selects by likelihood too. They may share the refinements
+// of a problem as well.
 class RansacEstimator : public MotionEstimator {
  public:
   virtual HypothesisTrace Trace(const MotionProblem& problem, RandomStream& rng) const = 0;
   virtual LoopResult Decide(const HypothesisTrace& trace) const = 0;
-  // Of a winner the result depends on its sample and on options that are not kDecisionOptions.
-  virtual MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop) const = 0;
+  // Takes from `refinements` what is there already, and adds what is not.
+  virtual MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
+                                Refinements* refinements) const = 0;
 };
 
-// The options that act on scores alone.
-inline constexpr const char* kDecisionOptions[] = {
-    "mu", "quality_test", "lambda", "inlier_ratio", "selection", "early_stop_entropy", "num_iterations"};
+// The options that act on scores and on what refinements explain alone.
+inline constexpr const char* kDecisionOptions[] = {"mu",
+                                                   "quality_test",
+                                                   "lambda",
+                                                   "inlier_ratio",
+                                                   "selection",
+                                                   "early_stop_entropy",
+                                                   "num_iterations",
+                                                   "num_refined",
+                                                   "least_explained_share"};
 
 // The estimator as one whose loop can be taken apart; null if it is none.
 inline const RansacEstimator* AsRansac(const MotionEstimator& estimator) {

@@ -58,7 +58,8 @@ struct Proposal {
 };
 
 struct LoopResult {
-  std::optional<Candidate> winner;  // nothing: the paper's "Fail"
+  std::optional<Candidate> winner;    // nothing: the paper's "Fail"
+  std::vector<Candidate> runners_up;  // the next best, num_refined - 1 at most
   LoopCounts counts;
 };
 
@@ -95,10 +96,13 @@ LoopResult RunRansacLoop(const RansacOptions& options, int num_matches, Search& 
   counts.num_too_small_inlier_sets = counts.num_hypotheses - counts.num_degenerate_samples -
                                      counts.num_inconsistent_samples - counts.num_poor_inlier_sets -
                                      counts.num_candidates;
-  result.winner =
-      candidates.Select([&](const InlierScore& a, const InlierScore& b) {  // (eq::model_select_entropy)
+  result.runners_up = candidates.SelectBest(
+      options.num_refined, [&](const InlierScore& a, const InlierScore& b) {  // (eq::model_select_entropy)
         return Pipeline::IsBetter(a, b, options);
       });
+  if (result.runners_up.empty()) return result;
+  result.winner = result.runners_up.front();
+  result.runners_up.erase(result.runners_up.begin());
   return result;
 }
 

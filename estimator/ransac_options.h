@@ -61,7 +61,9 @@ struct RansacOptions {
   Refinement refinement = Refinement::kRobust;
   RefinementError refinement_error = RefinementError::kSampson;
   Implementation implementation = Implementation::kFast;
-  double kappa = 0.5;  // failure flag: n*_I / n_I <= kappa (eq::metric)
+  int num_refined = 1;                 // the best so many candidates are refined; the best motion wins
+  double least_explained_share = 0.0;  // of the matches, by the refined motion; less is refused
+  double kappa = 0.5;                  // failure flag: n*_I / n_I <= kappa (eq::metric)
 
   // mu, or the default of the reading: -3.53 as printed (of a 4-dimensional density in px: it has units);
   // rank-aware, 6 nats of excess entropy: at 40 % outliers 3 nats refused 23 % of 150 trials and 6 nats 5 %,

@@ -1,6 +1,7 @@
 #include "estimator/reference_matches.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/geometry/triangulation.h"
@@ -27,6 +28,12 @@ ReferenceMatches::Set ReferenceMatches::FindAgreeing(const RefinedMotion& motion
 
 ReferenceMatches::Set ReferenceMatches::SelectFitSet(const RefinedMotion& motion, const Set& fitted) const {
   return rcme::SelectFitSet(problem_, motion, fitted);
+}
+
+ReferenceMatches::Set ReferenceMatches::All() const {
+  Set all(problem_.matches.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 int ReferenceMatches::CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {

@@ -20,6 +20,7 @@ class ReferenceMatches {
   Set SelectFitSet(const RefinedMotion& motion, const Set& fitted) const;
   int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
   Set SetOf(const std::vector<int>& indices) const { return indices; }
+  Set All() const;
   const std::vector<int>& IndicesOf(const Set& set) const { return set; }
   int Count(const Set& set) const { return static_cast<int>(set.size()); }
 

@@ -14,6 +14,7 @@
 //     // squared Sampson distance over sigma^2 below the threshold
 //     int CountConsistent(set, pose, threshold) const;
 //     Set SetOf(sorted_indices) const;
+//     Set All() const;
 //     std::vector<int> IndicesOf(set) const;
 //     int Count(set) const;
 //   };
@@ -129,6 +130,7 @@ void RefineWinner(const Matches& matches, const RansacOptions& options, const Sa
   const double threshold = ConsistencyThreshold(options.significance_level);
   estimate->num_consistent_before = matches.CountConsistent(support, winner.pose, threshold);
   estimate->num_consistent_after = matches.CountConsistent(support, refined.cam2_from_cam1, threshold);
+  estimate->num_explained = matches.CountConsistent(matches.All(), refined.cam2_from_cam1, threshold);
   estimate->failed_by_kappa =
       estimate->num_consistent_after <= options.kappa * estimate->num_consistent_before;  // (eq::metric)
   estimate->message = SuccessMessage(static_cast<int>(estimate->inliers.size()),

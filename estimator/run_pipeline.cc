@@ -10,16 +10,18 @@ std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem) {
   return RefuseUnsolvable(problem, EightPoint::kSampleSize);
 }
 
-MotionEstimate EstimateFromLoop(const LoopResult& loop) {
+MotionEstimate EstimateFromCandidate(const LoopCounts& counts, const Candidate& candidate) {
   MotionEstimate estimate;
-  estimate.counts = loop.counts;
-  if (loop.winner) {
-    estimate.num_support = loop.winner->score.num_inliers;
-    estimate.mean_entropy = loop.winner->score.mean_entropy;
-    estimate.z_statistic = loop.winner->z_statistic;
-    return estimate;
-  }
-  const LoopCounts& counts = loop.counts;
+  estimate.counts = counts;
+  estimate.num_support = candidate.score.num_inliers;
+  estimate.mean_entropy = candidate.score.mean_entropy;
+  estimate.z_statistic = candidate.z_statistic;
+  return estimate;
+}
+
+MotionEstimate RefusalFromLoop(const LoopCounts& counts) {
+  MotionEstimate estimate;
+  estimate.counts = counts;
   const bool all_degenerate = counts.num_degenerate_samples == counts.num_hypotheses;
   estimate.status = all_degenerate ? MotionStatus::kDegenerateMatches : MotionStatus::kNoCandidate;
   estimate.message =
@@ -31,6 +33,14 @@ MotionEstimate EstimateFromLoop(const LoopResult& loop) {
                 counts.num_hypotheses, counts.num_degenerate_samples, counts.num_inconsistent_samples,
                 counts.num_poor_inlier_sets);
   return estimate;
+}
+
+void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEstimate* estimate) {
+  if (estimate->status != MotionStatus::kOk) return;
+  if (estimate->num_explained >= options.least_explained_share * num_matches) return;
+  estimate->status = MotionStatus::kTooFewExplained;
+  estimate->message = fmt::format("the motion explains {} of {} matches, less than the share {} asked for",
+                                  estimate->num_explained, num_matches, options.least_explained_share);
 }
 
 }  // namespace rcme

@@ -4,6 +4,7 @@
 #include "estimator/hypothesis_trace.h"
 #include "estimator/kernels/block_matches.h"
 #include "estimator/kernels/block_search.h"
+#include "estimator/ransac_estimator.h"
 #include "estimator/reference_matches.h"
 #include "estimator/reference_search.h"
 #include "estimator/refine_winner.h"
@@ -13,8 +14,14 @@ namespace rcme {
 // The check before any hypothesis is drawn; a refusal, or nothing.
 std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem);
 
-// What the loop says of its winner, or why there is none.
-MotionEstimate EstimateFromLoop(const LoopResult& loop);
+// What the loop says of a candidate.
+MotionEstimate EstimateFromCandidate(const LoopCounts& counts, const Candidate& candidate);
+
+// Why the loop has no candidate.
+MotionEstimate RefusalFromLoop(const LoopCounts& counts);
+
+// Refuses an estimate that explains too few of `num_matches`.
+void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEstimate* estimate);
 
 // An engine makes the hypotheses (search, see ransac_loop.h) and holds the matches for the refinement
 // (matches, see refine_winner.h).
@@ -44,13 +51,29 @@ struct FastEngine {
   BlockMatches matches;
 };
 
+// The estimate from one candidate, before others are looked at.
 template <typename Engine>
-MotionEstimate FinishLoop(Engine& engine, const RansacOptions& options, const LoopResult& loop) {
-  MotionEstimate estimate = EstimateFromLoop(loop);
-  if (!loop.winner) return estimate;
-  const Sample& sample = loop.winner->sample;
-  RefineWinner(engine.matches, options, sample, engine.search.FindSupport(sample), &estimate);
+MotionEstimate RefineCandidate(Engine& engine, const RansacOptions& options, const LoopCounts& counts,
+                               const Candidate& candidate) {
+  MotionEstimate estimate = EstimateFromCandidate(counts, candidate);
+  RefineWinner(engine.matches, options, candidate.sample, engine.search.FindSupport(candidate.sample),
+               &estimate);
   return estimate;
+}
+
+// The winner refined, or of several candidates the one that explains most matches, the better one first at a
+// tie. `refine` makes the estimate from a candidate.
+template <typename Refine>
+MotionEstimate FinishLoop(const RansacOptions& options, int num_matches, const LoopResult& loop,
+                          const Refine& refine) {
+  if (!loop.winner) return RefusalFromLoop(loop.counts);
+  MotionEstimate best = refine(*loop.winner);
+  for (const Candidate& candidate : loop.runners_up) {
+    MotionEstimate estimate = refine(candidate);
+    if (estimate.num_explained > best.num_explained) best = std::move(estimate);
+  }
+  CheckExplainedShare(options, num_matches, &best);
+  return best;
 }
 
 template <typename Pipeline, typename Engine = ReferenceEngine<Pipeline>>
@@ -59,7 +82,9 @@ MotionEstimate RunPipeline(const MotionProblem& problem, const RansacOptions& op
   Engine engine(problem, options, rng);
   const auto num_matches = static_cast<int>(problem.matches.size());
   const LoopResult loop = RunRansacLoop<Pipeline>(options, num_matches, engine.search);
-  return FinishLoop(engine, options, loop);
+  return FinishLoop(options, num_matches, loop, [&](const Candidate& candidate) {
+    return RefineCandidate(engine, options, loop.counts, candidate);
+  });
 }
 
 template <typename Engine>
@@ -69,14 +94,27 @@ HypothesisTrace TracePipeline(const MotionProblem& problem, const RansacOptions&
   return TraceHypotheses(options.num_iterations, static_cast<int>(problem.matches.size()), engine.search);
 }
 
+// See RansacEstimator::Finish.
 template <typename Engine>
 MotionEstimate FinishPipeline(const MotionProblem& problem, const RansacOptions& options,
-                              const LoopResult& loop) {
-  if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop(problem)) return *refusal;
-  if (!loop.winner) return EstimateFromLoop(loop);
+                              const LoopResult& loop, Refinements* refinements) {
+  if (!loop.winner) {
+    if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop(problem)) return *refusal;
+  }
   RandomStream no_samples({0, 0, 0, 0});
-  Engine engine(problem, options, no_samples);
-  return FinishLoop(engine, options, loop);
+  std::optional<Engine> engine;  // made when the first refinement is missing
+  const auto refine = [&](const Candidate& candidate) {
+    const auto known = refinements->find(candidate.sample);
+    if (known == refinements->end()) {
+      if (!engine) engine.emplace(problem, options, no_samples);
+      return (*refinements)[candidate.sample] = RefineCandidate(*engine, options, loop.counts, candidate);
+    }
+    MotionEstimate estimate = known->second;
+    estimate.counts = loop.counts;  // these two depend on how the loop decided
+    estimate.z_statistic = candidate.z_statistic;
+    return estimate;
+  };
+  return FinishLoop(options, static_cast<int>(problem.matches.size()), loop, refine);
 }
 
 }  // namespace rcme

@@ -19,7 +19,7 @@
 namespace rcme {
 namespace {
 
-constexpr const char* kFormat = "rcme results 2";
+constexpr const char* kFormat = "rcme results 3";
 constexpr std::chrono::milliseconds kCommitInterval{500};
 using Clock = std::chrono::steady_clock;
 

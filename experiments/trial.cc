@@ -70,6 +70,7 @@ TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double 
   record.num_consistent_before = estimate.num_consistent_before;
   record.num_consistent_after = estimate.num_consistent_after;
   record.failed_by_kappa = estimate.failed_by_kappa;
+  record.num_explained = estimate.num_explained;
   record.counts = estimate.counts;
   record.seconds = seconds;
   ScoreMotion(estimate, data.truth, &record);

@@ -25,6 +25,7 @@ struct TrialRecord {
   double z_statistic = 0.0;
   int num_consistent_before = 0, num_consistent_after = 0;  // n_I, n*_I
   bool failed_by_kappa = false;
+  int num_explained = 0;  // of all matches, by the refined motion
   LoopCounts counts;
   double seconds = 0.0;  // wall time of the call; the only field that is not a function of the trial's name
 };

@@ -25,6 +25,7 @@ void VisitFields(Record& record, Visitor&& visit) {
   visit("num_consistent_before", record.num_consistent_before);
   visit("num_consistent_after", record.num_consistent_after);
   visit("failed_by_kappa", record.failed_by_kappa);
+  visit("num_explained", record.num_explained);
   visit("num_hypotheses", record.counts.num_hypotheses);
   visit("num_degenerate_samples", record.counts.num_degenerate_samples);
   visit("num_inconsistent_samples", record.counts.num_inconsistent_samples);

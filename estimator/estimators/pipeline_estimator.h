@@ -22,8 +22,9 @@ class PipelineEstimator : public RansacEstimator {
     TraceSearch search(trace);
     return RunRansacLoop<Pipeline>(options_, trace.num_matches, search);
   }
-  MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop) const override {
-    return FinishPipeline<Engine>(problem, options_, loop);
+  MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
+                        Refinements* refinements) const override {
+    return FinishPipeline<Engine>(problem, options_, loop, refinements);
   }
 
  private:

@@ -22,6 +22,7 @@ class BlockMatches {
   Set SelectFitSet(const RefinedMotion& motion, const Set& fitted) const;
   int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
   Set SetOf(const std::vector<int>& indices) const { return MaskOf(indices, matches_); }
+  Set All() const { return matches_.All(); }
   std::vector<int> IndicesOf(const Set& set) const { return rcme::IndicesOf(set); }
   int Count(const Set& set) const { return CountIn(set); }
 

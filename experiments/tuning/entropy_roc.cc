@@ -40,7 +40,8 @@ Entropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, S
   AddSamples(trace, data.truth, &entropies);
   const LoopResult loop = estimator.Decide(trace);
   if (!loop.winner) return entropies;
-  const TrialRecord record = Score(estimator.Finish(data.problem, loop), data, 0.0);
+  Refinements refinements;
+  const TrialRecord record = Score(estimator.Finish(data.problem, loop, &refinements), data, 0.0);
   if (record.status != MotionStatus::kOk) return entropies;
   (HasFailed(record, bounds) ? entropies.bad_winner : entropies.good_winner) =
       loop.winner->score.mean_entropy;

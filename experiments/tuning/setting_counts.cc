@@ -27,6 +27,7 @@ class TrialDecisions {
   // How each setting of the group ends, and how it would without the quality test.
   template <typename Visit>
   void ForEachSetting(const SettingPlan& plan, const TraceGroup& group, Visit visit) {
+    refinements_.clear();
     endings_.clear();
     decided_.clear();
     const RansacEstimator* tracer = AsRansac(*group.tracer);
@@ -35,15 +36,20 @@ class TrialDecisions {
       trace_ = tracer->Trace(data_.problem, rng);
     }
     for (const size_t s : group.settings) {
-      const Ending ending = EndingOf(*plan.estimators[s]);
+      const double least_share = plan.settings[s].spec.options.least_explained_share;
+      const Ending ending = EndingOf(*plan.estimators[s], least_share);
       const MotionEstimator* without = plan.without_quality_test[s].get();
       const auto known = decided_.find(without);
-      visit(s, ending, known == decided_.end() ? decided_[without] = EndingOf(*without) : known->second);
+      visit(s, ending,
+            known == decided_.end() ? decided_[without] = EndingOf(*without, least_share) : known->second);
     }
   }
 
  private:
-  Ending EndingOf(const MotionEstimator& estimator) {
+  // What follows from a loop depends on the candidates it hands over, and on the share they have to explain.
+  using Handover = std::pair<std::vector<Sample>, double>;
+
+  Ending EndingOf(const MotionEstimator& estimator, double least_share) {
     const RansacEstimator* parts = AsRansac(estimator);
     if (!parts) {
       RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
@@ -51,9 +57,11 @@ class TrialDecisions {
     }
     const LoopResult loop = parts->Decide(trace_);
     if (!loop.winner) return Ending::kRefused;
-    const auto known = endings_.find(loop.winner->sample);  // the winner's sample decides what follows
+    Handover handover{{loop.winner->sample}, least_share};
+    for (const Candidate& candidate : loop.runners_up) handover.first.push_back(candidate.sample);
+    const auto known = endings_.find(handover);
     if (known != endings_.end()) return known->second;
-    return endings_[loop.winner->sample] = EndingOf(parts->Finish(data_.problem, loop));
+    return endings_[handover] = EndingOf(parts->Finish(data_.problem, loop, &refinements_));
   }
 
   Ending EndingOf(const MotionEstimate& estimate) const {
@@ -66,7 +74,8 @@ class TrialDecisions {
   const FailureBounds& bounds_;
   TrialData data_;
   HypothesisTrace trace_;
-  std::map<Sample, Ending> endings_;
+  Refinements refinements_;
+  std::map<Handover, Ending> endings_;
   std::map<const MotionEstimator*, Ending> decided_;
 };
 

@@ -30,7 +30,7 @@ RansacOptions GivenRatio(double inlier_ratio, double lambda) {
 TEST(CandidateSet, EmptySelectsNothing) {
   const CandidateSet candidates(RansacOptions(), kNumMatches);
   EXPECT_EQ(candidates.CountMembers(), 0);
-  EXPECT_FALSE(candidates.Select(LessEntropy));
+  EXPECT_TRUE(candidates.SelectBest(1, LessEntropy).empty());
 }
 
 TEST(CandidateSet, GivenRatioDecidesTheSizeCondition) {
@@ -42,8 +42,9 @@ TEST(CandidateSet, GivenRatioDecidesTheSizeCondition) {
   candidates.Add(Make(40, 1.0, 1));
   candidates.Add(Make(90, 2.0, 2));  // must not raise the given omega_p
   EXPECT_EQ(candidates.CountMembers(), 2);
-  EXPECT_EQ(candidates.Select(LessEntropy)->sample[0], 1) << "the best entropy is too small a set";
-  EXPECT_EQ(candidates.Select(MoreInliers)->sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 1)
+      << "the best entropy is too small a set";
+  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).sample[0], 2);
 }
 
 TEST(CandidateSet, InferredRatioIsTheLargestShareOfAllThatPassed) {
@@ -52,14 +53,14 @@ TEST(CandidateSet, InferredRatioIsTheLargestShareOfAllThatPassed) {
   CandidateSet candidates(options, kNumMatches);
   candidates.Add(Make(20, -9.0, 1));
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.Select(LessEntropy)->sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 1);
   candidates.Add(Make(60, 3.0, 2));  // now at least 30 are needed: the first one is out again
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.Select(LessEntropy)->sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 2);
   candidates.Add(Make(30, 0.0, 3));
   candidates.Add(Make(29, -1.0, 4));
   EXPECT_EQ(candidates.CountMembers(), 2);
-  EXPECT_EQ(candidates.Select(LessEntropy)->sample[0], 3);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 3);
 }
 
 TEST(CandidateSet, LargestLambdaKeepsTheLargestSetAlone) {
@@ -67,7 +68,7 @@ TEST(CandidateSet, LargestLambdaKeepsTheLargestSetAlone) {
   candidates.Add(Make(59, -9.0, 1));
   candidates.Add(Make(60, 3.0, 2));
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.Select(LessEntropy)->sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 2);
 }
 
 TEST(CandidateSet, LargestSetIsAlwaysAMember) {
@@ -87,8 +88,8 @@ TEST(CandidateSet, FirstOneWinsATie) {
   CandidateSet candidates(GivenRatio(0.1, 0.5), kNumMatches);
   candidates.Add(Make(50, 1.0, 1));
   candidates.Add(Make(50, 1.0, 2));
-  EXPECT_EQ(candidates.Select(LessEntropy)->sample[0], 1);
-  EXPECT_EQ(candidates.Select(MoreInliers)->sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).sample[0], 1);
 }
 
 TEST(CandidateSet, SelectsTheLeastOfMany) {
@@ -104,7 +105,7 @@ TEST(CandidateSet, SelectsTheLeastOfMany) {
     least = std::min(least, candidate.score.mean_entropy);
   }
   EXPECT_EQ(candidates.CountMembers(), num_members);
-  EXPECT_EQ(candidates.Select(LessEntropy)->score.mean_entropy, least);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).score.mean_entropy, least);
 }
 
 }  // namespace

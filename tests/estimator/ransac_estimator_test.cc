@@ -50,6 +50,7 @@ void ExpectEqual(const MotionEstimate& a, const MotionEstimate& b) {
   EXPECT_EQ(a.mean_entropy, b.mean_entropy);
   EXPECT_EQ(a.z_statistic, b.z_statistic);
   EXPECT_EQ(a.num_consistent_after, b.num_consistent_after);
+  EXPECT_EQ(a.num_explained, b.num_explained);
   EXPECT_EQ(a.counts.num_hypotheses, b.counts.num_hypotheses);
   EXPECT_EQ(a.counts.num_inconsistent_samples, b.counts.num_inconsistent_samples);
   EXPECT_EQ(a.counts.num_poor_inlier_sets, b.counts.num_poor_inlier_sets);
@@ -74,7 +75,8 @@ TEST(RansacEstimator, EstimateIsFinishOfDecideOfTrace) {
         for (const MotionProblem& problem : Problems()) {
           SCOPED_TRACE(entry.name);
           RandomStream rng = SamplingStream();
-          ExpectEqual(parts->Finish(problem, parts->Decide(parts->Trace(problem, rng))),
+          Refinements refinements;
+          ExpectEqual(parts->Finish(problem, parts->Decide(parts->Trace(problem, rng)), &refinements),
                       EstimateWith(*estimator, problem));
         }
       }
@@ -98,23 +100,64 @@ TEST(RansacEstimator, ATraceServesAllDecisionOptions) {
                                                                     {"early_stop_entropy", "-4"},
                                                                     {"num_iterations", "1"},
                                                                     {"num_iterations", "37"},
-                                                                    {"selection", "mean_entropy"}};
+                                                                    {"selection", "mean_entropy"},
+                                                                    {"num_refined", "5"},
+                                                                    {"least_explained_share", "0.45"}};
   for (const MotionProblem& problem : Problems()) {
     for (RansacOptions options : BothReadings()) {
       if (options.reading == Reading::kRankAware) options.selection = Selection::kPredictiveLikelihood;
       const auto traced = FindEstimator("rcme").make(options);
       RandomStream rng = SamplingStream();
       const HypothesisTrace trace = AsRansac(*traced)->Trace(problem, rng);
+      Refinements refinements;  // one set for all
       for (const auto& [key, value] : changes) {
         SCOPED_TRACE(key + " = " + value);
         RansacOptions changed = options;
         FindParameter(Parameters(changed), key).SetFromText(value);
         const auto estimator = FindEstimator("rcme").make(changed);
         const RansacEstimator* parts = AsRansac(*estimator);
-        ExpectEqual(parts->Finish(problem, parts->Decide(trace)), EstimateWith(*estimator, problem));
+        ExpectEqual(parts->Finish(problem, parts->Decide(trace), &refinements),
+                    EstimateWith(*estimator, problem));
       }
     }
   }
+}
+
+// Of several refined candidates the one that explains most matches wins, so that more of them explain no
+// fewer; in one of these problems they explain more.
+TEST(RansacEstimator, MoreRefinedCandidatesExplainNoFewerMatches) {
+  int num_better = 0;
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    const MotionProblem problem = MakeProblem(0.5, 120, trial);
+    for (RansacOptions options : BothReadings()) {
+      options.mu = 1000.0;
+      int previous = 0;
+      for (const int num_refined : {1, 3, 20}) {
+        options.num_refined = num_refined;
+        const MotionEstimate estimate = EstimateWith(*FindEstimator("prcme").make(options), problem);
+        EXPECT_GE(estimate.num_explained, previous);
+        num_better += num_refined > 1 && estimate.num_explained > previous;
+        previous = estimate.num_explained;
+      }
+    }
+  }
+  EXPECT_GT(num_better, 0);
+}
+
+// The motion is refused where it explains less than asked for, and only there.
+TEST(RansacEstimator, AMotionThatExplainsTooLittleIsRefused) {
+  const MotionProblem problem = MakeProblem(0.2, 120, 0);
+  RansacOptions options;
+  options.reading = Reading::kRankAware;
+  const auto status_at = [&](double share) {
+    options.least_explained_share = share;
+    return EstimateWith(*FindEstimator("rcme").make(options), problem).status;
+  };
+  const double share = EstimateWith(*FindEstimator("rcme").make(options), problem).num_explained / 120.0;
+  EXPECT_GT(share, 0.6);
+  EXPECT_LT(share, 0.9);
+  EXPECT_EQ(status_at(share), MotionStatus::kOk);
+  EXPECT_EQ(status_at(share + 0.005), MotionStatus::kTooFewExplained);
 }
 
 TEST(RansacEstimator, DecisionOptionsAreOptions) {

@@ -248,7 +248,7 @@ TEST_F(ResultStoreTest, RefusesFilesOfOthers) {
   const std::string later = folder_.Path("later.sqlite");
   { ResultStore::OpenForRun(later, plan_); }
   Query(later, "UPDATE run SET value = 'rcme results 99' WHERE key = 'format'");
-  EXPECT_TRUE(RefusesToRun(later, {"rcme results 2"}));
+  EXPECT_TRUE(RefusesToRun(later, {"rcme results 3"}));
 }
 
 TEST_F(ResultStoreTest, PathsThatCannotBeWritten) {
