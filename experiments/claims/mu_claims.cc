@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "estimator/solvers/five_point.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
 #include "experiments/claims/model_entropy.h"
@@ -84,6 +85,66 @@ std::vector<Claim> ClaimsOf(Reading reading, const std::string& id, const std::s
             RocCheck<PointTest>(SampleKind::kContaminated, thresholds)}}};
 }
 
+// The inlier set of the five-point model of the first five matches of a sample that has most inliers.
+InlierScore FivePointScore(const MotionProblem& problem, const Sample& sample) {
+  FivePoint::Rays rays1, rays2;
+  std::vector<Correspondence> matches;
+  for (size_t k = 0; k < rays1.size(); ++k) {
+    matches.push_back(problem.matches[static_cast<size_t>(sample[k])]);
+    rays1[k] = problem.camera1.Ray(matches[k].x1_px);
+    rays2[k] = problem.camera2.Ray(matches[k].x2_px);
+  }
+  const Thresholds thresholds = Thresholds::For(problem, {}, RankAwareTest::kDegreesOfFreedom);
+  const FivePoint::Solutions solutions = FivePoint::Solve(rays1, rays2);
+  InlierScore most;
+  for (int i = 0; i < solutions.count; ++i) {  // of the four poses of an E, any: the test sees E alone
+    const RelativePose pose = PosesFromEssential(ProjectToEssential(solutions.E[static_cast<size_t>(i)]))[0];
+    const std::optional<Matrix5d> pose_cov =
+        FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, matches, problem.sigma_px);
+    if (!pose_cov) continue;
+    const std::optional<UncertainFundamental> model =
+        UncertainFundamental::From(pose, *pose_cov, problem.camera1, problem.camera2);
+    if (!model) continue;
+    const InlierScore score = ScoreInliers(problem, RankAwareTest(*model, problem.sigma_px), thresholds);
+    if (score.num_inliers > most.num_inliers) most = score;
+  }
+  return most;
+}
+
+// psi of good models, eight-point and five-point, each of a scene of its own.
+Claim SolverClaim() {
+  const auto pass_at = [](double mu, const std::string& solver, size_t statistic) {
+    Target target = MeasuredRate(fmt::format("{}: psi at most {}", solver, mu), statistic);
+    target.kind = Target::Kind::kAtMost;
+    target.threshold = mu;
+    return target;
+  };
+  Check check =
+      MakeCheck(kPair, nullptr,
+                {ClaimedRate("the five-point model has the higher psi", 0.5, {0.4, 0.6}, 0),
+                 pass_at(2, "eight-point", 1), pass_at(4, "eight-point", 1), pass_at(6, "eight-point", 1),
+                 pass_at(2, "five-point", 2), pass_at(4, "five-point", 2), pass_at(6, "five-point", 2)},
+                kMicroseconds);
+  check.trial = [cases = SimulatedCases(kPair)](StreamName name) -> Outcome {
+    name.trial *= 2;
+    Case first = cases(name);
+    ++name.trial;
+    Case second = cases(name);
+    const double eight = MeanEntropyOrInfinity(ScoreOf<RankAwareTest>(SampleKind::kGood, first));
+    const double five =
+        MeanEntropyOrInfinity(FivePointScore(second.problem(), DrawSampleOf(SampleKind::kGood, second)));
+    return {five > eight ? 1.0 : 0.0, eight, five};
+  };
+  return {"mu.rank_aware.solver",
+          "Sec. inlier_qual_test, mu",
+          "rank-aware, excess",
+          "A mu for the eight-point solver is one for the five-point solver: psi of good models has the same "
+          "law",
+          "psi of models of true matches, 20 % mismatches",
+          "",
+          {check}};
+}
+
 }  // namespace
 
 std::vector<Claim> MuClaims() {
@@ -96,6 +157,7 @@ std::vector<Claim> MuClaims() {
                                {0.25, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 10, 12, 15})) {
     claims.push_back(std::move(claim));
   }
+  claims.push_back(SolverClaim());
   return claims;
 }
 
