@@ -28,10 +28,6 @@ double Objective(const Tuning& tuning, const SettingCount& count) {
   return RateOf(tuning.target == TuneTarget::kFalseRefusal ? count.Failure() : count.Refusal());
 }
 
-bool HasRefusalLimit(const Tuning& tuning) {
-  return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
-}
-
 // The p-value of "the setting violates the target".
 double PValue(const Tuning& tuning, const SettingCount& count) {
   const double p = ExcessPValue(TargetedCount(tuning, count), tuning.at_most);
@@ -129,6 +125,10 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
 
 ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count) {
   return tuning.target == TuneTarget::kFalseRefusal ? count.FalseRefusal() : count.Failure();
+}
+
+bool HasRefusalLimit(const Tuning& tuning) {
+  return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
 }
 
 bool ViolatesTarget(const Tuning& tuning, const SettingCount& count) {

@@ -112,6 +112,18 @@ TEST(TransferVerdict, TheWholeIntervalOnOneSideOfTheLimit) {
   EXPECT_EQ(VerdictOf(tuning, {1000, 0, 0, 0, 0}), TransferVerdict::kUndecided) << "no trial is good";
 }
 
+// The target limits refusals as well: a setting that refuses everything never fails.
+TEST(TransferVerdict, RefusalsAreLimitedToo) {
+  Tuning tuning;
+  tuning.target = TuneTarget::kFailure;
+  tuning.at_most = 0.1;
+  tuning.max_refusal = 0.5;
+  EXPECT_EQ(VerdictOf(tuning, {100, 0, 100, 0, 0}), TransferVerdict::kViolated);
+  EXPECT_EQ(VerdictOf(tuning, {100, 0, 50, 0, 0}), TransferVerdict::kUndecided);
+  EXPECT_EQ(VerdictOf(tuning, {100, 0, 20, 0, 0}), TransferVerdict::kHolds);
+  EXPECT_EQ(VerdictOf(tuning, {100, 30, 50, 0, 0}), TransferVerdict::kViolated);
+}
+
 TEST(TransferOutput, CellsAndCountsOfTheOthers) {
   const StudyPlan plan = FourConditions();
   TransferResult result;
