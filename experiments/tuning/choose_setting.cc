@@ -73,6 +73,7 @@ size_t NearestSetting(const Tuning& tuning, const std::vector<SettingCount>& exp
 // What stands between a count and its limit: nothing, trials, or the rate itself.
 std::string Obstacle(const char* what, const ErrorCount& count, double at_most, double delta) {
   if (ExcessPValue(count, at_most) <= delta) return {};
+  if (count.n == 0) return fmt::format("{}: no trial is good without the quality test", what);
   const std::string figure = fmt::format("{} {}", what, RateInWords(count));
   if (ExactBinomialInterval(count.errors, count.n).lower > at_most) {
     return figure + fmt::format(": {:.3g} % is out of reach", 100.0 * at_most);

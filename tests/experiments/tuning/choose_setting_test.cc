@@ -231,7 +231,7 @@ TEST(ChooseSetting, NoGoodTrialCertifiesNothing) {
   const std::vector<SettingCount> counts = {Quality(1000, 0, 0, 0)};
   const Choice choice = Choose(TuningFor(TuneTarget::kFalseRefusal, 0.05), counts, counts);
   EXPECT_FALSE(choice.setting.has_value());
-  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 0", "of 0"})) << choice.why;
+  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 0: false refusal: no trial is good"})) << choice.why;
 }
 
 TEST(ChooseSetting, OneTrialAndOneSetting) {
