@@ -96,6 +96,7 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(refuses("at_most", {"at_most", "''", "a number in"}));
   EXPECT_TRUE(refuses("at_most=0", {"at_most", "'0'", "a number in"}));
   EXPECT_TRUE(refuses("at_most=nan", {"at_most", "'nan'", "a number in"}));
+  EXPECT_TRUE(refuses("max_refusal=0", {"max_refusal", "'0'", "a number in"}));
   EXPECT_TRUE(refuses("delta=1", {"delta", "'1'", "a number in"}));
   EXPECT_TRUE(refuses("calibrate=0", {"calibrate", "'0'", "a whole number"}));
   EXPECT_TRUE(refuses("target=speed", {"target", "'speed'", "false_refusal, failure, risk"}));
