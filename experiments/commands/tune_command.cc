@@ -50,6 +50,7 @@ void RunTune(const TuneArguments& arguments) {
     return;
   }
   if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
+  CheckCanBeWritten(arguments.out);  // minutes before it is
   if (!arguments.figures.empty()) MakeResultFolder(arguments.figures);
   const TuneResult result = Tune(plan, settings, arguments.threads);
   const std::vector<EntropyRoc> rocs = MeasureRocs(plan, arguments.threads);

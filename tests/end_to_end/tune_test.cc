@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -107,6 +108,22 @@ TEST_F(TuneProgram, BadInput) {
   study_ = folder_.Write("plain.yaml", SmallStudyYaml());
   EXPECT_TRUE(IsRefused(Tune({"--out", out_}), {"plain.yaml", "no block 'tune'"}));
   EXPECT_TRUE(IsRefused(Call("transfer", {"--out", folder_.Path("t")}), {"plain.yaml", "no block 'tune'"}));
+}
+
+// Found before the work, which would take minutes here.
+TEST_F(TuneProgram, APlaceThatCannotBeWrittenIsFoundAtOnce) {
+  folder_.Write("file", "");
+  for (const std::string& out : {folder_.Path("none/tuned.yaml"), folder_.Path("file/tuned.yaml"),
+                                 folder_.path(), std::string("/proc/tuned.yaml")}) {
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_TRUE(IsRefused(Tune({"--out", out, "--tune", "verify=10000000"}), {out, "cannot be written"}));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20)) << out;
+  }
+  EXPECT_EQ(folder_.NumEntries(), 2) << "something was left behind";
+  ASSERT_EQ(Tune({"--out", out_}).exit_code, 0);
+  const std::string before = ReadBytes(out_);
+  EXPECT_EQ(Tune({"--out", out_, "--tune", "at_most=0.01"}).exit_code, 2);
+  EXPECT_EQ(ReadBytes(out_), before) << "a tuning that was refused changed an earlier file";
 }
 
 TEST_F(TuneProgram, Repetitions) {
