@@ -64,6 +64,11 @@ TEST_F(TuneProgram, WritesAnEstimatorThatOtherCommandsTake) {
   EXPECT_EQ(nlohmann::json::parse(pair.out)["estimator"], "ours_tuned");
 }
 
+// A run of the study with its own seed would take the trials it was tuned on.
+TEST_F(TuneProgram, SuggestsARunOnOtherTrials) {
+  EXPECT_NE(Tune({"--out", out_}).err.find("--seed 4"), std::string::npos);
+}
+
 TEST_F(TuneProgram, TheSameBytesWhateverTheThreads) {
   std::vector<std::string> files, outs;
   for (const char* threads : {"1", "2"}) {
