@@ -97,13 +97,15 @@ void AddTuneCommand(CLI::App& app) {
   CLI::Option* out = command->add_option("-o,--out", arguments->out,
                                          "the tuned estimator, a file for studies "
                                          "and `rcme estimate`");
-  command->add_option("--figures", arguments->figures,
-                      "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
+  CLI::Option* figures =
+      command->add_option("--figures", arguments->figures,
+                          "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
   command
       ->add_option("--repeat", arguments->repeat,
                    "tune so many times with fresh seeds, and count how often the target is violated")
       ->check(CLI::Range(1, 100'000))
-      ->excludes(out);
+      ->excludes(out)
+      ->excludes(figures);
   command->callback([arguments] { RunTune(*arguments); });
 }
 

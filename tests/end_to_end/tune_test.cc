@@ -109,6 +109,7 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(refuses("estimator=theirs", {"estimator", "'theirs'", "standard, ours"}));
   EXPECT_TRUE(IsRefused(Tune({}), {"--out"}));
   EXPECT_TRUE(IsRefused(Tune({"--out", out_, "--repeat", "3"}), {"--repeat", "--out"}));
+  EXPECT_TRUE(IsRefused(Tune({"--figures", folder_.Path("f"), "--repeat", "3"}), {"--repeat", "--figures"}));
   EXPECT_TRUE(IsRefused(Tune({"--repeat", "0"}), {"--repeat", "0"}));
   study_ = folder_.Write("plain.yaml", SmallStudyYaml());
   EXPECT_TRUE(IsRefused(Tune({"--out", out_}), {"plain.yaml", "no block 'tune'"}));
