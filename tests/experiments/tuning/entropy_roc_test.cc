@@ -97,6 +97,23 @@ TEST(EntropyRoc, ATrialGivesOneOfEachAtMost) {
   EXPECT_LE(rocs[0].bad.size(), 20u) << "only one condition has wrong matches";
 }
 
+// More hypotheses do not replace what was found before.
+TEST(EntropyRoc, OfATrialTheFirstOfEachKindCounts) {
+  StudyPlan few = WithTest(60), many = WithTest(120);
+  for (StudyPlan* plan : {&few, &many}) plan->conditions.erase(plan->conditions.begin());
+  int num_trials = 0;
+  for (std::uint32_t trial = 0; trial < 40; ++trial) {
+    const std::vector<EntropyRoc> first = Measure(few, {trial, trial + 1});
+    if (first.empty() || first[0].of != "samples") continue;
+    const std::vector<EntropyRoc> later = Measure(many, {trial, trial + 1});
+    ASSERT_FALSE(later.empty());
+    EXPECT_EQ(later[0].good, first[0].good) << trial;
+    EXPECT_EQ(later[0].bad, first[0].bad) << trial;
+    ++num_trials;
+  }
+  EXPECT_GE(num_trials, 5);
+}
+
 TEST(EntropyRoc, WithoutABadOneThereIsNoCurve) {
   Study study = WithTest(20).study;
   study.factors[0].levels = {"0.0"};

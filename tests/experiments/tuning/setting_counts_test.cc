@@ -83,6 +83,19 @@ TEST(SettingCounts, AreThoseOfPlainCallsWhateverTheLoopDecides) {
       {3, 13});
 }
 
+// Bounds so narrow that the ending tells which hypothesis won.
+TEST(SettingCounts, AreThoseOfPlainCallsWhicheverHypothesisWins) {
+  Study study = TunedPlan(
+                    "  options: {selection: [mean_entropy, predictive_likelihood], "
+                    "refinement: [none, robust], mu: [4, 6], num_iterations: [30]}\n")
+                    .study;
+  study.failure = {0.5, 3.0};
+  const StudyPlan plan = MakePlan(study);
+  ExpectPlainCounts(plan, {0, 20});
+  const std::vector<SettingCount> counts = Count(plan, 0, {0, 20});
+  EXPECT_NE(Text({counts[0]}), Text({counts[4]})) << "the selection does not matter";
+}
+
 TEST(SettingCounts, AreThoseOfPlainCallsAsPrinted) {
   ExpectPlainCounts(
       TunedPlan("  options: {mu: [-6, -3.53, auto], kappa: [0.5, 1]}\n", "printed",
