@@ -24,17 +24,35 @@ bool WriteAll(const std::string& path, const std::string& text) {
   return is_written && is_closed;
 }
 
+// A device, a pipe, a folder: nothing can be renamed over it.
+bool IsSpecial(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
+}
+
+std::string PartOf(const std::string& path) { return fmt::format("{}.{}.part", path, getpid()); }
+
+[[noreturn]] void ThrowCannotWrite(const std::string& path, int error) {
+  throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(error)));
+}
+
 }  // namespace
 
 void WriteFileWhole(const std::string& path, const std::string& text) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  const bool is_special = fs::exists(path, ignored) && !fs::is_regular_file(path, ignored);
-  const std::string target = is_special ? path : fmt::format("{}.{}.part", path, getpid());
+  const bool is_special = IsSpecial(path);
+  const std::string target = is_special ? path : PartOf(path);
   if (WriteAll(target, text) && (is_special || std::rename(target.c_str(), path.c_str()) == 0)) return;
-  const std::string reason = std::strerror(errno);
-  if (!is_special) fs::remove(target, ignored);
-  throw InputError(fmt::format("{}: cannot be written: {}", path, reason));
+  const int error = errno;
+  std::error_code ignored;
+  if (!is_special) std::filesystem::remove(target, ignored);
+  ThrowCannotWrite(path, error);
+}
+
+void CheckCanBeWritten(const std::string& path) {
+  if (std::filesystem::is_directory(path)) ThrowCannotWrite(path, EISDIR);
+  if (IsSpecial(path)) return;  // to open a pipe may take a reader
+  if (!WriteAll(PartOf(path), "")) ThrowCannotWrite(path, errno);
+  std::filesystem::remove(PartOf(path));
 }
 
 void PrintOrWrite(const std::string& path, const std::string& text) {

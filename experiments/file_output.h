@@ -8,7 +8,10 @@ namespace rcme {
 // or pipe is written directly. Throws InputError that names the path and the reason.
 void WriteFileWhole(const std::string& path, const std::string& text);
 
-// The same, or to standard output where `path` is empty.
+// Before long work whose result goes to this file: throws as WriteFileWhole would, changes nothing.
+void CheckCanBeWritten(const std::string& path);
+
+// WriteFileWhole, or to standard output where `path` is empty.
 void PrintOrWrite(const std::string& path, const std::string& text);
 
 // Makes a folder for results, with its parents, before the work whose results go there. Throws InputError

@@ -37,8 +37,9 @@ void WriteEstimator(const std::string& path, const StudyPlan& plan, const Settin
   EstimatorSpec spec = settings.settings[*result.choice.setting].spec;
   spec.label += "_tuned";
   WriteFileWhole(path, EstimatorFileText(spec, ProvenanceOf(plan, result)));
-  fmt::print(stderr, "{}: estimator {}; next: rcme run STUDY --add-estimator {} --out run.sqlite\n", path,
-             spec.label, path);
+  // With its own seed the study would run the trials that the estimator was tuned on.
+  fmt::print(stderr, "{}: estimator {}; next: rcme run STUDY --seed {} --add-estimator {} --out run.sqlite\n",
+             path, spec.label, plan.study.seed + 1, path);
 }
 
 void RunTune(const TuneArguments& arguments) {
@@ -50,6 +51,7 @@ void RunTune(const TuneArguments& arguments) {
     return;
   }
   if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
+  CheckCanBeWritten(arguments.out);  // minutes before it is
   if (!arguments.figures.empty()) MakeResultFolder(arguments.figures);
   const TuneResult result = Tune(plan, settings, arguments.threads);
   const std::vector<EntropyRoc> rocs = MeasureRocs(plan, arguments.threads);
@@ -87,20 +89,23 @@ void AddTuneCommand(CLI::App& app) {
       "  rcme tune experiments/studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned\n"
       "  rcme tune STUDY --out tuned.yaml --tune target=false_refusal --tune at_most=0.02\n"
       "  rcme tune STUDY --repeat 200              is the guarantee kept? 200 tunings with fresh seeds\n"
-      "  rcme run STUDY --add-estimator tuned.yaml --out run.sqlite\n"
+      "  rcme run STUDY --seed 2 --add-estimator tuned.yaml --out run.sqlite     other trials than the "
+      "tuning's\n"
       "  rcme estimate matches.csv.gz --estimator-file tuned.yaml");
   auto arguments = std::make_shared<TuneArguments>();
   AddTuningOptions(command, arguments.get());
   CLI::Option* out = command->add_option("-o,--out", arguments->out,
                                          "the tuned estimator, a file for studies "
                                          "and `rcme estimate`");
-  command->add_option("--figures", arguments->figures,
-                      "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
+  CLI::Option* figures =
+      command->add_option("--figures", arguments->figures,
+                          "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
   command
       ->add_option("--repeat", arguments->repeat,
                    "tune so many times with fresh seeds, and count how often the target is violated")
       ->check(CLI::Range(1, 100'000))
-      ->excludes(out);
+      ->excludes(out)
+      ->excludes(figures);
   command->callback([arguments] { RunTune(*arguments); });
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/study_file.h"
+#include "experiments/tuning/tuning_file.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -35,6 +36,7 @@ StudyPlan TuningPlanOf(const TuningArguments& arguments) {
     const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
     FindParameter(Parameters(*study.tuning), text.substr(0, equals)).SetFromText(value);
   }
+  CheckCombinations(*study.tuning, study.estimators);  // of another estimator than in the file
   const auto scene = std::ranges::find(study.data, "scene", &Settings::value_type::first);
   const bool is_simulated = scene == study.data.end() || scene->second != kMatchFilesScene;
   if (is_simulated) Override(&study, "severity", "skipped");  // no one looks at it here

@@ -28,10 +28,6 @@ double Objective(const Tuning& tuning, const SettingCount& count) {
   return RateOf(tuning.target == TuneTarget::kFalseRefusal ? count.Failure() : count.Refusal());
 }
 
-bool HasRefusalLimit(const Tuning& tuning) {
-  return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
-}
-
 // The p-value of "the setting violates the target".
 double PValue(const Tuning& tuning, const SettingCount& count) {
   const double p = ExcessPValue(TargetedCount(tuning, count), tuning.at_most);
@@ -77,6 +73,7 @@ size_t NearestSetting(const Tuning& tuning, const std::vector<SettingCount>& exp
 // What stands between a count and its limit: nothing, trials, or the rate itself.
 std::string Obstacle(const char* what, const ErrorCount& count, double at_most, double delta) {
   if (ExcessPValue(count, at_most) <= delta) return {};
+  if (count.n == 0) return fmt::format("{}: no trial is good without the quality test", what);
   const std::string figure = fmt::format("{} {}", what, RateInWords(count));
   if (ExactBinomialInterval(count.errors, count.n).lower > at_most) {
     return figure + fmt::format(": {:.3g} % is out of reach", 100.0 * at_most);
@@ -129,6 +126,10 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
 
 ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count) {
   return tuning.target == TuneTarget::kFalseRefusal ? count.FalseRefusal() : count.Failure();
+}
+
+bool HasRefusalLimit(const Tuning& tuning) {
+  return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
 }
 
 bool ViolatesTarget(const Tuning& tuning, const SettingCount& count) {

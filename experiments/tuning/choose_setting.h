@@ -29,6 +29,9 @@ struct Choice {
 // What the target limits: false refusals or failures.
 ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count);
 
+// Whether the target limits refusals, too.
+bool HasRefusalLimit(const Tuning& tuning);
+
 // Whether these rates are above the target's limits.
 bool ViolatesTarget(const Tuning& tuning, const SettingCount& count);
 

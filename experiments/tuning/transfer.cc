@@ -68,6 +68,12 @@ void CheckFamilies(const StudyPlan& plan, const std::vector<Family>& families) {
   }
 }
 
+TransferVerdict VerdictOf(const ErrorCount& count, double at_most) {
+  const Interval interval = ExactBinomialInterval(count.errors, count.n);
+  if (interval.upper <= at_most) return TransferVerdict::kHolds;
+  return interval.lower > at_most ? TransferVerdict::kViolated : TransferVerdict::kUndecided;
+}
+
 }  // namespace
 
 TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
@@ -93,10 +99,12 @@ TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& setting
 }
 
 TransferVerdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
-  const ErrorCount targeted = TargetedCount(tuning, count);
-  const Interval interval = ExactBinomialInterval(targeted.errors, targeted.n);
-  if (interval.upper <= tuning.at_most) return TransferVerdict::kHolds;
-  return interval.lower > tuning.at_most ? TransferVerdict::kViolated : TransferVerdict::kUndecided;
+  const TransferVerdict targeted = VerdictOf(TargetedCount(tuning, count), tuning.at_most);
+  if (!HasRefusalLimit(tuning)) return targeted;
+  const TransferVerdict refusal = VerdictOf(count.Refusal(), tuning.max_refusal);
+  if (targeted == refusal) return targeted;
+  const bool is_violated = targeted == TransferVerdict::kViolated || refusal == TransferVerdict::kViolated;
+  return is_violated ? TransferVerdict::kViolated : TransferVerdict::kUndecided;
 }
 
 }  // namespace rcme

@@ -30,8 +30,8 @@ enum class TransferVerdict { kHolds, kViolated, kUndecided };
 TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
                                int num_threads);
 
-// Whether a setting meets the target on the trials of a count: the whole 95 % interval below the limit, above
-// it, or neither.
+// Whether a setting meets the target on the trials of a count: the whole 95 % interval of every rate that it
+// limits below the limit, that of one above, or neither.
 TransferVerdict VerdictOf(const Tuning& tuning, const SettingCount& count);
 
 }  // namespace rcme

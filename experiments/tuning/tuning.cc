@@ -13,7 +13,7 @@ std::vector<Parameter> Parameters(Tuning& t) {
                                     "what the tuned setting has to meet"),
       Parameter::Real("at_most", &t.at_most, {1e-6, 0.999}, "",
                       "greatest rate of false refusals, or of failures"),
-      Parameter::Real("max_refusal", &t.max_refusal, {0.0, 1.0}, "",
+      Parameter::Real("max_refusal", &t.max_refusal, {1e-6, 1.0}, "",
                       "target failure: greatest rate of refusals that still counts as an answer"),
       Parameter::Real("cost_of_failure", &t.cost_of_failure, {0.0, 1e6}, "", "target risk: of a trial"),
       Parameter::Real("cost_of_refusal", &t.cost_of_refusal, {0.0, 1e6}, "", "target risk: of a trial"),

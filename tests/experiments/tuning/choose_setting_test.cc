@@ -1,0 +1,455 @@
+// The choice from made-up counts: no estimator takes part.
+#include "experiments/tuning/choose_setting.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <optional>
+
+#include "stats/intervals.h"
+#include "stats/random.h"
+
+namespace rcme {
+namespace {
+
+using Path = std::vector<size_t>;
+
+Tuning TuningFor(TuneTarget target, double at_most, double max_refusal = 1.0) {
+  Tuning tuning;
+  tuning.target = target;
+  tuning.at_most = at_most;
+  tuning.max_refusal = max_refusal;
+  return tuning;
+}
+
+// Failures and refusals of n trials.
+SettingCount Of(std::int64_t n, std::int64_t failures, std::int64_t refusals) {
+  return {n, failures, refusals, n - failures - refusals, 0};
+}
+
+// False refusals of the good ones, and failures, of n trials.
+SettingCount Quality(std::int64_t n, std::int64_t false_refusals, std::int64_t good, std::int64_t failures) {
+  return {n, failures, false_refusals, good, false_refusals};
+}
+
+std::vector<std::string> Names(size_t n) {
+  std::vector<std::string> names;
+  for (size_t s = 0; s < n; ++s) names.push_back("mu = " + std::to_string(s));
+  return names;
+}
+
+Choice Choose(const Tuning& tuning, const std::vector<SettingCount>& explored,
+              const std::vector<SettingCount>& calibrated) {
+  return ChooseSetting(tuning, Names(explored.size()), explored, calibrated);
+}
+
+testing::AssertionResult Says(const std::string& text, const std::vector<std::string>& fragments) {
+  for (const std::string& fragment : fragments) {
+    if (text.find(fragment) == std::string::npos)
+      return testing::AssertionFailure() << "'" << fragment << "' is not in: " << text;
+  }
+  return testing::AssertionSuccess();
+}
+
+// Failures against refusals: 1 is beaten by 3, 4 by 2; 2 and 5 are equal.
+const std::vector<SettingCount> kExplored = {Of(100, 0, 60), Of(100, 3, 40), Of(100, 6, 10),
+                                             Of(100, 2, 40), Of(100, 6, 11), Of(100, 6, 10)};
+
+TEST(ChooseSetting, ThePathIsTheFrontInTheOrderOfSurety) {
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, kExplored);
+  EXPECT_EQ(choice.path, (Path{0, 3, 2, 5}));
+}
+
+// The order is fixed before the calibration: here it would be the other way round.
+TEST(ChooseSetting, TheCalibrationHasNoSayInThePath) {
+  std::vector<SettingCount> calibrated(kExplored.size(), Of(1000, 0, 0));
+  calibrated[0] = Of(1000, 30, 500);
+  calibrated[3] = Of(1000, 20, 400);
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated).path, (Path{0, 3, 2, 5}));
+}
+
+TEST(ChooseSetting, TestingEndsAtTheFirstThatIsNotCertified) {
+  std::vector<SettingCount> calibrated(kExplored.size(), Of(1000, 0, 0));
+  calibrated[3] = Of(1000, 95, 400);  // P(Binomial(1000, 0.1) <= 95) = 0.32
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated);
+  EXPECT_EQ(choice.num_certified, 1u);
+  EXPECT_EQ(choice.setting, 0u);
+  calibrated[0] = calibrated[3];
+  const Choice none = Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated);
+  EXPECT_EQ(none.num_certified, 0u);
+  EXPECT_FALSE(none.setting.has_value());
+  EXPECT_FALSE(none.why.empty());
+}
+
+TEST(ChooseSetting, OfTheCertifiedTheLeastRefusalIsChosenTheFirstAtATie) {
+  std::vector<SettingCount> calibrated(kExplored.size(), Of(1000, 0, 300));
+  calibrated[3] = Of(1000, 5, 150);
+  Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated);
+  EXPECT_EQ(choice.num_certified, 4u);
+  EXPECT_EQ(choice.setting, 3u);
+  calibrated[2] = calibrated[5] = Of(1000, 9, 150);
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated).setting, 3u);
+  calibrated[1] = calibrated[4] = Of(1000, 0, 0);  // not on the path
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated).setting, 3u);
+}
+
+TEST(ChooseSetting, FalseRefusalsAreOfTheGoodTrialsAlone) {
+  const Tuning tuning = TuningFor(TuneTarget::kFalseRefusal, 0.05);
+  // 10 of 1000 trials are refused falsely, 1 %; of those that are good 1 % and 10 %.
+  const std::vector<SettingCount> counts = {Quality(1000, 10, 1000, 50), Quality(1000, 10, 100, 0)};
+  const Choice choice = Choose(tuning, counts, counts);
+  EXPECT_EQ(choice.path, (Path{0, 1}));
+  EXPECT_EQ(choice.num_certified, 1u);
+  EXPECT_EQ(choice.setting, 0u);
+}
+
+TEST(ChooseSetting, FalseRefusalThenTheLeastFailure) {
+  const Tuning tuning = TuningFor(TuneTarget::kFalseRefusal, 0.1);
+  const std::vector<SettingCount> counts = {Quality(1000, 0, 800, 60), Quality(1000, 30, 800, 40),
+                                            Quality(1000, 50, 800, 20)};
+  EXPECT_EQ(Choose(tuning, counts, counts).setting, 2u);
+  std::vector<SettingCount> calibrated = counts;
+  calibrated[2].failures = 45;  // failures of the calibration decide
+  EXPECT_EQ(Choose(tuning, counts, calibrated).setting, 1u);
+}
+
+TEST(ChooseSetting, RefusalsAreCertifiedToo) {
+  const std::vector<SettingCount> counts = {Of(1000, 0, 600), Of(1000, 50, 200)};
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1, 0.5), counts, counts).path, (Path{1, 0}));
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1, 0.5), counts, counts).num_certified, 1u);
+  // 480 of 1000 are below 50 %, but not surely enough: P(Binomial(1000, 0.5) <= 480) = 0.11.
+  const std::vector<SettingCount> close = {Of(1000, 0, 600), Of(1000, 50, 480)};
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1, 0.5), counts, close).num_certified, 0u);
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1, 1.0), counts, counts).num_certified, 2u);
+}
+
+TEST(ChooseSetting, LeastRiskOfTheExplorationWithABoundFromTheCalibration) {
+  Tuning tuning = TuningFor(TuneTarget::kRisk, 0.05);
+  tuning.cost_of_failure = 10.0;
+  tuning.cost_of_refusal = 2.0;
+  tuning.delta = 0.1;
+  const std::vector<SettingCount> explored = {Of(100, 10, 0), Of(100, 2, 30), Of(100, 0, 45)};
+  const std::vector<SettingCount> calibrated = {Of(400, 0, 0), Of(400, 12, 100), Of(400, 0, 0)};
+  const Choice choice = Choose(tuning, explored, calibrated);
+  EXPECT_EQ(choice.setting, 1u);
+  // Each of the two bounds is exceeded with probability 0.05: the upper ends of two-sided 90 % intervals.
+  EXPECT_DOUBLE_EQ(choice.risk_bound, 10.0 * ExactBinomialInterval(12, 400, 0.9).upper +
+                                          2.0 * ExactBinomialInterval(100, 400, 0.9).upper);
+  EXPECT_DOUBLE_EQ(Risk(tuning, calibrated[1]), 10.0 * 0.03 + 2.0 * 0.25);
+}
+
+TEST(ChooseSetting, ATargetOutOfReachNamesTheNearest) {
+  const std::vector<SettingCount> counts = {Of(1000, 300, 100), Of(1000, 200, 150), Of(1000, 250, 120)};
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05), counts, counts);
+  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 1:", "failure 20 % [17.6, 22.6] of 1000", "5 %",
+                                "out of reach", "at most 5 % of the trials fail"}))
+      << choice.why;
+}
+
+// 0.95^59 = 0.0485: 59 trials without an error certify 5 % at level 0.05, 58 do not (Wilks 1941).
+TEST(ChooseSetting, TooFewTrialsSaysHowManyWouldDo) {
+  const std::vector<SettingCount> counts = {Of(58, 0, 20)};
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05), counts, counts);
+  EXPECT_TRUE(Says(choice.why, {"too few trials", "59 certify 5 % with probability 0.9"})) << choice.why;
+  const std::vector<SettingCount> above = {Of(20, 1, 0)};
+  EXPECT_TRUE(Says(Choose(TuningFor(TuneTarget::kFailure, 0.05), above, above).why, {"not below 5 %"}));
+}
+
+// The promised number of trials is certified in nine of ten calibrations, by simulation; two thirds of it
+// are not.
+TEST(ChooseSetting, TheNumberOfTrialsThatWouldDoDoes) {
+  const Tuning tuning = TuningFor(TuneTarget::kFailure, 0.05);
+  const std::vector<SettingCount> counts = {Of(100, 2, 0)};
+  const std::string why = Choose(tuning, counts, counts).why, before = "if that is the rate, ";
+  ASSERT_TRUE(Says(why, {before}));
+  const std::int64_t n = std::stoll(why.substr(why.find(before) + before.size()));
+  const auto share_certified = [&](std::int64_t num_trials) {
+    int num_certified = 0;
+    for (std::uint32_t r = 0; r < 4000; ++r) {
+      RandomStream rng({1, 0, r, 6});
+      std::int64_t failures = 0;
+      for (std::int64_t i = 0; i < num_trials; ++i) failures += rng.Uniform() < 0.02;
+      num_certified += Choose(tuning, counts, {Of(num_trials, failures, 0)}).num_certified == 1;
+    }
+    return num_certified / 4000.0;
+  };
+  EXPECT_GT(share_certified(n), 0.88);
+  EXPECT_LT(share_certified(2 * n / 3), 0.86);
+}
+
+TEST(ChooseSetting, RefusalsThatStandInTheWayAreNamed) {
+  const std::vector<SettingCount> counts = {Of(1000, 0, 900), Of(1000, 200, 300)};
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05, 0.2), counts, counts);
+  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 1", "failure 20 %", "5 % is out of reach", "refusal 30 %",
+                                "20 % is out of reach", "at most 20 % are refused"}))
+      << choice.why;
+}
+
+// A calibration that certifies the nearest, but not the one tested before it.
+TEST(ChooseSetting, AnotherTestedBeforeStandsInTheWay) {
+  const std::vector<SettingCount> explored = {Of(100, 2, 10), Of(100, 1, 45)};
+  const std::vector<SettingCount> calibrated = {Of(1000, 100, 10), Of(1000, 0, 450)};
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05, 0.5), explored, calibrated);
+  EXPECT_EQ(choice.path, (Path{0, 1}));
+  EXPECT_TRUE(Says(choice.why, {"mu = 1", "it is certified", "more trials"})) << choice.why;
+}
+
+TEST(ChooseSetting, TooFewTrialsWhateverTheyShow) {
+  Tuning tuning = TuningFor(TuneTarget::kFailure, 0.05);
+  EXPECT_EQ(WhyTooFewTrials(tuning, 59), "");
+  EXPECT_TRUE(Says(WhyTooFewTrials(tuning, 58), {"58 trials", "5 %", "delta 0.05", "59 would do"}));
+  tuning.max_refusal = 0.01;  // 299 trials: 0.99^299 = 0.0495
+  EXPECT_EQ(WhyTooFewTrials(tuning, 299), "");
+  EXPECT_TRUE(Says(WhyTooFewTrials(tuning, 298), {"298 trials", "1 %", "299 would do"}));
+  tuning.target = TuneTarget::kFalseRefusal;  // which max_refusal does not limit
+  EXPECT_EQ(WhyTooFewTrials(tuning, 59), "");
+  tuning.target = TuneTarget::kRisk;
+  EXPECT_EQ(WhyTooFewTrials(tuning, 1), "");
+}
+
+// Whatever is asked, as many trials as are said to be enough are certified if none errs, and one fewer are
+// not.
+TEST(ChooseSetting, EnoughTrialsAreEnoughAndNoMore) {
+  for (const double at_most : {0.001, 0.01, 0.05, 0.1, 0.5, 0.75, 0.9, 0.95, 0.999}) {
+    for (const double delta : {0.001, 0.01, 0.05, 0.1, 0.25, 0.5}) {
+      Tuning tuning = TuningFor(TuneTarget::kFailure, at_most);
+      tuning.delta = delta;
+      std::int64_t n = 1;
+      while (!WhyTooFewTrials(tuning, n).empty()) ++n;
+      const auto is_certified = [&](std::int64_t num_trials) {
+        const std::vector<SettingCount> counts = {Of(num_trials, 0, 0)};
+        return Choose(tuning, counts, counts).num_certified == 1;
+      };
+      EXPECT_TRUE(is_certified(n)) << at_most << " at " << delta;
+      EXPECT_FALSE(n > 1 && is_certified(n - 1)) << at_most << " at " << delta;
+    }
+  }
+}
+
+TEST(ChooseSetting, NoGoodTrialCertifiesNothing) {
+  const std::vector<SettingCount> counts = {Quality(1000, 0, 0, 0)};
+  const Choice choice = Choose(TuningFor(TuneTarget::kFalseRefusal, 0.05), counts, counts);
+  EXPECT_FALSE(choice.setting.has_value());
+  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 0: false refusal: no trial is good"})) << choice.why;
+}
+
+TEST(ChooseSetting, OneTrialAndOneSetting) {
+  Tuning tuning = TuningFor(TuneTarget::kFailure, 0.96);
+  const std::vector<SettingCount> one = {Of(1, 0, 0)}, failed = {Of(1, 1, 0)};
+  EXPECT_EQ(Choose(tuning, one, one).setting, 0u);  // 1 - 0.96 < delta
+  EXPECT_FALSE(Choose(tuning, one, failed).setting.has_value());
+  tuning.at_most = 0.9;
+  EXPECT_FALSE(Choose(tuning, one, one).setting.has_value());
+}
+
+TEST(ChooseSetting, ManyEqualSettingsAreChosenFromInAMoment) {
+  const std::vector<SettingCount> equal(kMaxTunedSettings, Of(1000, 10, 100));
+  const auto start = std::chrono::steady_clock::now();
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.1, 0.5), equal, equal);
+  EXPECT_EQ(choice.path.size(), kMaxTunedSettings);
+  EXPECT_EQ(choice.num_certified, kMaxTunedSettings);
+  EXPECT_EQ(choice.setting, 0u);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+}
+
+TEST(ViolatesTarget, TakesTheLimitsOfTheTarget) {
+  const Tuning failure = TuningFor(TuneTarget::kFailure, 0.05, 0.5);
+  EXPECT_FALSE(ViolatesTarget(failure, Of(100, 5, 50)));
+  EXPECT_TRUE(ViolatesTarget(failure, Of(100, 6, 50)));
+  EXPECT_TRUE(ViolatesTarget(failure, Of(100, 5, 51)));
+  const Tuning quality = TuningFor(TuneTarget::kFalseRefusal, 0.05, 0.5);
+  EXPECT_FALSE(ViolatesTarget(quality, Quality(100, 4, 80, 90)));
+  EXPECT_TRUE(ViolatesTarget(quality, Quality(100, 5, 80, 0)));
+}
+
+// ---- Is the guarantee kept? ----
+
+// What a trial of one setting may end in.
+struct Rates {
+  double failure = 0.0, refusal = 0.0;
+};
+
+// The trials of many settings, independent of each other.
+std::vector<SettingCount> Draw(const std::vector<Rates>& rates, std::int64_t n, RandomStream& rng) {
+  std::vector<SettingCount> counts(rates.size());
+  for (size_t s = 0; s < rates.size(); ++s) {
+    std::int64_t failures = 0, refusals = 0;
+    for (std::int64_t i = 0; i < n; ++i) {
+      const double u = rng.Uniform();
+      failures += u < rates[s].failure;
+      refusals += u >= 1.0 - rates[s].refusal;
+    }
+    counts[s] = Of(n, failures, refusals);
+  }
+  return counts;
+}
+
+using Chooser = std::function<std::optional<size_t>(const std::vector<SettingCount>& explored,
+                                                    const std::vector<SettingCount>& calibrated)>;
+
+struct Violations {
+  std::int64_t num = 0, num_choices = 0;
+  Interval rate;  // so wide that one check in 100,000 is a false alarm
+};
+
+constexpr std::uint32_t kRepetitions = 3000;
+
+Violations Repeat(const Tuning& tuning, const std::vector<Rates>& rates, std::int64_t explore,
+                  std::int64_t calibrate, const Chooser& choose) {
+  Violations violations;
+  for (std::uint32_t r = 0; r < kRepetitions; ++r) {
+    RandomStream rng({1, 0, r, 7});
+    const std::vector<SettingCount> explored = Draw(rates, explore, rng);
+    const std::optional<size_t> setting = choose(explored, Draw(rates, calibrate, rng));
+    if (!setting) continue;
+    ++violations.num_choices;
+    violations.num +=
+        rates[*setting].failure > tuning.at_most || rates[*setting].refusal > tuning.max_refusal;
+  }
+  violations.rate = ExactBinomialInterval(violations.num, kRepetitions, 1.0 - 2e-5);
+  return violations;
+}
+
+Chooser AsItIs(const Tuning& tuning) {
+  return [&](const auto& explored, const auto& calibrated) {
+    return Choose(tuning, explored, calibrated).setting;
+  };
+}
+
+// From few failures and many refusals to many failures and few refusals; the target of 10 % is crossed in
+// the middle.
+std::vector<Rates> Ladder(size_t n) {
+  std::vector<Rates> rates(n);
+  for (size_t s = 0; s < n; ++s) {
+    const double x = static_cast<double>(s) / static_cast<double>(n - 1);
+    rates[s] = {0.06 + 0.08 * x, 0.45 - 0.4 * x};
+  }
+  return rates;
+}
+
+TEST(Guarantee, IsKeptOnALadderOfSettings) {
+  const Tuning tuning = TuningFor(TuneTarget::kFailure, 0.1);
+  const Violations violations = Repeat(tuning, Ladder(40), 200, 800, AsItIs(tuning));
+  EXPECT_LE(violations.rate.lower, tuning.delta) << violations.num;
+  EXPECT_GT(violations.num_choices, kRepetitions / 2) << "nothing is chosen: the check has no power";
+  RecordProperty("violations", static_cast<int>(violations.num));
+}
+
+// The worst case: every setting just above the target, so that every choice is a violation.
+TEST(Guarantee, IsKeptWhereNoSettingIsGoodAndTheLevelIsNotWasted) {
+  const Tuning tuning = TuningFor(TuneTarget::kFailure, 0.1);
+  const Violations violations = Repeat(tuning, {50, {0.1001, 0.1}}, 200, 800, AsItIs(tuning));
+  EXPECT_LE(violations.rate.lower, tuning.delta) << violations.num;
+  EXPECT_GE(violations.rate.upper, 0.6 * tuning.delta) << violations.num;
+  RecordProperty("violations", static_cast<int>(violations.num));
+}
+
+// Both limits are close, one or the other broken.
+TEST(Guarantee, IsKeptForTwoLimitsAtOnce) {
+  const Tuning tuning = TuningFor(TuneTarget::kFailure, 0.1, 0.3);
+  std::vector<Rates> rates;
+  for (int s = 0; s < 40; ++s) rates.push_back(s % 2 == 0 ? Rates{0.101, 0.25} : Rates{0.07, 0.301});
+  const Violations violations = Repeat(tuning, rates, 200, 800, AsItIs(tuning));
+  EXPECT_LE(violations.rate.lower, tuning.delta) << violations.num;
+  RecordProperty("violations", static_cast<int>(violations.num));
+}
+
+// The same check finds a choice that is certified by the trials that proposed it, ...
+TEST(Guarantee, AChoiceOnItsOwnTrialsIsFound) {
+  const Tuning tuning = TuningFor(TuneTarget::kFailure, 0.1);
+  const Violations violations =
+      Repeat(tuning, {50, {0.1001, 0.1}}, 1, 800,
+             [&](const auto&, const auto& counts) { return Choose(tuning, counts, counts).setting; });
+  EXPECT_GT(violations.rate.lower, tuning.delta) << violations.num;
+  RecordProperty("violations", static_cast<int>(violations.num));
+}
+
+// ... one without certification, ...
+TEST(Guarantee, AChoiceWithoutCertificationIsFound) {
+  const Tuning tuning = TuningFor(TuneTarget::kFailure, 0.1);
+  const Violations violations = Repeat(tuning, Ladder(40), 200, 800, [&](const auto&, const auto& counts) {
+    std::optional<size_t> best;
+    for (size_t s = 0; s < counts.size(); ++s) {
+      if (!ViolatesTarget(tuning, counts[s]) && (!best || counts[s].refusals < counts[*best].refusals))
+        best = s;
+    }
+    return best;
+  });
+  EXPECT_GT(violations.rate.lower, tuning.delta) << violations.num;
+  RecordProperty("violations", static_cast<int>(violations.num));
+}
+
+// ... and one that tests every setting at level delta, whatever became of those before.
+TEST(Guarantee, AChoiceThatDoesNotStopAtTheFirstIsFound) {
+  const Tuning tuning = TuningFor(TuneTarget::kFailure, 0.1);
+  const Violations violations =
+      Repeat(tuning, {50, {0.1001, 0.1}}, 1, 800, [&](const auto&, const auto& counts) {
+        std::optional<size_t> any;
+        for (size_t s = 0; s < counts.size(); ++s) {
+          if (ExcessPValue(counts[s].Failure(), tuning.at_most) <= tuning.delta) any = s;
+        }
+        return any;
+      });
+  EXPECT_GT(violations.rate.lower, tuning.delta) << violations.num;
+  RecordProperty("violations", static_cast<int>(violations.num));
+}
+
+// False refusals of good trials, whose number is random, in two conditions whose rates differ: in one almost
+// all trials are good and few are refused, in the other few are good and most are refused. Settings are
+// thresholds on the same number per trial, as levels of mu are.
+struct Stratum {
+  double good, spread;  // P(good); a good trial's score is `spread` times a uniform number
+};
+constexpr Stratum kStrata[] = {{0.95, 1.0}, {0.3, 3.0}};
+
+// A setting s refuses scores above 0.9 + 0.06 s.
+double Threshold(size_t s) { return 0.9 + 0.06 * static_cast<double>(s); }
+
+double FalseRefusalRate(size_t s) {
+  double good = 0.0, refused = 0.0;
+  for (const auto& [p, spread] : kStrata) {
+    good += p;
+    refused += p * std::max(0.0, 1.0 - Threshold(s) / spread);
+  }
+  return refused / good;
+}
+
+std::vector<SettingCount> DrawStrata(size_t num_settings, int per_stratum, RandomStream& rng) {
+  std::vector<SettingCount> counts(num_settings);
+  for (const auto& [p, spread] : kStrata) {
+    for (int i = 0; i < per_stratum; ++i) {
+      const bool is_good = rng.Uniform() < p;
+      const double score = spread * rng.Uniform();
+      for (size_t s = 0; s < num_settings; ++s) {
+        const bool is_refused = score > Threshold(s);
+        counts[s] += {1, !is_good && !is_refused, is_refused, is_good, is_good && is_refused};
+      }
+    }
+  }
+  return counts;
+}
+
+TEST(Guarantee, IsKeptForFalseRefusalsOfUnlikeConditions) {
+  constexpr size_t kNumSettings = 36;
+  for (const double at_most : {0.05, 0.12}) {
+    const Tuning tuning = TuningFor(TuneTarget::kFalseRefusal, at_most);
+    ASSERT_LT(FalseRefusalRate(kNumSettings - 1), at_most);
+    ASSERT_GT(FalseRefusalRate(0), at_most);
+    std::int64_t num_violations = 0, num_choices = 0;
+    for (std::uint32_t r = 0; r < kRepetitions; ++r) {
+      RandomStream rng({1, 1, r, 7});
+      const std::vector<SettingCount> explored = DrawStrata(kNumSettings, 50, rng);
+      const Choice choice = Choose(tuning, explored, DrawStrata(kNumSettings, 150, rng));
+      num_choices += choice.setting.has_value();
+      num_violations += choice.setting && FalseRefusalRate(*choice.setting) > at_most;
+    }
+    EXPECT_LE(ExactBinomialInterval(num_violations, kRepetitions, 1.0 - 2e-5).lower, tuning.delta)
+        << num_violations;
+    EXPECT_GT(num_choices, kRepetitions / 2);
+    RecordProperty("violations_at_" + std::to_string(at_most), static_cast<int>(num_violations));
+  }
+}
+
+}  // namespace
+}  // namespace rcme
