@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "experiments/field_text.h"
 #include "experiments/file_output.h"
@@ -16,6 +17,7 @@ using Json = nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr size_t kMaxCurvePoints = 300;
+constexpr size_t kMaxChosenRows = 12;
 
 double RateOf(const ErrorCount& count) {
   return static_cast<double>(count.errors) / static_cast<double>(count.n);
@@ -181,6 +183,33 @@ Json SettingsAsJson(const SettingPlan& settings, const TuneResult& result) {
   return all;
 }
 
+// The settings that were chosen at all, the most frequent first.
+std::vector<size_t> ByTimesChosen(const Repetitions& repetitions) {
+  std::vector<size_t> chosen;
+  for (size_t s = 0; s < repetitions.num_chosen.size(); ++s) {
+    if (repetitions.num_chosen[s] > 0) chosen.push_back(s);
+  }
+  std::ranges::stable_sort(chosen, std::greater<>(), [&](size_t s) { return repetitions.num_chosen[s]; });
+  return chosen;
+}
+
+// The first rows of `chosen`, and every setting that violates the target.
+std::string ChosenAsTable(const Tuning& tuning, const SettingPlan& settings, const Repetitions& repetitions,
+                          const std::vector<size_t>& chosen) {
+  const std::vector<std::string> names = SettingsInWords(tuning, settings);
+  Rows rows = {{"chosen", "times", "failure", "refusal", "false refusal", "meets the target"}};
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    const size_t s = chosen[i];
+    const SettingCount& count = repetitions.reference[s];
+    const bool violates = ViolatesTarget(tuning, count);
+    if (i >= kMaxChosenRows && !violates) continue;
+    rows.push_back({names[s], fmt::format("{}", repetitions.num_chosen[s]), RateForTable(count.Failure()),
+                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()),
+                    violates ? "no" : "yes"});
+  }
+  return FormatColumns(rows);
+}
+
 }  // namespace
 
 Json RateAsJson(const ErrorCount& count) {
@@ -242,25 +271,23 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
 std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& settings,
                                const Repetitions& repetitions) {
   const Tuning& tuning = *plan.study.tuning;
-  const std::vector<std::string> names = SettingsInWords(tuning, settings);
+  const auto num_conditions = static_cast<std::int64_t>(plan.conditions.size());
   const ErrorCount violations{repetitions.num_violations, repetitions.num_done};
-  Rows rows = {{"chosen", "times", "failure", "refusal", "false refusal", "meets the target"}};
-  for (size_t s = 0; s < names.size(); ++s) {
-    if (repetitions.num_chosen[s] == 0) continue;
-    const SettingCount& count = repetitions.reference[s];
-    rows.push_back({names[s], fmt::format("{}", repetitions.num_chosen[s]), RateForTable(count.Failure()),
-                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()),
-                    ViolatesTarget(tuning, count) ? "no" : "yes"});
-  }
-  return fmt::format(
+  const std::vector<size_t> chosen = ByTimesChosen(repetitions);
+  std::string text = fmt::format(
       "{}: tuned {} times with fresh seeds ({} trials to explore, {} to calibrate each)\nTarget: {}\n"
       "Violated: {} of {}: {}, promised at most {:.3g} %; without a choice: {}\n\n"
       "What was chosen, on {} further trials\n\n{}",
-      plan.study.name, repetitions.num_done,
-      tuning.explore * static_cast<std::int64_t>(plan.conditions.size()),
-      tuning.calibrate * static_cast<std::int64_t>(plan.conditions.size()), TargetInWords(tuning),
-      violations.errors, violations.n, RateForTable(violations), 100.0 * tuning.delta,
-      repetitions.num_without_choice, repetitions.reference.front().n, FormatColumns(rows));
+      plan.study.name, repetitions.num_done, tuning.explore * num_conditions,
+      tuning.calibrate * num_conditions, TargetInWords(tuning), violations.errors, violations.n,
+      RateForTable(violations), 100.0 * tuning.delta, repetitions.num_without_choice,
+      repetitions.reference.front().n, ChosenAsTable(tuning, settings, repetitions, chosen));
+  if (chosen.size() > kMaxChosenRows) {
+    text += fmt::format(
+        "{} settings were chosen in all; shown are the {} most frequent, and all that violate the target\n",
+        chosen.size(), kMaxChosenRows);
+  }
+  return text;
 }
 
 std::string TuneAsJson(const StudyPlan& plan, const SettingPlan& settings, const TuneResult& result,

@@ -31,9 +31,10 @@ class CountedEstimator : public RansacEstimator {
     ++counts_->decisions;
     return AsRansac(*rcme_)->Decide(trace);
   }
-  MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop) const override {
+  MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
+                        Refinements* refinements) const override {
     ++counts_->finishes;
-    return AsRansac(*rcme_)->Finish(problem, loop);
+    return AsRansac(*rcme_)->Finish(problem, loop, refinements);
   }
 
  private:
