@@ -8,6 +8,7 @@
 // certified one after the other until the first that is not: P(any of them violates) <= delta still
 // (fixed-sequence testing; "Learn then Test", Angelopoulos et al. 2021).
 //
+// A rate among a part of the trials (false refusals: of the good ones) is judged given how many there are.
 // The trials have to be independent; their rates may differ (as in a study's conditions): the sum of such
 // trials is less spread than a binomial of the mean rate (Hoeffding 1956, for k <= n r - 1).
 #pragma once

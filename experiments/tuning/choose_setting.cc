@@ -115,11 +115,16 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
   }
   choice.setting = best;
   choice.path = {best};
-  choice.num_certified = 1;
   const double half = 0.5 * tuning.delta;  // each of the two bounds may fail
   choice.risk_bound = tuning.cost_of_failure * UpperBound(calibrated[best].Failure(), half) +
                       tuning.cost_of_refusal * UpperBound(calibrated[best].Refusal(), half);
   return choice;
+}
+
+TargetVerdict VerdictOf(const ErrorCount& count, double at_most) {
+  const Interval interval = ExactBinomialInterval(count.errors, count.n);
+  if (interval.upper <= at_most) return TargetVerdict::kHolds;
+  return interval.lower > at_most ? TargetVerdict::kViolated : TargetVerdict::kUndecided;
 }
 
 }  // namespace
@@ -130,6 +135,15 @@ ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count) {
 
 bool HasRefusalLimit(const Tuning& tuning) {
   return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
+}
+
+TargetVerdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
+  const TargetVerdict targeted = VerdictOf(TargetedCount(tuning, count), tuning.at_most);
+  if (!HasRefusalLimit(tuning)) return targeted;
+  const TargetVerdict refusal = VerdictOf(count.Refusal(), tuning.max_refusal);
+  if (targeted == refusal) return targeted;
+  const bool is_violated = targeted == TargetVerdict::kViolated || refusal == TargetVerdict::kViolated;
+  return is_violated ? TargetVerdict::kViolated : TargetVerdict::kUndecided;
 }
 
 bool ViolatesTarget(const Tuning& tuning, const SettingCount& count) {

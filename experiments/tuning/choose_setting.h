@@ -32,6 +32,12 @@ ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count);
 // Whether the target limits refusals, too.
 bool HasRefusalLimit(const Tuning& tuning);
 
+enum class TargetVerdict { kHolds, kViolated, kUndecided };
+
+// Whether a setting meets the target on the trials of a count: the whole 95 % interval of every rate that it
+// limits below the limit, that of one above, or neither.
+TargetVerdict VerdictOf(const Tuning& tuning, const SettingCount& count);
+
 // Whether these rates are above the target's limits.
 bool ViolatesTarget(const Tuning& tuning, const SettingCount& count);
 

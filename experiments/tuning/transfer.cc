@@ -68,12 +68,6 @@ void CheckFamilies(const StudyPlan& plan, const std::vector<Family>& families) {
   }
 }
 
-TransferVerdict VerdictOf(const ErrorCount& count, double at_most) {
-  const Interval interval = ExactBinomialInterval(count.errors, count.n);
-  if (interval.upper <= at_most) return TransferVerdict::kHolds;
-  return interval.lower > at_most ? TransferVerdict::kViolated : TransferVerdict::kUndecided;
-}
-
 }  // namespace
 
 TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
@@ -96,15 +90,6 @@ TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& setting
     result.verified.push_back(SumOver(verified, family.conditions));
   }
   return result;
-}
-
-TransferVerdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
-  const TransferVerdict targeted = VerdictOf(TargetedCount(tuning, count), tuning.at_most);
-  if (!HasRefusalLimit(tuning)) return targeted;
-  const TransferVerdict refusal = VerdictOf(count.Refusal(), tuning.max_refusal);
-  if (targeted == refusal) return targeted;
-  const bool is_violated = targeted == TransferVerdict::kViolated || refusal == TransferVerdict::kViolated;
-  return is_violated ? TransferVerdict::kViolated : TransferVerdict::kUndecided;
 }
 
 }  // namespace rcme

@@ -21,17 +21,11 @@ struct TransferResult {
   std::vector<std::vector<SettingCount>> verified;  // [family][setting], on fresh trials
 };
 
-enum class TransferVerdict { kHolds, kViolated, kUndecided };
-
 // Tunes on every family alone and measures every choice on all of them; the families are the conditions, or
 // those that have a level of the factor `by` in common. All settings are measured in the same trials, so the
 // matrix takes no more estimation than one tuning. Throws as Tune; InputError if there is no such factor, if
 // there are fewer than two families, or for a target on the risk.
 TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
                                int num_threads);
-
-// Whether a setting meets the target on the trials of a count: the whole 95 % interval of every rate that it
-// limits below the limit, that of one above, or neither.
-TransferVerdict VerdictOf(const Tuning& tuning, const SettingCount& count);
 
 }  // namespace rcme

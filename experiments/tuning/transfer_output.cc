@@ -13,21 +13,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string VerdictName(TransferVerdict verdict) {
+std::string VerdictName(TargetVerdict verdict) {
   switch (verdict) {
-    case TransferVerdict::kHolds:
+    case TargetVerdict::kHolds:
       return "holds";
-    case TransferVerdict::kViolated:
+    case TargetVerdict::kViolated:
       return "violated";
-    case TransferVerdict::kUndecided:
+    case TargetVerdict::kUndecided:
       break;
   }
   return "undecided";
 }
 
 // The other families on which a family's choice has this verdict.
-std::vector<std::string> OthersWith(TransferVerdict verdict, const Tuning& tuning,
-                                    const TransferResult& result, size_t family) {
+std::vector<std::string> OthersWith(TargetVerdict verdict, const Tuning& tuning, const TransferResult& result,
+                                    size_t family) {
   std::vector<std::string> words;
   for (size_t other = 0; other < result.families.size(); ++other) {
     if (other == family) continue;
@@ -49,12 +49,12 @@ std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result)
       rows.push_back({family.words, "none: " + family.choice.why, "", "", "", "", ""});
       continue;
     }
-    const auto with = [&](TransferVerdict verdict) { return OthersWith(verdict, tuning, result, f); };
-    const std::vector<std::string> violated = with(TransferVerdict::kViolated);
+    const auto with = [&](TargetVerdict verdict) { return OthersWith(verdict, tuning, result, f); };
+    const std::vector<std::string> violated = with(TargetVerdict::kViolated);
     rows.push_back({family.words, result.settings[*family.choice.setting],
                     RateForTable(TargetedCount(tuning, result.verified[f][*family.choice.setting])),
-                    fmt::format("{}", with(TransferVerdict::kHolds).size()),
-                    fmt::format("{}", with(TransferVerdict::kUndecided).size()),
+                    fmt::format("{}", with(TargetVerdict::kHolds).size()),
+                    fmt::format("{}", with(TargetVerdict::kUndecided).size()),
                     fmt::format("{}", violated.size()), fmt::format("{}", fmt::join(violated, "; "))});
   }
   return fmt::format(

@@ -38,7 +38,8 @@ std::string VerifiedAsTable(const TuneResult& result) {
   const auto add = [&](const std::string& name, const ErrorCount& fresh, const ErrorCount& seen) {
     rows.push_back(
         {name, RateForTable(fresh), fmt::format("{}", fresh.n), RateForTable(seen), fmt::format("{}", seen.n),
-         fresh.n > 0 && seen.n > 0 ? fmt::format("{:+.2f} %", 100.0 * (RateOf(seen) - RateOf(fresh))) : "-"});
+         fresh.n > 0 && seen.n > 0 ? fmt::format("{:+.2f} points", 100.0 * (RateOf(seen) - RateOf(fresh)))
+                                   : "-"});
   };
   add("failure", verified.Failure(), tuned.Failure());
   add("refusal", verified.Refusal(), tuned.Refusal());
@@ -73,6 +74,12 @@ std::string RocsAsTable(const StudyPlan& plan, const std::vector<EntropyRoc>& ro
   return FormatColumns(rows);
 }
 
+std::string CertifiedInWords(const Tuning& tuning, const Choice& choice) {
+  if (tuning.target == TuneTarget::kRisk) return " (the least in the exploration; nothing is certified)";
+  return fmt::format(" ({} of {} settings in the order of testing certified)", choice.num_certified,
+                     choice.path.size());
+}
+
 // Whether the tuned setting met the limits of its target on fresh trials.
 std::string VerdictInWords(const Tuning& tuning, const TuneResult& result) {
   const SettingCount& verified = result.verified[*result.choice.setting];
@@ -80,8 +87,15 @@ std::string VerdictInWords(const Tuning& tuning, const TuneResult& result) {
     return fmt::format("verified risk {:.4g}; bound {:.4g}, exceeded with probability {} at most",
                        Risk(tuning, verified), result.choice.risk_bound, tuning.delta);
   }
-  return ViolatesTarget(tuning, verified) ? "the verified rates are ABOVE the target"
-                                          : "the verified rates meet the target";
+  switch (VerdictOf(tuning, verified)) {
+    case TargetVerdict::kHolds:
+      return "on fresh trials the target holds (95 % intervals)";
+    case TargetVerdict::kViolated:
+      return "on fresh trials the target is VIOLATED (95 % intervals)";
+    case TargetVerdict::kUndecided:
+      break;
+  }
+  return "on fresh trials too few to decide whether the target holds (95 % intervals)";
 }
 
 Json EstimatorAsJson(const VerifiedEstimator& of) {
@@ -257,10 +271,10 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
                   tuning.estimator, TrialsInWords(plan), TargetInWords(tuning));
   if (!result.choice.setting) return text + fmt::format("Not reached: {}\n", result.choice.why);
   text += fmt::format(
-      "Tuned: {} ({} of {} settings in the order of testing certified); {}\n\n{}\n"
+      "Tuned: {}{}; {}\n\n{}\n"
       "On the trials for verification, all with the same problems (exact 95 % intervals; differences: "
       "Tango)\n\n{}",
-      result.settings[*result.choice.setting], result.choice.num_certified, result.choice.path.size(),
+      result.settings[*result.choice.setting], CertifiedInWords(tuning, result.choice),
       VerdictInWords(tuning, result), VerifiedAsTable(result), EstimatorsAsTable(result.estimators));
   if (rocs.empty()) return text;
   return text +

@@ -107,7 +107,7 @@ TEST(TuneOutput, TheTableSaysWhatWasPromisedAndWhatWasSeen) {
   const std::string table = TuneAsTable(plan, Result(plan), {Roc(10)});
   // 6 of 200 as tuned, 4 of 100 verified: 3 - 4 = -1; 24 of 100 against 50: -26.
   EXPECT_TRUE(Holds(table, {"3 settings of ours", "Tuned: mu = 2", "1 of 2 settings", "4.00 % [", "3.00 % [",
-                            "-1.00 %", "-26.00 % [", "area under the curve"}));
+                            "-1.00 points", "-26.00 % [", "area under the curve"}));
 }
 
 TEST(TuneOutput, TheVerdictTakesBothLimits) {
@@ -120,9 +120,10 @@ TEST(TuneOutput, TheVerdictTakesBothLimits) {
     }
     return std::string();
   };
-  EXPECT_TRUE(Holds(verdict(2, 20), {"meet the target"}));
-  EXPECT_TRUE(Holds(verdict(30, 20), {"ABOVE the target"}));
-  EXPECT_TRUE(Holds(verdict(2, 80), {"ABOVE the target"}));
+  EXPECT_TRUE(Holds(verdict(2, 20), {"the target holds"}));
+  EXPECT_TRUE(Holds(verdict(30, 20), {"VIOLATED"}));
+  EXPECT_TRUE(Holds(verdict(2, 80), {"VIOLATED"}));
+  EXPECT_TRUE(Holds(verdict(9, 20), {"too few to decide"}));
 }
 
 TEST(TuneOutput, ProvenanceHasTheFigures) {
