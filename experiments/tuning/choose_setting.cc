@@ -98,8 +98,8 @@ std::string WhyNone(const Tuning& tuning, const std::vector<std::string>& settin
   if (!why.empty() && !refusal.empty()) why += "; ";
   why += refusal;
   if (why.empty()) why = "it is certified, but a setting tested before it was not; more trials would tell";
-  return fmt::format("no setting is certified to meet the target ({}). Nearest: {}: {}",
-                     TargetInWords(tuning), settings[nearest], why);
+  return fmt::format("nearest is {}: {}; no setting is certified to meet the target ({})", settings[nearest],
+                     why, TargetInWords(tuning));
 }
 
 double UpperBound(const ErrorCount& count, double delta) {

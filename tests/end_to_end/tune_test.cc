@@ -86,7 +86,7 @@ TEST_F(TuneProgram, TheSameBytesWhateverTheThreads) {
 
 TEST_F(TuneProgram, AnUnreachableTargetNamesTheNearestFigure) {
   EXPECT_TRUE(IsRefused(Tune({"--out", out_, "--set", "sigma_px=8", "--tune", "max_refusal=0.1"}),
-                        {"study.yaml", "no setting is certified", "Nearest: mu = ", "refusal", "10 %"}));
+                        {"study.yaml", "no setting is certified", "nearest is mu = ", "refusal", "10 %"}));
 }
 
 TEST_F(TuneProgram, TooFewTrialsSayHowManyWouldDo) {

@@ -200,5 +200,15 @@ TEST_F(EstimatorFileInStudy, Errors) {
                            {"study.yaml:4:", "tuned.yaml:7: lambda", "'2'", "a number in [0, 1]"}));
 }
 
+// Those that come with the project.
+TEST(EstimatorFile, EveryFileOfTheProjectIsValid) {
+  int num_files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(RCME_SOURCE_DIR "/experiments/estimators")) {
+    EXPECT_NO_THROW(LoadEstimatorFile(entry.path().string())) << entry.path();
+    ++num_files;
+  }
+  EXPECT_GE(num_files, 1);
+}
+
 }  // namespace
 }  // namespace rcme

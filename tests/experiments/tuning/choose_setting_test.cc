@@ -142,7 +142,7 @@ TEST(ChooseSetting, LeastRiskOfTheExplorationWithABoundFromTheCalibration) {
 TEST(ChooseSetting, ATargetOutOfReachNamesTheNearest) {
   const std::vector<SettingCount> counts = {Of(1000, 300, 100), Of(1000, 200, 150), Of(1000, 250, 120)};
   const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05), counts, counts);
-  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 1:", "failure 20 % [17.6, 22.6] of 1000", "5 %",
+  EXPECT_TRUE(Says(choice.why, {"nearest is mu = 1:", "failure 20 % [17.6, 22.6] of 1000", "5 %",
                                 "out of reach", "at most 5 % of the trials fail"}))
       << choice.why;
 }
@@ -181,7 +181,7 @@ TEST(ChooseSetting, TheNumberOfTrialsThatWouldDoDoes) {
 TEST(ChooseSetting, RefusalsThatStandInTheWayAreNamed) {
   const std::vector<SettingCount> counts = {Of(1000, 0, 900), Of(1000, 200, 300)};
   const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05, 0.2), counts, counts);
-  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 1", "failure 20 %", "5 % is out of reach", "refusal 30 %",
+  EXPECT_TRUE(Says(choice.why, {"nearest is mu = 1", "failure 20 %", "5 % is out of reach", "refusal 30 %",
                                 "20 % is out of reach", "at most 20 % are refused"}))
       << choice.why;
 }
@@ -231,7 +231,7 @@ TEST(ChooseSetting, NoGoodTrialCertifiesNothing) {
   const std::vector<SettingCount> counts = {Quality(1000, 0, 0, 0)};
   const Choice choice = Choose(TuningFor(TuneTarget::kFalseRefusal, 0.05), counts, counts);
   EXPECT_FALSE(choice.setting.has_value());
-  EXPECT_TRUE(Says(choice.why, {"Nearest: mu = 0: false refusal: no trial is good"})) << choice.why;
+  EXPECT_TRUE(Says(choice.why, {"nearest is mu = 0: false refusal: no trial is good"})) << choice.why;
 }
 
 TEST(ChooseSetting, OneTrialAndOneSetting) {
