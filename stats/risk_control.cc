@@ -33,8 +33,10 @@ std::int64_t TrialsToCertify(double rate, double at_most, double delta, double p
     const std::int64_t k = LargestCertifyingCount(n, at_most, delta);
     return k >= 0 && ExcessPValue({k, n}, rate) >= power;
   };
+  constexpr std::int64_t kBeyondReach = std::int64_t{1} << 50;  // a rate that hardly differs from the limit
   std::int64_t few = 0, enough = FewestCertifyingTrials(at_most, delta);
   while (!has_power(enough)) {
+    if (enough > kBeyondReach) return enough;
     few = enough;
     enough *= 2;
   }

@@ -48,15 +48,22 @@ Entropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, S
   return entropies;
 }
 
-// The estimators of the plan without their quality test; null where an estimator has no loop or no entropies.
+// The estimators of the plan without their quality test; null where an estimator's loop cannot be taken
+// apart.
 std::vector<std::unique_ptr<const MotionEstimator>> WithoutQualityTest(const StudyPlan& plan) {
   std::vector<std::unique_ptr<const MotionEstimator>> estimators;
   for (EstimatorSpec spec : plan.study.estimators) {
     spec.options.mu = kNoQualityTest;
     estimators.push_back(FindEstimator(spec.name).make(spec.options));
-    if (!AsRansac(*estimators.back()) || spec.name == "standard") estimators.back().reset();
+    if (!AsRansac(*estimators.back())) estimators.back().reset();
   }
   return estimators;
+}
+
+// Not all the same number: an estimator without entropies leaves psi at zero.
+bool AreDifferent(const std::vector<double>& good, const std::vector<double>& bad) {
+  const auto differs = [&](double psi) { return psi != good.front(); };
+  return std::ranges::any_of(good, differs) || std::ranges::any_of(bad, differs);
 }
 
 void AddRoc(size_t estimator, const std::string& of, const std::vector<Entropies>& trials,
@@ -67,7 +74,7 @@ void AddRoc(size_t estimator, const std::string& of, const std::vector<Entropies
     if (trial.*good) roc.good.push_back(*(trial.*good));
     if (trial.*bad) roc.bad.push_back(*(trial.*bad));
   }
-  if (roc.good.empty() || roc.bad.empty()) return;
+  if (roc.good.empty() || roc.bad.empty() || !AreDifferent(roc.good, roc.bad)) return;
   roc.area = MeasureAreaUnderCurve(roc.good, roc.bad);  // a bad one is positive: the higher psi
   rocs->push_back(std::move(roc));
 }

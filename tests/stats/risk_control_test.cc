@@ -62,6 +62,7 @@ TEST(RiskControl, TrialsToCertifyHaveThePowerAndNotManyFewerDo) {
     }
   }
   EXPECT_EQ(TrialsToCertify(0.0, 0.05, 0.05, 0.9), 59);
+  EXPECT_GT(TrialsToCertify(std::nextafter(0.05, 0.0), 0.05, 0.05, 0.9), std::int64_t{1} << 50);
   EXPECT_THROW(TrialsToCertify(0.05, 0.05, 0.05, 0.9), std::invalid_argument);
 }
 
