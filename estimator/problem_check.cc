@@ -57,10 +57,9 @@ std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int
                    fmt::format("sigma_px is {}; it must be > 0", problem.sigma_px));
   }
   for (size_t i = 0; i < problem.matches.size(); ++i) {
-    // Beyond a million pixels nothing is an image coordinate, and products of four would overflow long after.
     const Correspondence& match = problem.matches[i];
     const double largest = std::max(match.x1_px.cwiseAbs().maxCoeff(), match.x2_px.cwiseAbs().maxCoeff());
-    if (!match.x1_px.allFinite() || !match.x2_px.allFinite() || largest > 1e6) {
+    if (!match.x1_px.allFinite() || !match.x2_px.allFinite() || largest > kMaxCoordinatePx) {
       return Refusal(MotionStatus::kInvalidInput,
                      fmt::format("match {} has a coordinate that is not a finite pixel position", i));
     }

@@ -37,7 +37,8 @@ MotionEstimate RefusalFromLoop(const LoopCounts& counts) {
 
 void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEstimate* estimate) {
   if (estimate->status != MotionStatus::kOk) return;
-  if (estimate->num_explained >= options.least_explained_share * num_matches) return;
+  const double least = options.least_explained_share * num_matches;
+  if (estimate->num_explained >= least * (1.0 - 1e-12)) return;  // 0.55 * 100 rounds to more than 55
   estimate->status = MotionStatus::kTooFewExplained;
   estimate->message = fmt::format("the motion explains {} of {} matches, less than the share {} asked for",
                                   estimate->num_explained, num_matches, options.least_explained_share);

@@ -44,6 +44,7 @@ class PairCounts {
       const TrialEvent& event = TrialEvents()[v];
       const bool in_reference = event.has_happened(records[reference_], bounds_);
       for (size_t e = 0; e < num_estimators_; ++e) {
+        if (event.needs_truth && !(IsScored(records[e]) && IsScored(records[reference_]))) continue;
         cells_[IndexOfCell(problem.condition, e, v)].Add(event.has_happened(records[e], bounds_),
                                                          in_reference);
       }

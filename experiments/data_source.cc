@@ -34,7 +34,11 @@ Choices ChoicesIn(const Settings& settings) {
   Choices choices;
   for (const auto& [key, value] : settings) {
     for (const auto& [name, field] : ChoiceKeys()) {
-      if (key == name) choices.*field = value;
+      if (key != name) continue;
+      if (value.empty()) {
+        throw InputError(fmt::format("{}: '' is not allowed; give a name (see `rcme list`)", key));
+      }
+      choices.*field = value;
     }
   }
   if (choices.scene.empty())
@@ -46,6 +50,16 @@ Choices ChoicesIn(const Settings& settings) {
   std::vector<std::string> names = {kMatchFilesScene};
   for (const SceneEntry& entry : SceneRegistry()) names.push_back(entry.name);
   throw InputError(fmt::format("scene: '{}' is not allowed; give one of: {}", scene, fmt::join(names, ", ")));
+}
+
+[[noreturn]] void ThrowUnknownKey(const std::string& key, const std::string& scene,
+                                  const std::vector<Parameter>& parameters) {
+  std::vector<std::string> names;
+  for (const auto& [name, field] : ChoiceKeys()) names.push_back(name);
+  if (scene == kMatchFilesScene) names.resize(1);
+  for (const Parameter& parameter : parameters) names.push_back(parameter.name());
+  throw InputError(
+      fmt::format("unknown key '{}' for scene {}; known keys: {}", key, scene, fmt::join(names, ", ")));
 }
 
 // The parameters of the settings' choices: of a folder of match files, or of a simulation.
@@ -62,8 +76,10 @@ struct Configured {
     }
     const std::vector<Parameter> parameters = AllParameters();
     for (const auto& [key, value] : settings) {
-      const bool is_applied = key == "scene" || (simulated && IsChoice(key));
-      if (!is_applied) FindParameter(parameters, key).SetFromText(value);
+      if (key == "scene" || (simulated && IsChoice(key))) continue;
+      const auto parameter = std::ranges::find(parameters, key, &Parameter::name);
+      if (parameter == parameters.end()) ThrowUnknownKey(key, choices.scene, parameters);
+      parameter->SetFromText(value);
     }
   }
 

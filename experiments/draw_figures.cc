@@ -69,9 +69,11 @@ void DrawOrThrow(const std::string& command, const std::string& script,
 }
 
 void DrawFigures(const std::string& script, const std::vector<std::string>& arguments) {
-  if (RunPlotScript(script, arguments) == ScriptEnd::kDone) return;
-  fmt::print(stderr, "the figures were not drawn; with matplotlib and pandas installed: python3 {} {}\n",
-             ScriptPath(script), fmt::join(arguments, " "));
+  const ScriptEnd end = RunPlotScript(script, arguments);
+  if (end == ScriptEnd::kDone) return;
+  const char* way = end == ScriptEnd::kNoPython ? "with matplotlib and pandas installed" : "see above; again";
+  fmt::print(stderr, "the figures were not drawn; {}: python3 {} {}\n", way, ScriptPath(script),
+             fmt::join(arguments, " "));
 }
 
 }  // namespace rcme

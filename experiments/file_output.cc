@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 
 #include "parameters/input_error.h"
 
@@ -36,10 +38,21 @@ std::string PartOf(const std::string& path) { return fmt::format("{}.{}.part", p
   throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(error)));
 }
 
+void CheckIsNoResultStore(const std::string& path) {
+  constexpr std::string_view kMagic = "SQLite format 3";
+  char head[kMagic.size()] = {};
+  if (!std::ifstream(path, std::ios::binary).read(head, sizeof(head))) return;
+  if (std::string_view(head, sizeof(head)) == kMagic) {
+    throw InputError(
+        fmt::format("{}: holds the results of a run and is not replaced; give another file", path));
+  }
+}
+
 }  // namespace
 
 void WriteFileWhole(const std::string& path, const std::string& text) {
   const bool is_special = IsSpecial(path);
+  if (!is_special) CheckIsNoResultStore(path);
   const std::string target = is_special ? path : PartOf(path);
   if (WriteAll(target, text) && (is_special || std::rename(target.c_str(), path.c_str()) == 0)) return;
   const int error = errno;
@@ -51,8 +64,18 @@ void WriteFileWhole(const std::string& path, const std::string& text) {
 void CheckCanBeWritten(const std::string& path) {
   if (std::filesystem::is_directory(path)) ThrowCannotWrite(path, EISDIR);
   if (IsSpecial(path)) return;  // to open a pipe may take a reader
+  CheckIsNoResultStore(path);
   if (!WriteAll(PartOf(path), "")) ThrowCannotWrite(path, errno);
   std::filesystem::remove(PartOf(path));
+}
+
+void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inputs) {
+  std::error_code ignored;  // of a file that is not there
+  for (const std::string& input : inputs) {
+    if (std::filesystem::equivalent(path, input, ignored)) {
+      throw InputError(fmt::format("--out: '{}' is the input itself; give another file", path));
+    }
+  }
 }
 
 void PrintOrWrite(const std::string& path, const std::string& text) {

@@ -1,15 +1,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace rcme {
 
 // Writes a text file whole or not at all: to a temporary neighbour first, then renamed over `path`. A device
-// or pipe is written directly. Throws InputError that names the path and the reason.
+// or pipe is written directly; a result store is never replaced: it may hold hours of work. Throws InputError
+// that names the path and the reason.
 void WriteFileWhole(const std::string& path, const std::string& text);
 
 // Before long work whose result goes to this file: throws as WriteFileWhole would, changes nothing.
 void CheckCanBeWritten(const std::string& path);
+
+// Throws InputError if the file to be written is one of those that are read.
+void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inputs);
 
 // WriteFileWhole, or to standard output where `path` is empty.
 void PrintOrWrite(const std::string& path, const std::string& text);

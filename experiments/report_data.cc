@@ -23,16 +23,18 @@ struct FirstTrials {
 
 struct ConditionProgress {
   std::int64_t num_trials_done = 0;
+  std::int64_t trials_end = 0;     // after the last; a run that was cut off may have gaps
   std::vector<FirstTrials> first;  // one per estimator
 };
 
 // One pass over a store whose records are known to belong to the plan.
 std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const StudyPlan& plan) {
   std::vector<ConditionProgress> progress(plan.conditions.size(),
-                                          {0, std::vector<FirstTrials>(plan.study.estimators.size())});
+                                          {0, 0, std::vector<FirstTrials>(plan.study.estimators.size())});
   store.ForEachRecord([&](const TrialRecord& record) {
     ConditionProgress& condition = progress.at(record.condition);
     if (record.estimator == 0) ++condition.num_trials_done;
+    condition.trials_end = record.trial + 1;
     FirstTrials& first = condition.first.at(record.estimator);
     if (HasFailed(record, plan.study.failure) && !first.failure) first.failure = record.trial;
     if (record.status != MotionStatus::kOk && !first.refusal) first.refusal = record.trial;
@@ -55,6 +57,7 @@ Json ConditionsAsJson(const ResultStore& store, const StudyPlan& plan) {
     conditions.push_back({{"index", condition.index},
                           {"levels", condition.levels},
                           {"trials_done", done.num_trials_done},
+                          {"trials_end", done.trials_end},
                           {"trials_planned", condition.num_trials},
                           {"first", first}});
   }
@@ -90,6 +93,7 @@ Json RunAsJson(const std::string& run, const ResultStore& store, const StudyPlan
           {"ademp", AdempAsJson(plan.study)},
           {"seed", plan.study.seed},
           {"trials_planned", plan.NumTrials()},
+          {"until", store.UntilOptionsOfAll()},
           {"study_yaml", plan.study_yaml},
           {"factors", plan.factor_names},
           {"estimators", estimators},

@@ -214,6 +214,14 @@ struct ResultStore::Connection {
     Create(plan);
   }
 
+  // The study with the trials that earlier runs asked for, if those were more.
+  std::string StudyToKeep(const StudyPlan& plan) {
+    Study study = plan.study;
+    const std::optional<std::string> earlier = Value("study");
+    if (earlier) study.trials = std::max(study.trials, ParseStudy(*earlier, path + " (its study)").trials);
+    return ToYaml(study);
+  }
+
   void SetValue(const std::string& key, const std::string& value) {
     Insert("INSERT OR REPLACE INTO run VALUES (?, ?)", key, value);
   }
@@ -306,7 +314,7 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
           fmt::format("{}: holds the results of another study; first difference: {}. Give another --out",
                       path, FirstDifference(identity, plan.identity)));
     }
-    connection->SetValue("study", plan.study_yaml);
+    connection->SetValue("study", connection->StudyToKeep(plan));
     connection->insert_problem.emplace(database, InsertInto<ProblemRecord>());
     connection->insert_trial.emplace(database, InsertInto<TrialRecord>());
     return ResultStore(std::move(connection));
@@ -338,11 +346,21 @@ StudyPlan ResultStore::Plan() const {
   const auto value = [&](const std::string& key) {
     return connection_->Guarded([&] { return connection_->Value(key).value_or(""); });
   };
-  StudyPlan plan = MakePlan(ParseStudy(value("study"), path + " (its study)"));
+  StudyPlan plan = PlanOf(ParseStudy(value("study"), path + " (its study)"), path);
   if (plan.identity != value("identity")) {
     throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
                                  FirstDifference(value("identity"), plan.identity)));
   }
+  if (StoppingRule().empty()) return plan;
+  connection_->Guarded([&] {
+    SQLite::Statement done(connection_->database, "SELECT count(*) FROM problems WHERE condition = ?");
+    for (Condition& condition : plan.conditions) {
+      done.bind(1, condition.index);
+      done.executeStep();
+      condition.num_trials = done.getColumn(0).getInt();
+      done.reset();
+    }
+  });
   return plan;
 }
 
@@ -378,6 +396,22 @@ void ResultStore::NoteStoppingRule(const std::string& rule) {
 
 std::string ResultStore::StoppingRule() const {
   return connection_->Guarded([&] { return connection_->Value("stopping rule").value_or(""); });
+}
+
+void ResultStore::NoteUntilOptions(const std::string& options, std::int64_t num_trials) {
+  connection_->Guarded([&] {
+    connection_->SetValue("until options", options);
+    connection_->SetValue("until trials", std::to_string(num_trials));
+  });
+}
+
+std::string ResultStore::UntilOptionsOfAll() const {
+  return connection_->Guarded([&] {
+    const std::string num_trials =
+        connection_->database.execAndGet("SELECT count(*) FROM problems").getString();
+    const bool is_all = connection_->Value("until trials") == num_trials;
+    return is_all ? connection_->Value("until options").value_or("") : std::string();
+  });
 }
 
 void ResultStore::ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const {

@@ -1,7 +1,7 @@
 // The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and
 // again.
 //
-// Tables: run (key, value: format, study, identity), conditions (condition, factor, level), estimators
+// Tables: run (key, value: format, study, identity, ...), conditions (condition, factor, level), estimators
 // (estimator, label), problems (one row per condition and trial), trials (one row per condition, trial and
 // estimator; columns of both as in trial_fields.h).
 // Unknown numbers are NULL.
@@ -27,8 +27,9 @@ struct TrialRange {
 // One thread at a time may call it.
 class ResultStore {
  public:
-  // Opens the file of this plan's study, or makes it. Throws InputError if the path cannot be written, is no
-  // result file, is in use by another run, or holds another study (the message says what differs).
+  // Opens the file of this plan's study, or makes it; what earlier runs asked for is still asked for: the
+  // study keeps the greatest number of trials. Throws InputError if the path cannot be written, is no result
+  // file, is in use by another run, or holds another study (the message says what differs).
   static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan);
   // Opens an existing file to read. Throws InputError if it is none.
   static ResultStore OpenForReading(const std::string& path);
@@ -36,7 +37,8 @@ class ResultStore {
   ResultStore(ResultStore&&) noexcept;
   ~ResultStore();  // commits what has been added
 
-  // The plan of the study in the file. Throws InputError if its data (a folder of pairs) are gone or have
+  // The plan of the study in the file; a condition's trials are those that runs asked for, under a stopping
+  // rule those that it took. Throws InputError if its data (a folder of pairs) are gone or have
   // changed.
   StudyPlan Plan() const;
 
@@ -54,6 +56,10 @@ class ResultStore {
   void NoteStoppingRule(const std::string& rule);
   // Empty: the number of trials was fixed beforehand.
   std::string StoppingRule() const;
+  // Options of `rcme run` that alone give the trials in the file, `num_trials` in all.
+  void NoteUntilOptions(const std::string& options, std::int64_t num_trials);
+  // Empty: not known, or the file holds other trials since.
+  std::string UntilOptionsOfAll() const;
 
   // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
   void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;

@@ -35,8 +35,12 @@ CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64
         if (problem.weight != 1.0)
           throw InputError(
               "--until: the trials of this study are weighted (tilted_to); give --trials instead");
-        for (size_t e = 0; e < records.size(); ++e)
+        for (size_t e = 0; e < records.size(); ++e) {
+          if (options.event.needs_truth && !IsScored(records[e])) {
+            throw InputError("--until: the truth of this study's pairs is not known; give --trials instead");
+          }
           num_events[e] += options.event.has_happened(records[e], plan.study.failure);
+        }
       },
       condition.index);
   CellPrecision worst;

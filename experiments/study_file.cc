@@ -38,14 +38,7 @@ void ReadFactors(const Place& place, const YAML::Node& node, Study* study) {
     if (!levels.IsSequence() || levels.size() == 0) {
       place.Fail(levels, fmt::format("factors: {}: a list of at least one level is needed", key));
     }
-    std::set<std::string> seen;
-    for (const YAML::Node& level : levels) {
-      const std::string text = Scalar(place, level, key);
-      if (!seen.insert(text).second) {
-        place.Fail(level, fmt::format("factors: {}: level '{}' stands twice", key, text));
-      }
-      factor.levels.push_back(text);
-    }
+    for (const YAML::Node& level : levels) factor.levels.push_back(Scalar(place, level, key));
     study->factors.push_back(std::move(factor));
   }
 }
@@ -95,9 +88,17 @@ Settings FirstSettings(const Study& study) {
   return SettingsOf(study, levels);
 }
 
+// The value of a setting as its parameter writes it, so that equal values are equal texts.
+std::string Canonical(Settings settings, const std::string& key, const std::string& value) {
+  settings.emplace_back(key, value);
+  const Settings resolved = ResolveSettings(settings);
+  return std::ranges::find(resolved, key, &Settings::value_type::first)->second;
+}
+
 // Data settings are checked one by one, each with the study's choices, so that an error names its line; then
-// each level of each factor.
-void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
+// each level of each factor. All become canonical.
+void SettleData(const Place& place, const YAML::Node& root, Study* of) {
+  Study& study = *of;
   const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
     const YAML::Node map = root[block];
     return map && map.IsMap() && map[key] ? map[key] : root;
@@ -113,20 +114,21 @@ void CheckData(const Place& place, const YAML::Node& root, const Study& study) {
       ResolveSettings({*scene, choice});
     });
   }
-  const auto resolve = [](Settings settings, const std::string& key, const std::string& value) {
-    settings.emplace_back(key, value);
-    ResolveSettings(settings);
-  };
-  for (const auto& [key, value] : study.data) {
-    place.At(line_of("data", key), [&, key = key, value = value] { resolve(choices, key, value); });
+  for (auto& [key, value] : study.data) {
+    place.At(line_of("data", key),
+             [&, &key = key, &value = value] { value = Canonical(choices, key, value); });
   }
-  for (const Factor& factor : study.factors) {
+  for (Factor& factor : study.factors) {
     const YAML::Node line = line_of("factors", factor.key);
-    for (const std::string& level : factor.levels) {
+    std::set<std::string> seen;
+    for (std::string& level : factor.levels) {
       if (factor.key == "scene" && level == kMatchFilesScene)
         place.Fail(line,
                    "factors: scene: match_files is no simulated scene; write a study of its own for it");
-      place.At(line, [&] { resolve(IsChoice(factor.key) ? first : choices, factor.key, level); });
+      const std::string given = level;
+      place.At(line, [&] { level = Canonical(IsChoice(factor.key) ? first : choices, factor.key, given); });
+      if (!seen.insert(level).second)
+        place.Fail(line, fmt::format("factors: {}: level '{}' stands twice", factor.key, given));
     }
   }
   place.At(root["factors"] ? root["factors"] : root, [&] { DesignRows(study); });
@@ -196,7 +198,7 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
   }
   if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
-  CheckData(place, root, study);
+  SettleData(place, root, &study);
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
   return study;
 }
@@ -220,18 +222,15 @@ void Override(Study* study, const std::string& key, const std::string& value) {
     }
     if (!is_used)
       throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
-    if (study->tuning) CheckCombinations(*study->tuning, study->estimators);
   } else if (is_in(Parameters(bound_names), key)) {
     FindParameter(Parameters(study->failure), key).SetFromText(value);
   } else if (dot != std::string::npos) {
     FindParameter(Parameters(option_names), option);  // throws: it is no option
   } else {
     const auto is_key = [&](const auto& setting) { return setting.first == key; };
-    Settings settings = FirstSettings(*study);
-    settings.emplace_back(key, value);
-    ResolveSettings(settings);
+    const std::string canonical = Canonical(FirstSettings(*study), key, value);
     std::erase_if(study->data, is_key);
-    study->data.emplace_back(key, value);
+    study->data.emplace_back(key, canonical);
     std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
   }
 }
@@ -273,10 +272,6 @@ std::string ToYaml(const Study& study) {
   out << YAML::Key << "failure" << YAML::Value << YAML::BeginMap;
   for (const Parameter& p : Parameters(bounds)) out << YAML::Key << p.name() << YAML::Value << p.Value();
   out << YAML::EndMap;
-  if (study.tuning) {
-    out << YAML::Key << "tune" << YAML::Value;
-    WriteTuning(*study.tuning, &out);
-  }
   out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }

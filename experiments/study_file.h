@@ -35,12 +35,12 @@ Study ParseStudy(const std::string& yaml, const std::string& path);
 
 // One `--set key=value`: a data key; an estimator option, for all estimators (`mu`) or one (`rcme.mu`); or a
 // failure bound. A factor that is set becomes that one level. Throws InputError, also where the options of an
-// estimator, or a combination of the study's tuning, then contradict each other.
+// estimator then contradict each other.
 void Override(Study* study, const std::string& key, const std::string& value);
 
 // The study with every parameter written out, defaults and the estimators of files included: ParseStudy gives
-// the same study back. Two runs may share a result file if this text, trials, description and tuning aside,
-// is the same.
+// the same study back but for its tuning, on which no run depends. Two runs may share a result file if this
+// text, trials and description aside, is the same.
 std::string ToYaml(const Study& study);
 
 }  // namespace rcme

@@ -6,6 +6,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/study_file.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -30,7 +31,7 @@ std::string Identity(const StudyPlan& plan) {
   same.trials = 1;  // more trials extend a run
   same.description.clear();
   same.ademp.reset();
-  same.tuning.reset();
+  std::erase_if(same.data, [](const auto& setting) { return setting.first == "folder"; });  // its data count
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
   for (const Condition& condition : plan.conditions) {
     const std::string data = condition.source->Identity();
@@ -68,6 +69,14 @@ StudyPlan MakePlan(const Study& study) {
   plan.study_yaml = ToYaml(study);
   plan.identity = Identity(plan);
   return plan;
+}
+
+StudyPlan PlanOf(const Study& study, const std::string& path) {
+  try {
+    return MakePlan(study);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", path, error.what()));
+  }
 }
 
 }  // namespace rcme

@@ -31,5 +31,7 @@ struct StudyPlan {
 
 // Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions.
 StudyPlan MakePlan(const Study& study);
+// The same for the study of a file, which the message then names.
+StudyPlan PlanOf(const Study& study, const std::string& path);
 
 }  // namespace rcme

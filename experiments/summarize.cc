@@ -49,10 +49,12 @@ const std::vector<TrialQuantity>& TrialQuantities() {
   using B = const FailureBounds&;
   static const double nees_bound = ChiSquareQuantile(5, 0.95);
   static const std::vector<TrialQuantity> all = {
-      {"success", kRate, "a motion within the failure bounds, of all trials",
-       [](R r, B b) { return Yes(HasSucceeded(r, b)); }},
-      {"failure", kRate, "a motion beyond a failure bound, of all trials",
-       [](R r, B b) { return Yes(HasFailed(r, b)); }},
+      {"not_scored", kRate, "a motion whose truth is not known, of all trials",
+       [](R r, B) { return Yes(!IsScored(r)); }},
+      {"success", kRate, "a motion within the failure bounds, of all trials but those not scored",
+       [](R r, B b) { return If(IsScored(r), HasSucceeded(r, b)); }},
+      {"failure", kRate, "a motion beyond a failure bound, of all trials but those not scored",
+       [](R r, B b) { return If(IsScored(r), HasFailed(r, b)); }},
       StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
       {"other_refusal", kRate, "no motion for any other reason (the sum of the next five), of all trials",
        [](R r, B) { return Yes(!IsOk(r) && r.status != MotionStatus::kNoCandidate); }},

@@ -24,7 +24,8 @@ std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
     return fmt::format("{:.2f} % [{:.2f}, {:.2f}]{}", 100.0 * row.value, 100.0 * row.interval.lower,
                        100.0 * row.interval.upper, of);
   }
-  if (row.n == 1) return fmt::format("{:.3g}{}", row.value, of);
+  if (std::isnan(row.standard_error))
+    return fmt::format("{:.3g}{}", row.value, of);  // of one trial, or infinite
   return fmt::format("{:.3g} +- {:.2g}{}", row.value, row.standard_error, of);
 }
 
@@ -94,7 +95,7 @@ std::string SummaryAsTable(const Summary& summary) {
   }
   std::int64_t num_trials = 0;
   for (const SummaryRow& row : summary.rows) {
-    if (row.quantity == "success") {  // the first quantity of each condition and estimator
+    if (row.quantity == "not_scored") {  // the first quantity of each condition and estimator
       num_trials = row.n;
       rows.push_back(row.levels);
       rows.back().insert(rows.back().end(), {row.estimator, fmt::format("{}", row.n)});
@@ -108,7 +109,8 @@ std::string SummaryAsTable(const Summary& summary) {
   text += fmt::format("Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n",
                       IntervalKindsIn(summary));
   text +=
-      "(n ...) where a number is not of all trials.\n"
+      "(n ...) where a number is not of all trials: without a known truth a motion neither fails nor "
+      "succeeds.\n"
       "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
       "flag.\n"
       "nees_coverage: truth inside the reported 95 % region. All quantities: --format csv or json.\n";

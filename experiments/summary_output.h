@@ -14,7 +14,8 @@ std::string SummaryAsTable(const Summary& summary);
 // unknown.
 std::string SummaryAsCsv(const Summary& summary);
 
-// The same rows as an object {study, trials_done, trials_planned, rows: [...]}; unknown numbers are null.
+// The same rows as an object {study, trials_done, trials_planned, rows: [...]}; unknown and infinite
+// numbers are null.
 std::string SummaryAsJson(const Summary& summary);
 
 // Rows of text as columns padded to equal width, the first row underlined.

@@ -47,14 +47,17 @@ ProblemRecord Describe(const TrialData& data, const StreamName& name) {
 
 }  // namespace
 
+bool IsScored(const TrialRecord& record) {
+  return record.status != MotionStatus::kOk || !std::isnan(record.rotation_error_deg);
+}
+
 bool HasFailed(const TrialRecord& record, const FailureBounds& bounds) {
   return record.status == MotionStatus::kOk && (record.rotation_error_deg > bounds.max_rotation_error_deg ||
                                                 record.direction_error_deg > bounds.max_direction_error_deg);
 }
 
 bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds) {
-  return record.status == MotionStatus::kOk && !std::isnan(record.rotation_error_deg) &&
-         !HasFailed(record, bounds);
+  return record.status == MotionStatus::kOk && IsScored(record) && !HasFailed(record, bounds);
 }
 
 TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double seconds) {

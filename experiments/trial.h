@@ -38,6 +38,8 @@ struct ProblemRecord {
   Severity severity;
 };
 
+// False for a returned motion whose truth is not known: it has neither failed nor succeeded.
+bool IsScored(const TrialRecord& record);
 // A returned motion beyond a bound. False where no motion was returned, or no truth is known.
 bool HasFailed(const TrialRecord& record, const FailureBounds& bounds);
 // A returned motion within the bounds.

@@ -7,7 +7,6 @@ bool HasRefused(const TrialRecord& record, const FailureBounds&) {
   return record.status != MotionStatus::kOk;
 }
 
-// Not the same as no success: a motion whose truth is not known is neither.
 bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) {
   return HasRefused(record, bounds) || HasFailed(record, bounds);
 }
@@ -16,9 +15,9 @@ bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) 
 
 const std::vector<TrialEvent>& TrialEvents() {
   static const std::vector<TrialEvent> events = {
-      {"failure", "a motion beyond a failure bound", HasFailed},
-      {"refusal", "no motion, for whatever reason", HasRefused},
-      {"failure_or_refusal", "one of the two", HasFailedOrRefused}};
+      {"failure", "a motion beyond a failure bound", HasFailed, true},
+      {"refusal", "no motion, for whatever reason", HasRefused, false},
+      {"failure_or_refusal", "one of the two", HasFailedOrRefused, true}};
   return events;
 }
 

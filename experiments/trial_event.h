@@ -11,6 +11,7 @@ namespace rcme {
 struct TrialEvent {
   std::string name, doc;
   bool (*has_happened)(const TrialRecord&, const FailureBounds&);
+  bool needs_truth;  // says nothing of a trial that is not scored
 };
 const std::vector<TrialEvent>& TrialEvents();
 

@@ -34,7 +34,7 @@ std::string RangeInWords(const std::string& kind, const Parameter::Range& range)
 bool ParseReal(const std::string& text, double* value) {
   double parsed = 0.0;
   if (!ParseWhole(text, &parsed) || !std::isfinite(parsed)) return false;
-  *value = parsed;
+  *value = parsed + 0.0;  // no -0: equal numbers are equal texts
   return true;
 }
 

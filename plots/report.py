@@ -88,14 +88,31 @@ def comparison_section(run):
           for position, event in enumerate(run.facts["events"]))])
 
 
+def same_trials(run):
+    """(options of `rcme run` for the trials of this page, in words what they do not give)"""
+    facts, conditions = run.facts, run.facts["conditions"]
+    if facts["until"]:
+        return facts["until"], ""
+    most, but = max(condition["trials_end"] for condition in conditions), ""
+    has_stopped = "anytime_valid" in set(run.whole_summary.rows.get("interval", []))
+    if any(not condition["trials_done"] == condition["trials_end"] == (
+            most if has_stopped else min(most, condition["trials_planned"])) for condition in conditions):
+        but += ("But this page has fewer trials of some conditions than the commands give (see \"trials done\" below): "
+                "the run was cut off or stopped by --until. ")
+    if has_stopped:
+        but += "Because of --until, intervals on this page are anytime-valid; those of the commands are exact. "
+    return f"--trials {most}", but
+
+
 def again_section(run):
     """The commands that give the same numbers once more."""
     facts, name = run.facts, file_name(run.facts["name"])
     here, reference = shlex.quote(facts["run"]), shlex.quote(facts["reference"])
+    options, but = same_trials(run)
     return joined([
         element("p", "A trial is a function of (seed, condition, trial) alone: these commands give the same numbers, "
-                "whatever the number of threads. ", study_link(run), ", then:"),
-        element("pre", code(f"rcme run {name}.yaml --out {name}.sqlite\n"
+                "whatever the number of threads. ", but, study_link(run), ", then:"),
+        element("pre", code(f"rcme run {name}.yaml {options} --out {name}.sqlite\n"
                             f"rcme summarize {name}.sqlite --format csv\n"
                             f"rcme compare {name}.sqlite --against {reference} --format csv\n"
                             f"rcme report {name}.sqlite --against {reference} --out {name}.html")),

@@ -10,7 +10,7 @@ from summary_csv import Summary, numbers, read_comparison, read_summary
 
 NEEDED = {  # key of run.json: its type
     "run": str, "rcme_version": str, "name": str, "description": str, "seed": int, "trials_done": int,
-    "trials_planned": int, "study_yaml": str, "reference": str, "factors": list, "estimators": list, "conditions": list,
+    "trials_planned": int, "until": str, "study_yaml": str, "reference": str, "factors": list, "estimators": list, "conditions": list,
     "failure_bounds": list, "quantities": list, "events": list,
 }
 SCENE = "scene"  # the "estimator" of rows that describe the simulated problems themselves

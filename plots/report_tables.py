@@ -88,7 +88,7 @@ def results(run):
     shown = [quantity for quantity in SHOWN if any(quantity in of for _, of in groups)]
     lines = []
     for row, of in groups:
-        num_trials = of["success"]["n"] if "success" in of else max((number["n"] for number in of.values()), key=int)
+        num_trials = of["not_scored"]["n"] if "not_scored" in of else max((number["n"] for number in of.values()), key=int)
         lines.append((row, [style.label_of(row["estimator"]), num_trials,
                             *(cell(of.get(quantity), num_trials) for quantity in shown),
                             trial_to_replay(run, int(row["condition"]), row["estimator"])]))

@@ -43,6 +43,8 @@ def text_block(lines, size, **look):
 
 def legend_block(trial, looks):
     handles = legend_handles(trial, looks)
+    if not handles:
+        return 0, lambda sheet, top: None
     columns = max(1, min(len(handles), int(WIDTH / (0.5 + max(width_of(name, TEXT) for name in handles)))))
     rows = -(-len(handles) // columns)
 

@@ -116,15 +116,17 @@ def rows_where(path, rows, allowed_keys, conditions):
 
 
 def numbers(table, column, may_be_empty=False):
-    """One column of a table's rows as floats; NaN where the file has nothing and may."""
-    def number(text, line):
+    """One column of a table's rows as floats; NaN where the file has nothing and may. Only the value of a mean may be
+    infinite: some trials' were."""
+    def number(text, kind, line):
         if may_be_empty and text == "":
             return math.nan
         try:
             value = float(text)
         except ValueError:
             value = math.nan
-        if not math.isfinite(value):
+        if math.isnan(value) or math.isinf(value) and (column, kind) != ("value", "mean"):
             raise PlotError(f"{table.path}: line {line}: column {column} must be a number, not '{text}'.")
         return value
-    return [number(text, line) for text, line in zip(table.rows[column], table.rows["line"])]
+    kinds = table.rows.get("kind", [""] * len(table.rows))
+    return [number(*cell) for cell in zip(table.rows[column], kinds, table.rows["line"])]

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Draws whether a setting that `rcme tune` found on one family of trials serves another, each figure as PNG and PDF:
+"""Draws what `rcme transfer` found: whether a setting tuned on one family of trials serves another, each figure as PNG
+and PDF:
   PREFIX_matrix   the targeted rate, a row per family tuned on, a column per family verified on
   PREFIX_refusal  the refusal rate in the same places: a setting may meet its target by refusing everything
 It draws what the file says and computes nothing: rates, intervals and verdicts are those of the program.
@@ -191,7 +192,7 @@ def draw_for(options):
 def parse(arguments):
     parser = Parser(prog="transfer.py", description=__doc__, epilog=EXAMPLE,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("transfer", metavar="TRANSFER.json", help="file that 'rcme tune' wrote")
+    parser.add_argument("transfer", metavar="TRANSFER.json", help="file that 'rcme transfer' wrote")
     parser.add_argument("--out", required=True, metavar="PREFIX",
                         help="where to write: the figures' names begin with it")
     options = parser.parse_args(arguments)

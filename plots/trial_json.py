@@ -75,7 +75,7 @@ def read_kinds(names, count):
         return None
     if len(names) != count or not set(names) <= set(KINDS):
         raise ValueError(f"kinds: one of {', '.join(KINDS)} is needed for each match")
-    return np.array(names)
+    return np.array(names, dtype=str)
 
 
 def trial_of(value):

@@ -23,9 +23,10 @@ FROM_THE_RIGHT = ((2, 1), slice(2, 4))
 
 def limits_of_scene(trial, shape):
     """((left, right), (near, far)) in the proportions of a panel (width, height). Some far points cannot stretch it: it
-    holds the cameras and the middle of the points in each coordinate."""
-    centres = np.array([view.centre_m for view in trial.views])[:, [0, 2]]
-    shown = np.vstack([np.percentile(trial.points_m[:, [0, 2]], MIDDLE, axis=0), centres])
+    holds the cameras and the middle of the points, if any, in each coordinate."""
+    shown = np.array([view.centre_m for view in trial.views])[:, [0, 2]]
+    if len(trial.points_m):
+        shown = np.vstack([np.percentile(trial.points_m[:, [0, 2]], MIDDLE, axis=0), shown])
     scale = 1.1 * max(np.ptp(shown, axis=0) / shape) or 1
     middle, half = (shown.min(axis=0) + shown.max(axis=0)) / 2, scale * np.array(shape) / 2
     return tuple(zip(middle - half, middle + half))

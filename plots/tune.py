@@ -3,6 +3,7 @@
   PREFIX_surface  failure and refusal over the options, with the tuned setting, certified ones and other estimators
   PREFIX_front    failure against refusal of every setting, with the path of those tested
   PREFIX_roc      how well the score tells good models from bad ones (if the file has such curves)
+The first is left out, with a word, where there is no surface: one level of every option, or too many panels.
 It draws what the file says and computes nothing: rates, intervals, areas and the tuned setting are those of the
 program. Colours and lines between settings are interpolated.
 """
@@ -10,7 +11,7 @@ program. Colours and lines between settings are interpolated.
 import argparse
 import sys
 
-from command_line import Parser, check_figure_path, draw_figures
+from command_line import Parser, PlotError, check_figure_path, draw_figures
 from tune_front import draw_front
 from tune_json import read_tune
 from tune_roc import draw_roc
@@ -39,9 +40,21 @@ def parse(arguments):
     return options
 
 
+def draw_surface_if_possible(tune, where):
+    """{what the name adds: figure}. A surface that cannot be drawn as a whole (one level of everything, too many panels)
+    is no reason to draw nothing; a part that was asked for has to be there."""
+    try:
+        return {"_surface": draw_surface(tune, where)}
+    except PlotError as error:
+        if where:
+            raise
+        print(f"tune.py: no surface: {error}", file=sys.stderr)
+        return {}
+
+
 def draw_for(options):
     tune = read_tune(options.tune)
-    figures = {"_surface": draw_surface(tune, options.where), "_front": draw_front(tune)}
+    figures = {**draw_surface_if_possible(tune, options.where), "_front": draw_front(tune)}
     return {**figures, "_roc": draw_roc(tune)} if tune.rocs else figures
 
 

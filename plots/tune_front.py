@@ -31,19 +31,19 @@ def places_of(settings):
     return [[one.rates[quantity].value for one in settings] for quantity in QUANTITIES]
 
 
-def draw_bars(axes, one, **look):
-    """The intervals of both rates."""
-    x, y = (one.rates[quantity] for quantity in QUANTITIES)
-    axes.hlines([y.value], x.lower, x.upper, **look)
-    axes.vlines([x.value], y.lower, y.upper, **look)
+def draw_bars(axes, settings, **look):
+    """The intervals of both rates of each."""
+    x, y = (pandas.DataFrame([one.rates[quantity] for one in settings]) for quantity in QUANTITIES)
+    axes.hlines(y.value, x.lower, x.upper, **look)
+    axes.vlines(x.value, y.lower, y.upper, **look)
 
 
 def draw_path(axes, settings):
     """The tested settings as a line, from the least refusal on."""
     path = sorted((setting for setting in settings if setting.is_on_path),
                   key=lambda one: (one.rates["refusal"].value, -one.rates["failure"].value))
-    for setting in path:
-        draw_bars(axes, setting, color="0.72", linewidth=0.5, zorder=2)
+    if path:
+        draw_bars(axes, path, color="0.72", linewidth=0.5, zorder=2)
     axes.plot(*places_of(path), **PATH, zorder=3, label="_path")
     for is_certified, look, label in ((False, UNCERTIFIED, "_tested"), (True, TESTED, "_certified")):
         plot_points(axes, *places_of([one for one in path if one.is_certified == is_certified]), **look, zorder=3,
@@ -51,7 +51,7 @@ def draw_path(axes, settings):
 
 
 def draw_mark(axes, one, look):
-    draw_bars(axes, one, color=look["color"], linewidth=1, zorder=4)
+    draw_bars(axes, [one], color=look["color"], linewidth=1, zorder=4)
     plot_points(axes, *places_of([one]), **look, zorder=5)
 
 

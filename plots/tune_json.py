@@ -1,4 +1,5 @@
-"""Reads tune.json and transfer.json, which `rcme tune` writes. It checks and names; it computes nothing.
+"""Reads tune.json, which `rcme tune` writes, and transfer.json, of `rcme transfer`. It checks and names; it computes
+nothing.
 
     tune.json: kind, study, estimator, seed, target, options, settings, tuned, others, roc
     transfer.json: kind, study, estimator, seed, target, options, families, cells
@@ -15,7 +16,7 @@ from audit_look import number_text
 from factor_axis import is_number
 from json_file import is_finite, read_object
 
-ORIGIN = "rcme tune"
+ORIGINS = {"tune": "rcme tune", "transfer": "rcme transfer"}  # of each kind
 FALSE_REFUSAL, VIOLATED, UNDECIDED = "false_refusal", "violated", "undecided"
 TARGETS, VERDICTS = (FALSE_REFUSAL, "failure", "risk"), ("holds", VIOLATED, UNDECIDED)
 SETTING_RATES = ("failure", "refusal", "false_refusal")
@@ -271,7 +272,7 @@ def read_mark(node):
 
 def read_head(path, kind):
     """(the file's node, what both kinds begin with)."""
-    file = read_object(path, ORIGIN)
+    file = read_object(path, ORIGINS[kind])
     file.one_of("kind", (kind,))
     return file, (path, file.text("study"), file.text("estimator"), file.whole_number("seed"),
                   read_target(file.node("target")), read_options(file))

@@ -22,6 +22,7 @@ SHORT = {"failure": "failure", "refusal": "refusal", "false_refusal": "false ref
 LEGEND_SIZE = 7  # points, of a legend beside the panel
 MAX_LABELS = {"x": 8, "y": 10}  # of levels along an axis
 NOT_A_STAR = "8"  # in place of the star, which is the tuned setting's
+MAX_TICKS = 300  # of levels along an axis; more would touch
 FAR_SPREAD = 8  # the widest gap between levels over the narrowest; beyond, levels stand evenly
 
 
@@ -119,6 +120,12 @@ class LevelAxis(FactorAxis):
     def places(self):
         return self.positions(self.levels)
 
+    def ticks(self):
+        """The places, one of those that lie too close for ticks of their own."""
+        places = np.array(self.places())
+        _, first = np.unique(np.round(MAX_TICKS * (places - places[0]) / (np.ptp(places) or 1)), return_index=True)
+        return places[first]
+
     def locate(self, level):
         """(place, side): side -1 or 1 where the level lies beyond that end, which then is its place; None for a word
         that is not among the levels."""
@@ -137,7 +144,7 @@ class LevelAxis(FactorAxis):
             if self.is_even:
                 step = -(-len(places) // MAX_LABELS[direction])
                 axis.set_ticks(places[::step], [number_text(float(level)) for level in self.levels[::step]])
-            axis.set_ticks(places, minor=True)
+            axis.set_ticks(self.ticks(), minor=True)
         else:
             super().prepare(axes, panels_abreast)
         getattr(axes, f"set_{direction}label")(self.option.label())

@@ -101,10 +101,11 @@ def spots_of(tune):
 def grid_of(surface, part, quantity):
     """The rates, [y, x] in order of place; masked where there were no trials."""
     x, y = surface.axes
-    grid = np.full((len(y.levels), len(x.levels)), math.nan)
+    row_of, column_of = ({level: place for place, level in enumerate(axis.levels)} for axis in (y, x))
+    grid = np.full((len(row_of), len(column_of)), math.nan)
     for number, levels in zip(part.index, part[[x.name, y.name]].itertuples(index=False, name=None)):
         rate = surface.tune.settings[number].rates[quantity]
-        grid[y.levels.index(levels[1]), x.levels.index(levels[0])] = rate.value
+        grid[row_of[levels[1]], column_of[levels[0]]] = rate.value
     return np.ma.masked_invalid(grid)
 
 

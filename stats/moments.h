@@ -6,13 +6,14 @@
 
 namespace rcme {
 
-// Mean and variance of a stream of numbers in constant memory (Welford 1962).
+// Mean and variance of a stream of numbers in constant memory (Welford 1962). Infinite numbers make the mean
+// infinite (both infinities: NaN) and the variance NaN.
 class Moments {
  public:
   void Add(double x) {
     ++n_;
     const double step = x - mean_;
-    mean_ += step / static_cast<double>(n_);
+    MoveMean(x, step / static_cast<double>(n_));
     sum_squares_ += step * (x - mean_);
   }
 
@@ -22,7 +23,7 @@ class Moments {
     const double n = static_cast<double>(n_), m = static_cast<double>(other.n_);
     const double step = other.mean_ - mean_;
     n_ += other.n_;
-    mean_ += step * m / (n + m);
+    MoveMean(other.mean_, step * m / (n + m));
     sum_squares_ += other.sum_squares_ + step * step * n * m / (n + m);
   }
 
@@ -35,6 +36,10 @@ class Moments {
 
  private:
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+  // By a step towards `x`, which is NaN or infinite where one of the two is infinite.
+  void MoveMean(double x, double step) { mean_ += std::isinf(x) || std::isinf(mean_) ? x : step; }
+
   std::int64_t n_ = 0;
   double mean_ = 0.0, sum_squares_ = 0.0;
 };

@@ -21,7 +21,9 @@ struct StandardPipeline {
 }  // namespace
 
 std::unique_ptr<RansacEstimator> MakeStandard(const RansacOptions& options) {
-  return MakePipelineEstimator<StandardPipeline>(options);
+  RansacOptions without_entropies = options;
+  without_entropies.early_stop_entropy = RansacOptions().early_stop_entropy;
+  return MakePipelineEstimator<StandardPipeline>(without_entropies);
 }
 
 }  // namespace rcme

@@ -8,8 +8,8 @@
 namespace rcme {
 
 // The paper's "Standard": RANSAC by inlier count with the noise-only threshold, then the Gold Standard
-// refinement. Uses num_iterations, significance_level, refinement and kappa of the options. Throws InputError
-// if the options contradict each other.
+// refinement. It has no entropies: mu, quality_test, selection and early_stop_entropy have no effect, nor
+// have the reading and the sample test's level. Throws InputError if the options contradict each other.
 std::unique_ptr<RansacEstimator> MakeStandard(const RansacOptions& options);
 
 }  // namespace rcme

@@ -6,6 +6,7 @@
 #include "experiments/audit_output.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
 
@@ -65,12 +66,12 @@ void AddAuditCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "folder for the results; made if missing")->required();
   command->add_option("--seed", arguments->seed, "seed of all random streams")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it, measured times excepted")
-      ->check(CLI::Range(0, 1024));
+      ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { RunAuditCommand(*arguments); });
 }
 

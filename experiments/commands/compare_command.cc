@@ -15,11 +15,13 @@ struct CompareArguments {
 };
 
 void RunCompare(const CompareArguments& arguments) {
-  const Comparison comparison = Compare(ResultStore::OpenForReading(arguments.run), arguments.against);
-  if (comparison.rows.empty()) {
+  const ResultStore store = ResultStore::OpenForReading(arguments.run);
+  const Comparison comparison = Compare(store, arguments.against);
+  if (comparison.rows.empty() && store.Plan().study.estimators.size() == 1) {
     throw InputError(fmt::format("{}: study '{}' has one estimator, '{}'; a comparison needs two",
                                  arguments.run, comparison.study, comparison.reference));
   }
+  if (comparison.rows.empty()) throw InputError(fmt::format("{}: {}", arguments.run, comparison.caution));
   PrintOrWrite(arguments.out, arguments.format == "csv"    ? ComparisonAsCsv(comparison)
                               : arguments.format == "json" ? ComparisonAsJson(comparison)
                                                            : ComparisonAsTable(comparison));

@@ -6,6 +6,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/estimator_file.h"
 #include "experiments/real_data/match_file.h"
 #include "experiments/trial.h"
@@ -87,7 +88,6 @@ EstimatorSpec ChosenEstimator(const EstimateArguments& arguments) {
 }
 
 void RunEstimate(const EstimateArguments& arguments) {
-  if (!std::isfinite(arguments.sigma_px)) throw InputError("--sigma: give a number in [1e-9, 1000]");
   const EstimatorSpec spec = ChosenEstimator(arguments);
   const std::unique_ptr<MotionEstimator> estimator = FindEstimator(spec.name).make(spec.options);
   MatchFile file = ReadMatchFile(arguments.matches);
@@ -144,10 +144,10 @@ void AddEstimateCommand(CLI::App& app) {
                    "estimator file: name and options from there, in place of --estimator")
       ->excludes(estimator);
   command->add_option("--sigma", arguments->sigma_px, "noise standard deviation per coordinate, px")
-      ->check(CLI::Range(1e-9, 1000.0))
+      ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of the random samples")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command
       ->add_option("--set", arguments->overrides,

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/file_output.h"
 #include "experiments/validity_map.h"
 #include "experiments/validity_reference.h"
@@ -71,15 +72,15 @@ void AddMapCommand(CLI::App& app) {
       ->add_option("--trials", arguments->trials,
                    "trials per cell of the map; the reference takes a hundredth as many samples, with 100 "
                    "draws each")
-      ->check(CLI::Range(1, 100'000'000))
+      ->transform(WholeNumberIn(1, 100'000'000))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of all random streams")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")
-      ->check(CLI::Range(0, 1024));
+      ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { Map(*arguments); });
 }
 

@@ -3,6 +3,8 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/file_output.h"
 #include "experiments/real_data/match_file.h"
 #include "experiments/real_data/match_images.h"
 
@@ -15,18 +17,27 @@ void AddMatchCommand(CLI::App& app) {
   auto out = std::make_shared<std::string>();
   command->add_option("image1", arguments->image1, "first image")->required();
   command->add_option("image2", arguments->image2, "second image")->required();
-  command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, px")->expected(4)->required();
+  command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, px")
+      ->transform(NumberIn())
+      ->expected(4)
+      ->required();
   command->add_option("--K2", arguments->K2, "fx fy cx cy of the second camera; default: as the first")
+      ->transform(NumberIn())
       ->expected(4);
   command
       ->add_option("--ratio", arguments->max_ratio, "keep a match if nearest / second nearest is below this")
-      ->check(CLI::Range(0.01, 1.0))
+      ->transform(NumberIn({0.01, 1.0}))
       ->capture_default_str();
   command->add_option("-o,--out", *out, "match file to write")->required();
   command->callback([arguments, out] {
+    CheckIsNoInput(*out, {arguments->image1, arguments->image2});
     const MatchFile file = MatchImages(*arguments);
     WriteMatchFile(file, *out);
-    fmt::print(stderr, "{} matches -> {}; next: rcme estimate {}\n", file.matches.size(), *out, *out);
+    if (file.matches.empty()) {
+      fmt::print(stderr, "no match was kept -> {}\n", *out);
+    } else {
+      fmt::print(stderr, "{} matches -> {}; next: rcme estimate {}\n", file.matches.size(), *out, *out);
+    }
   });
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/result_store.h"
 #include "experiments/trial_fields.h"
@@ -101,8 +102,11 @@ void AddReplayCommand(CLI::App& app) {
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command
       ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
+      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
       ->required();
-  command->add_option("--trial", arguments->trial, "trial, from 0")->required();
+  command->add_option("--trial", arguments->trial, "trial, from 0")
+      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
+      ->required();
   command->callback([arguments] { Replay(arguments->run, arguments->condition, arguments->trial); });
 }
 

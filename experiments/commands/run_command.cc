@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/progress.h"
 #include "experiments/run_until.h"
@@ -61,6 +62,9 @@ void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, Result
     spent += cell.num_trials;
     num_open += !cell.is_reached;
   }
+  store->NoteUntilOptions(fmt::format("--until {} --until-event {} --max-trials {}", arguments.until,
+                                      arguments.until_event, arguments.max_trials),
+                          spent);
   fmt::print("Trials spent until {} of {} (anytime-valid 95 %): {}\n\n{}", arguments.until,
              arguments.until_event, spent, SpentAsTable(plan, cells));
   if (num_open > 0) {
@@ -70,7 +74,6 @@ void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, Result
 }
 
 void Run(const RunArguments& arguments) {
-  if (!arguments.until.empty()) PrecisionTarget::Parse(arguments.until);  // before a file is made
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
   ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
   fmt::print(stderr, "{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name,
@@ -93,13 +96,21 @@ void AddRunCommand(CLI::App& app) {
                    "result file (SQLite); a run that was cut off is resumed, another study is refused")
       ->required();
   AddStudyOptions(command, &arguments->changes);
-  command->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{2'000'000'000}));
+  CLI::Option* trials =
+      command
+          ->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
+          ->transform(WholeNumberIn(1, 2'000'000'000));
   CLI::Option* until =
-      command->add_option("--until", arguments->until,
-                          "add trials to each condition until every estimator's 95 % interval is narrow: "
-                          "ci=0.002 (half width) or rel=0.1 "
-                          "(half width over rate); the intervals hold although the run looks and stops");
+      command
+          ->add_option("--until", arguments->until,
+                       "add trials to each condition until every estimator's 95 % interval is narrow: "
+                       "ci=0.002 (half width) or rel=0.1 "
+                       "(half width over rate); the intervals hold although the run looks and stops")
+          ->check([](const std::string& text) {
+            PrecisionTarget::Parse(text);  // throws
+            return std::string();
+          })
+          ->excludes(trials);
   command
       ->add_option("--until-event", arguments->until_event,
                    "whose rate: failure, refusal or failure_or_refusal")
@@ -107,13 +118,13 @@ void AddRunCommand(CLI::App& app) {
       ->capture_default_str()
       ->needs(until);
   command->add_option("--max-trials", arguments->max_trials, "most trials per condition of --until")
-      ->check(CLI::Range(std::int64_t{100}, std::int64_t{2'000'000'000}))
+      ->transform(WholeNumberIn(100, 2'000'000'000))
       ->capture_default_str()
       ->needs(until);
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")
-      ->check(CLI::Range(0, 1024));
+      ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { Run(*arguments); });
 }
 

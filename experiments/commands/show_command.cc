@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
@@ -134,8 +135,11 @@ void AddShowCommand(CLI::App& app) {
       ->required();
   command
       ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
+      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
       ->required();
-  command->add_option("--trial", arguments->trial, "trial, from 0")->required();
+  command->add_option("--trial", arguments->trial, "trial, from 0")
+      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
+      ->required();
   command->add_option("--estimators", arguments->estimators, "labels a,b,...: one row of images each")
       ->delimiter(',')
       ->allow_extra_args(false);

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
+#include "experiments/commands/number_option.h"
 #include "experiments/estimator_file.h"
 #include "experiments/study_file.h"
 #include "parameters/input_error.h"
@@ -37,8 +37,7 @@ void AddStudyOptions(CLI::App* command, StudyChanges* changes) {
                    "estimator file (YAML: name, label, options), repeatable: one more estimator on the same "
                    "trials; --set reaches it by its label")
       ->allow_extra_args(false);
-  command->add_option("--seed", changes->seed, "seed of all random streams")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+  command->add_option("--seed", changes->seed, "seed of all random streams")->transform(WholeNumberIn(0));
 }
 
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
@@ -53,14 +52,6 @@ Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
   }
   if (changes.seed >= 0) study.seed = static_cast<std::uint64_t>(changes.seed);
   return study;
-}
-
-StudyPlan PlanOf(const Study& study, const std::string& path) {
-  try {
-    return MakePlan(study);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", path, error.what()));
-  }
 }
 
 const Condition& ChosenCondition(const StudyPlan& plan, std::uint32_t index) {

@@ -25,9 +25,6 @@ void AddStudyOptions(CLI::App* command, StudyChanges* changes);
 // InputError (study_file.h, estimator_file.h), also for a label that the study has already.
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
 
-// The plan of a study; what is wrong with the study as a whole names its file.
-StudyPlan PlanOf(const Study& study, const std::string& path);
-
 // The condition that --condition names. Throws InputError that says which there are.
 const Condition& ChosenCondition(const StudyPlan& plan, std::uint32_t index);
 

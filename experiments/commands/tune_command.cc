@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/commands/tuning_source.h"
 #include "experiments/draw_figures.h"
 #include "experiments/estimator_file.h"
@@ -29,14 +30,20 @@ std::vector<EntropyRoc> MeasureRocs(const StudyPlan& plan, int num_threads) {
 void WriteFigures(const std::string& folder, const std::string& json) {
   const std::string path = (std::filesystem::path(folder) / "tune.json").string();
   WriteFileWhole(path, json);
+  fmt::print(stderr, "drawing the figures in {}\n", folder);
   DrawFigures("tune.py", {path, "--out", (std::filesystem::path(folder) / "tune").string()});
 }
 
-void WriteEstimator(const std::string& path, const StudyPlan& plan, const SettingPlan& settings,
+void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,
                     const TuneResult& result) {
+  const std::string& path = arguments.out;
   EstimatorSpec spec = settings.settings[*result.choice.setting].spec;
   spec.label += "_tuned";
-  WriteFileWhole(path, EstimatorFileText(spec, ProvenanceOf(plan, result)));
+  auto provenance = ProvenanceOf(plan, result);
+  if (!arguments.changes.overrides.empty()) {
+    provenance.emplace_back("changed", fmt::format("{}", fmt::join(arguments.changes.overrides, ", ")));
+  }
+  WriteFileWhole(path, EstimatorFileText(spec, provenance));
   // With its own seed the study would run the trials that the estimator was tuned on.
   fmt::print(stderr, "{}: estimator {}; next: rcme run STUDY --seed {} --add-estimator {} --out run.sqlite\n",
              path, spec.label, plan.study.seed + 1, path);
@@ -51,16 +58,19 @@ void RunTune(const TuneArguments& arguments) {
     return;
   }
   if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
+  CheckIsNoInput(arguments.out, {arguments.study});
   CheckCanBeWritten(arguments.out);  // minutes before it is
   if (!arguments.figures.empty()) MakeResultFolder(arguments.figures);
-  const TuneResult result = Tune(plan, settings, arguments.threads);
-  const std::vector<EntropyRoc> rocs = MeasureRocs(plan, arguments.threads);
+  const Unreached unreached = arguments.figures.empty() ? Unreached::kStop : Unreached::kVerifyAll;
+  const TuneResult result = Tune(plan, settings, unreached, arguments.threads);
+  std::vector<EntropyRoc> rocs;
+  if (!result.verified.empty()) rocs = MeasureRocs(plan, arguments.threads);
   fmt::print("{}", TuneAsTable(plan, result, rocs));
+  if (result.choice.setting) WriteEstimator(arguments, plan, settings, result);
   if (!arguments.figures.empty()) {
     WriteFigures(arguments.figures, TuneAsJson(plan, settings, result, rocs));
   }
   if (!result.choice.setting) throw InputError(fmt::format("{}: {}", arguments.study, result.choice.why));
-  WriteEstimator(arguments.out, plan, settings, result);
 }
 
 }  // namespace
@@ -70,9 +80,8 @@ void AddTuneCommand(CLI::App& app) {
       "tune", "Find an estimator's thresholds that meet a target, with a guarantee, and verify them");
   command->footer(
       "The study's block `tune` names the estimator, the options and their levels, and the target:\n"
-      "  false_refusal  of the trials that would be good without the quality test, at most at_most are "
-      "refused;\n"
-      "                 then the least failure\n"
+      "  false_refusal  of the trials that would be good if nothing were refused, at most at_most are\n"
+      "                 refused; then the least failure\n"
       "  failure        at most at_most fail and at most max_refusal are refused; then the least refusal\n"
       "  risk           cost_of_failure * failure + cost_of_refusal * refusal is least\n"
       "Trials to explore propose settings, trials to calibrate certify one by exact binomial tests in a "
@@ -103,7 +112,7 @@ void AddTuneCommand(CLI::App& app) {
   command
       ->add_option("--repeat", arguments->repeat,
                    "tune so many times with fresh seeds, and count how often the target is violated")
-      ->check(CLI::Range(1, 100'000))
+      ->transform(WholeNumberIn(1, 100'000))
       ->excludes(out)
       ->excludes(figures);
   command->callback([arguments] { RunTune(*arguments); });

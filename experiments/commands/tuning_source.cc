@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/commands/number_option.h"
 #include "experiments/study_file.h"
 #include "experiments/tuning/tuning_file.h"
 #include "parameters/input_error.h"
@@ -20,7 +21,7 @@ void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")
-      ->check(CLI::Range(0, 1024));
+      ->transform(WholeNumberIn(0, 1024));
 }
 
 StudyPlan TuningPlanOf(const TuningArguments& arguments) {

@@ -4,13 +4,16 @@
 #include <zlib.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <ranges>
 #include <string_view>
 
+#include "estimator/problem_check.h"
 #include "experiments/file_output.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
@@ -19,6 +22,8 @@ namespace rcme {
 namespace {
 
 constexpr size_t kMaxBytes = size_t{1} << 30;  // of text, unpacked
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
 
 // The whole file as text, unpacked if it is gzip.
 std::string ReadText(const std::string& path) {
@@ -130,18 +135,20 @@ std::optional<RelativePose> TruePoseFrom(const Header& header) {
   return pose;
 }
 
-Correspondence MatchFrom(std::string_view line, const std::string& path, int line_number) {
-  const std::vector<std::string> fields = Split(line, ',');
-  if (fields.size() < 4) {
+bool AreColumnNames(const std::vector<std::string>& fields) {
+  return std::ranges::find_first_of(fields, kColumns) != fields.end();
+}
+
+Correspondence MatchFrom(const std::vector<std::string>& fields, const std::string& path, int line_number) {
+  if (fields.size() < kColumns.size()) {
     throw InputError(
         fmt::format("{}:{}: {} columns; x1,y1,x2,y2 are needed", path, line_number, fields.size()));
   }
   std::array<double, 4> x{};
-  constexpr std::array<const char*, 4> kNames = {"x1", "y1", "x2", "y2"};
-  for (size_t i = 0; i < 4; ++i) {
-    if (ParseReal(fields[i], &x[i])) continue;
-    throw InputError(
-        fmt::format("{}:{}: {}: '{}' is not a finite number", path, line_number, kNames[i], fields[i]));
+  for (size_t i = 0; i < x.size(); ++i) {
+    if (ParseReal(fields[i], &x[i]) && std::abs(x[i]) <= kMaxCoordinatePx) continue;
+    throw InputError(fmt::format("{}:{}: {}: '{}' is not a finite number in [{}, {}] px", path, line_number,
+                                 kColumns[i], fields[i], -kMaxCoordinatePx, kMaxCoordinatePx));
   }
   return {{x[0], x[1]}, {x[2], x[3]}};
 }
@@ -154,15 +161,23 @@ MatchFile ReadMatchFile(const std::string& path) {
   file.path = path;
   Header header(path);
   std::string_view rest = text;
+  if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
   for (int line_number = 1; !rest.empty(); ++line_number) {
     const size_t end = std::min(rest.find('\n'), rest.size());
     const std::string_view line = Trim(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (line.empty() || line.starts_with("x1,")) continue;
+    if (line.empty()) continue;
     if (line.front() == '#') {
       header.AddLine(line, line_number);
-    } else {
-      file.matches.push_back(MatchFrom(line, path, line_number));
+      continue;
+    }
+    const std::vector<std::string> fields = Split(line, ',');
+    if (!AreColumnNames(fields)) {
+      file.matches.push_back(MatchFrom(fields, path, line_number));
+    } else if (!file.matches.empty() || !std::ranges::equal(kColumns, fields | std::views::take(4))) {
+      throw InputError(fmt::format(
+          "{}:{}: column names '{}' are not allowed; give {}[,...], before the first match, or none", path,
+          line_number, line, fmt::join(kColumns, ",")));
     }
   }
   file.camera1 = CameraFrom(header, "size1", "K1_fx_fy_cx_cy");

@@ -16,8 +16,9 @@ namespace rcme {
 //   # K2_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
 //   # R_rowmajor: ... (9)                    optional, with t_unit: the true motion X2 = R X1 + t
 //   # t_unit: ... (3)
-//   # scene: name                            optional, groups pairs in a study; any further "# key: value" is
-//   skipped x1,y1,x2,y2[,...]                        column names, optional
+//   # scene: name                            optional, groups pairs in a study
+//   # key: value                             any further one is skipped
+//   x1,y1,x2,y2[,...]                        column names, optional, before the first match
 //   14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre of the top-left pixel
 struct MatchFile {
   std::string path;
@@ -28,7 +29,7 @@ struct MatchFile {
 };
 
 // Throws InputError that names the file, the line and what is wrong: missing or truncated file, missing key,
-// a K that is not invertible, a rotation that is none, a number that is not finite.
+// a K that is not invertible, a rotation that is none, columns in another order, a coordinate that is none.
 MatchFile ReadMatchFile(const std::string& path);
 
 // Writes the same format, plain. Throws InputError if the path cannot be written; never leaves half a file.

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   if (!fs::is_directory(folder)) {
     throw InputError(
-        fmt::format("folder: '{}' is not a folder; give one with *.csv or *.csv.gz match files", folder));
+        fmt::format("folder: '{}' is not a folder, seen from {}; give one with *.csv or *.csv.gz match files",
+                    folder, fs::current_path().string()));
   }
   std::vector<fs::path> paths;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "stats/intervals.h"
 #include "stats/risk_control.h"
@@ -34,46 +36,60 @@ double PValue(const Tuning& tuning, const SettingCount& count) {
   return HasRefusalLimit(tuning) ? std::max(p, ExcessPValue(count.Refusal(), tuning.max_refusal)) : p;
 }
 
-// No other setting is better in one of the two and as good in the other.
-std::vector<size_t> ParetoFront(const Tuning& tuning, const std::vector<SettingCount>& counts) {
+// The settings worth testing: no other has a lower rate of what the target limits and as good an objective.
+// Those that tie in that rate all stay: the exploration may be too small to tell a safe one from a lucky one.
+std::vector<size_t> WeakParetoFront(const Tuning& tuning, const std::vector<SettingCount>& counts) {
   std::vector<size_t> order(counts.size()), front;
   std::iota(order.begin(), order.end(), 0);
   const auto limited = [&](size_t s) { return RateOf(TargetedCount(tuning, counts[s])); };
-  const auto objective = [&](size_t s) { return Objective(tuning, counts[s]); };
-  std::ranges::sort(order, {}, [&](size_t s) { return std::tuple(limited(s), objective(s), s); });
-  for (const size_t s : order) {
-    const bool is_tie =
-        !front.empty() && limited(s) == limited(front.back()) && objective(s) == objective(front.back());
-    if (front.empty() || is_tie || objective(s) < objective(front.back())) front.push_back(s);
+  std::ranges::stable_sort(order, {}, limited);
+  double best = std::numeric_limits<double>::infinity(), best_below = best;  // objective; of lower rates
+  for (size_t i = 0; i < order.size(); ++i) {
+    if (i > 0 && limited(order[i]) > limited(order[i - 1])) best_below = best;
+    const double objective = Objective(tuning, counts[order[i]]);
+    if (objective < best_below) front.push_back(order[i]);
+    best = std::min(best, objective);
   }
   return front;
 }
 
+// In the order of how surely they meet the target; of equals first the one with most of what is to be least,
+// which is the more careful one.
 std::vector<size_t> PathOf(const Tuning& tuning, const std::vector<SettingCount>& explored) {
-  std::vector<size_t> path = ParetoFront(tuning, explored);
-  std::ranges::stable_sort(path, {}, [&](size_t s) { return PValue(tuning, explored[s]); });
-  return path;
+  std::vector<std::tuple<double, double, size_t>> path;
+  for (const size_t s : WeakParetoFront(tuning, explored)) {
+    path.emplace_back(PValue(tuning, explored[s]), -Objective(tuning, explored[s]), s);
+  }
+  std::ranges::sort(path);
+  std::vector<size_t> settings;
+  for (const auto& [p_value, objective, s] : path) settings.push_back(s);
+  return settings;
 }
 
-// Of the settings that keep to the limit on refusals in the exploration, the one nearest to the target; of
-// all, if none does.
-size_t NearestSetting(const Tuning& tuning, const std::vector<SettingCount>& explored) {
+// The setting that is nearest to being certified; where all are hopeless, nearest to the target's limits.
+size_t NearestSetting(const Tuning& tuning, const std::vector<SettingCount>& calibrated) {
   const auto key = [&](size_t s) {
+    const SettingCount& count = calibrated[s];
     const double excess =
-        HasRefusalLimit(tuning) ? std::max(0.0, RateOf(explored[s].Refusal()) - tuning.max_refusal) : 0.0;
-    return std::tuple(excess, RateOf(TargetedCount(tuning, explored[s])), Objective(tuning, explored[s]));
+        HasRefusalLimit(tuning) ? std::max(0.0, RateOf(count.Refusal()) - tuning.max_refusal) : 0.0;
+    return std::tuple(PValue(tuning, count), excess, RateOf(TargetedCount(tuning, count)),
+                      Objective(tuning, count));
   };
   size_t nearest = 0;
-  for (size_t s = 1; s < explored.size(); ++s) {
+  for (size_t s = 1; s < calibrated.size(); ++s) {
     if (key(s) < key(nearest)) nearest = s;
   }
   return nearest;
 }
 
+std::int64_t DivideRoundingUp(std::int64_t numerator, std::int64_t denominator) {
+  return (numerator + denominator - 1) / denominator;
+}
+
 // What stands between a count and its limit: nothing, trials, or the rate itself.
-std::string Obstacle(const char* what, const ErrorCount& count, double at_most, double delta) {
-  if (ExcessPValue(count, at_most) <= delta) return {};
-  if (count.n == 0) return fmt::format("{}: no trial is good without the quality test", what);
+std::string Obstacle(const Tuning& tuning, const char* what, const ErrorCount& count, double at_most) {
+  if (ExcessPValue(count, at_most) <= tuning.delta) return {};
+  if (count.n == 0) return fmt::format("{}: no trial would be good if nothing were refused", what);
   const std::string figure = fmt::format("{} {}", what, RateInWords(count));
   if (ExactBinomialInterval(count.errors, count.n).lower > at_most) {
     return figure + fmt::format(": {:.3g} % is out of reach", 100.0 * at_most);
@@ -81,23 +97,31 @@ std::string Obstacle(const char* what, const ErrorCount& count, double at_most, 
   if (RateOf(count) >= at_most) {
     return figure + fmt::format(", which is not below {:.3g} %", 100.0 * at_most);
   }
-  return figure +
-         fmt::format(", too few trials: if that is the rate, {} certify {:.3g} % with probability {}",
-                     TrialsToCertify(RateOf(count), at_most, delta, kPower), 100.0 * at_most, kPower);
+  const std::int64_t needed = TrialsToCertify(RateOf(count), at_most, tuning.delta, kPower);
+  return figure + fmt::format(
+                      ", too few trials: if that is the rate, {} certify {:.3g} % with probability {}: "
+                      "calibrate: {} instead of {}",
+                      needed, 100.0 * at_most, kPower, DivideRoundingUp(needed * tuning.calibrate, count.n),
+                      tuning.calibrate);
 }
 
 std::string WhyNone(const Tuning& tuning, const std::vector<std::string>& settings,
-                    const std::vector<SettingCount>& explored, const std::vector<SettingCount>& calibrated) {
-  const size_t nearest = NearestSetting(tuning, explored);
+                    const std::vector<SettingCount>& calibrated) {
+  const size_t nearest = NearestSetting(tuning, calibrated);
   const bool is_failure = tuning.target == TuneTarget::kFailure;
-  std::string why = Obstacle(is_failure ? "failure" : "false refusal",
-                             TargetedCount(tuning, calibrated[nearest]), tuning.at_most, tuning.delta);
-  const std::string refusal = HasRefusalLimit(tuning) ? Obstacle("refusal", calibrated[nearest].Refusal(),
-                                                                 tuning.max_refusal, tuning.delta)
-                                                      : "";
+  std::string why = Obstacle(tuning, is_failure ? "failure" : "false refusal",
+                             TargetedCount(tuning, calibrated[nearest]), tuning.at_most);
+  const std::string refusal =
+      HasRefusalLimit(tuning) ? Obstacle(tuning, "refusal", calibrated[nearest].Refusal(), tuning.max_refusal)
+                              : "";
   if (!why.empty() && !refusal.empty()) why += "; ";
   why += refusal;
-  if (why.empty()) why = "it is certified, but a setting tested before it was not; more trials would tell";
+  if (why.empty()) {
+    why = fmt::format(
+        "it could be certified, but one that seemed surer was not; explore more than {} trials of "
+        "each condition, so that it comes first",
+        tuning.explore);
+  }
   return fmt::format("nearest is {}: {}; no setting is certified to meet the target ({})", settings[nearest],
                      why, TargetInWords(tuning));
 }
@@ -146,11 +170,6 @@ TargetVerdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
   return is_violated ? TargetVerdict::kViolated : TargetVerdict::kUndecided;
 }
 
-bool ViolatesTarget(const Tuning& tuning, const SettingCount& count) {
-  return RateOf(TargetedCount(tuning, count)) > tuning.at_most ||
-         (HasRefusalLimit(tuning) && RateOf(count.Refusal()) > tuning.max_refusal);
-}
-
 double Risk(const Tuning& tuning, const SettingCount& count) {
   return tuning.cost_of_failure * RateOf(count.Failure()) + tuning.cost_of_refusal * RateOf(count.Refusal());
 }
@@ -164,7 +183,7 @@ Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& setti
   for (const size_t s : choice.path) p_values.push_back(PValue(tuning, calibrated[s]));
   choice.num_certified = CountCertified(p_values, tuning.delta);
   if (choice.num_certified == 0) {
-    choice.why = WhyNone(tuning, settings, explored, calibrated);
+    choice.why = WhyNone(tuning, settings, calibrated);
     return choice;
   }
   const auto certified = choice.path.begin() + static_cast<std::ptrdiff_t>(choice.num_certified);
@@ -174,24 +193,26 @@ Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& setti
   return choice;
 }
 
-std::string WhyTooFewTrials(const Tuning& tuning, std::int64_t num_trials) {
+std::string WhyTooFewTrials(const Tuning& tuning, size_t num_conditions) {
   if (tuning.target == TuneTarget::kRisk) return {};
   const double strictest =
       HasRefusalLimit(tuning) ? std::min(tuning.at_most, tuning.max_refusal) : tuning.at_most;
+  const auto conditions = static_cast<std::int64_t>(num_conditions);
+  const std::int64_t num_trials = tuning.calibrate * conditions;
   const std::int64_t needed = FewestCertifyingTrials(strictest, tuning.delta);
   if (num_trials >= needed) return {};
   return fmt::format(
-      "{} trials of calibration cannot certify {:.3g} % at delta {}, whatever they show: {} would do if none "
-      "of "
-      "them erred",
-      num_trials, 100.0 * strictest, tuning.delta, needed);
+      "calibrate: {} in each of {} conditions cannot certify {:.3g} % at delta {}, whatever they show: {} "
+      "trials would do if none of them erred, calibrate: {}",
+      tuning.calibrate, conditions, 100.0 * strictest, tuning.delta, needed,
+      DivideRoundingUp(needed, conditions));
 }
 
 std::string TargetInWords(const Tuning& tuning) {
   switch (tuning.target) {
     case TuneTarget::kFalseRefusal:
       return fmt::format(
-          "at most {:.3g} % of the trials that would be good without the quality test are refused, except "
+          "at most {:.3g} % of the trials that would be good if nothing were refused are refused, except "
           "with "
           "probability {}; then the least failure",
           100.0 * tuning.at_most, tuning.delta);

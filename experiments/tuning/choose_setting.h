@@ -1,7 +1,7 @@
 // Which setting meets the target, from two sets of trials.
 //
 // The exploration proposes: the settings that no other beats in both what the target limits and what is to be
-// least (the Pareto front), in the order of how surely they meet the target. The calibration, on trials that
+// least (ties included), in the order of how surely they meet the target. The calibration, on trials that
 // played no part in that, certifies them one after the other (stats/risk_control.h) until the first that is
 // not; of the certified ones the best is chosen. Hence P(the chosen setting violates the target) <= delta,
 // whatever the exploration proposed.
@@ -38,9 +38,6 @@ enum class TargetVerdict { kHolds, kViolated, kUndecided };
 // limits below the limit, that of one above, or neither.
 TargetVerdict VerdictOf(const Tuning& tuning, const SettingCount& count);
 
-// Whether these rates are above the target's limits.
-bool ViolatesTarget(const Tuning& tuning, const SettingCount& count);
-
 // cost_of_failure * failure rate + cost_of_refusal * refusal rate.
 double Risk(const Tuning& tuning, const SettingCount& count);
 
@@ -48,8 +45,9 @@ double Risk(const Tuning& tuning, const SettingCount& count);
 Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& settings,
                      const std::vector<SettingCount>& explored, const std::vector<SettingCount>& calibrated);
 
-// Why `num_trials` of calibration are too few for the target, whatever they show; empty if they are not.
-std::string WhyTooFewTrials(const Tuning& tuning, std::int64_t num_trials);
+// Why the calibration of so many conditions has too few trials for the target, whatever they show, and how
+// many would do; empty if it has not.
+std::string WhyTooFewTrials(const Tuning& tuning, size_t num_conditions);
 
 // "at most 5 % of ..., except with probability 0.05", for people.
 std::string TargetInWords(const Tuning& tuning);

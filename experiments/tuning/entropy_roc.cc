@@ -43,8 +43,7 @@ Entropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, S
   Refinements refinements;
   const TrialRecord record = Score(estimator.Finish(data.problem, loop, &refinements), data, 0.0);
   if (record.status != MotionStatus::kOk) return entropies;
-  (HasFailed(record, bounds) ? entropies.bad_winner : entropies.good_winner) =
-      loop.winner->score.mean_entropy;
+  (HasFailed(record, bounds) ? entropies.bad_winner : entropies.good_winner) = record.mean_entropy;
   return entropies;
 }
 

@@ -24,7 +24,7 @@ class TrialDecisions {
     if (data_.weight != 1.0) throw InputError("tune: tilted_to: trials with weights cannot be tuned on");
   }
 
-  // How each setting of the group ends, and how it would without the quality test.
+  // How each setting of the group ends, and how it would without its limits.
   template <typename Visit>
   void ForEachSetting(const SettingPlan& plan, const TraceGroup& group, Visit visit) {
     refinements_.clear();
@@ -36,12 +36,11 @@ class TrialDecisions {
       trace_ = tracer->Trace(data_.problem, rng);
     }
     for (const size_t s : group.settings) {
-      const double least_share = plan.settings[s].spec.options.least_explained_share;
-      const Ending ending = EndingOf(*plan.estimators[s], least_share);
-      const MotionEstimator* without = plan.without_quality_test[s].get();
+      const Ending ending =
+          EndingOf(*plan.estimators[s], plan.settings[s].spec.options.least_explained_share);
+      const MotionEstimator* without = plan.without_limits[s].get();
       const auto known = decided_.find(without);
-      visit(s, ending,
-            known == decided_.end() ? decided_[without] = EndingOf(*without, least_share) : known->second);
+      visit(s, ending, known == decided_.end() ? decided_[without] = EndingOf(*without, 0.0) : known->second);
     }
   }
 
@@ -82,8 +81,8 @@ class TrialDecisions {
 // Counters of one condition and setting that several threads add to.
 struct SharedCount {
   std::array<std::atomic<std::int64_t>, 4> of{};  // failures, refusals, good, false refusals
-  void Add(Ending ending, Ending without_quality_test) {
-    const bool is_refused = ending == Ending::kRefused, is_good = without_quality_test == Ending::kGood;
+  void Add(Ending ending, Ending without_limits) {
+    const bool is_refused = ending == Ending::kRefused, is_good = without_limits == Ending::kGood;
     of[0] += ending == Ending::kFailed;
     of[1] += is_refused;
     of[2] += is_good;

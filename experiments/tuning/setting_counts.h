@@ -11,8 +11,8 @@
 
 namespace rcme {
 
-// Over some trials. A trial is good where the setting without its quality test returns a motion within the
-// bounds; refused nevertheless, it is a false refusal.
+// Over some trials. A trial is good where the setting without its limits (SettingPlan) returns a motion
+// within the bounds; refused nevertheless, it is a false refusal.
 struct SettingCount {
   std::int64_t n = 0, failures = 0, refusals = 0, good = 0, false_refusals = 0;
 
@@ -20,6 +20,7 @@ struct SettingCount {
   ErrorCount Refusal() const { return {refusals, n}; }
   ErrorCount FalseRefusal() const { return {false_refusals, good}; }
   SettingCount& operator+=(const SettingCount& other);
+  bool operator==(const SettingCount&) const = default;
 };
 
 // [condition][setting].

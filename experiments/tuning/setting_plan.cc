@@ -6,7 +6,7 @@
 #include <map>
 
 #include "estimator/estimator_registry.h"
-#include "parameters/input_error.h"
+#include "experiments/tuning/tuning_file.h"
 
 namespace rcme {
 namespace {
@@ -35,17 +35,24 @@ RansacOptions TraceOptions(const SettingPlan& plan, const std::vector<size_t>& s
   return options;
 }
 
+// Without what makes an estimator refuse a motion it has: mu, a given omega_p, the share to be explained.
+RansacOptions WithoutLimits(RansacOptions options) {
+  options.mu = kNoQualityTest;
+  options.inlier_ratio = RansacOptions().inlier_ratio;  // inferred: the largest inlier set is large enough
+  options.least_explained_share = 0.0;
+  return options;
+}
+
 void AddEstimators(const EstimatorEntry& entry, SettingPlan* plan) {
   std::map<std::string, std::shared_ptr<const MotionEstimator>> shared;
   for (const TunedSetting& setting : plan->settings) {
     plan->estimators.push_back(entry.make(setting.spec.options));
-    RansacOptions options = setting.spec.options;
-    options.mu = kNoQualityTest;
+    RansacOptions options = WithoutLimits(setting.spec.options);
     std::string key;
     for (const Parameter& parameter : Parameters(options)) key += parameter.Value() + ' ';
     std::shared_ptr<const MotionEstimator>& estimator = shared[key];
     if (!estimator) estimator = entry.make(options);
-    plan->without_quality_test.push_back(estimator);
+    plan->without_limits.push_back(estimator);
   }
 }
 
@@ -62,18 +69,8 @@ void AddGroups(const EstimatorEntry& entry, SettingPlan* plan) {
 
 }  // namespace
 
-const EstimatorSpec& TunedEstimator(const Study& study, const Tuning& tuning) {
-  std::vector<std::string> labels;
-  for (const EstimatorSpec& spec : study.estimators) {
-    if (spec.label == tuning.estimator) return spec;
-    labels.push_back(spec.label);
-  }
-  throw InputError(fmt::format("tune: estimator: '{}' is not in the study; its labels: {}", tuning.estimator,
-                               fmt::join(labels, ", ")));
-}
-
 SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning) {
-  const EstimatorSpec& base = TunedEstimator(study, tuning);
+  const EstimatorSpec& base = TunedEstimator(tuning, study.estimators);
   SettingPlan plan;
   for (size_t s = 0; s < NumSettings(tuning); ++s) {
     TunedSetting setting{LevelsOfSetting(tuning, s), base};

@@ -27,16 +27,13 @@ struct TraceGroup {
 struct SettingPlan {
   std::vector<TunedSetting> settings;                              // the first option slowest
   std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // of each setting
-  // The same without the quality test, mu at its upper end: whatever it refuses is no matter of quality.
-  // Settings that differ in mu alone share one.
-  std::vector<std::shared_ptr<const MotionEstimator>> without_quality_test;
+  // The same without its limits: no quality test, any size of inlier set, no share to be explained. Settings
+  // that differ in limits alone share one.
+  std::vector<std::shared_ptr<const MotionEstimator>> without_limits;
   std::vector<TraceGroup> groups;
 };
 
 // The tuning is one that was read for the study (tuning_file.h).
 SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning);
-
-// The estimator of the study that is tuned. Throws InputError that lists the labels.
-const EstimatorSpec& TunedEstimator(const Study& study, const Tuning& tuning);
 
 }  // namespace rcme

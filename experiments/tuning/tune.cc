@@ -52,12 +52,8 @@ TuningTrials::TuningTrials(const Tuning& tuning) {
 }
 
 void CheckTrialsSuffice(const Tuning& tuning, size_t num_conditions) {
-  const std::string why =
-      WhyTooFewTrials(tuning, tuning.calibrate * static_cast<std::int64_t>(num_conditions));
-  if (!why.empty()) {
-    throw InputError(fmt::format("tune: calibrate: {} per condition, {} conditions: {}", tuning.calibrate,
-                                 num_conditions, why));
-  }
+  const std::string why = WhyTooFewTrials(tuning, num_conditions);
+  if (!why.empty()) throw InputError("tune: " + why);
 }
 
 std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan& settings) {
@@ -72,7 +68,7 @@ std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan
   return names;
 }
 
-TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_threads) {
+TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached, int num_threads) {
   const Tuning& tuning = *plan.study.tuning;
   CheckTrialsSuffice(tuning, plan.conditions.size());
   const TuningTrials trials(tuning);
@@ -83,6 +79,7 @@ TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_thre
   result.explored = CountAll(plan, settings, trials.explore, num_threads, &progress);
   result.calibrated = CountAll(plan, settings, trials.calibrate, num_threads, &progress);
   result.choice = ChooseSetting(tuning, result.settings, result.explored, result.calibrated);
+  if (!result.choice.setting && unreached == Unreached::kStop) return result;
   result.verified = CountAll(plan, settings, trials.verify, num_threads, &progress);
   if (!result.choice.setting) return result;
   const size_t tuned = *result.choice.setting;
@@ -117,7 +114,9 @@ Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int
       continue;
     }
     ++repetitions.num_chosen[*choice.setting];
-    repetitions.num_violations += ViolatesTarget(tuning, repetitions.reference[*choice.setting]);
+    const TargetVerdict verdict = VerdictOf(tuning, repetitions.reference[*choice.setting]);
+    repetitions.num_violated += verdict == TargetVerdict::kViolated;
+    repetitions.num_undecided += verdict == TargetVerdict::kUndecided;
   }
   return repetitions;
 }

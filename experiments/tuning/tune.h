@@ -22,9 +22,12 @@ struct TuneResult {
   std::vector<VerifiedEstimator> estimators;
 };
 
+// What to do where no setting is certified: stop, `verified` empty, or measure all of them nevertheless.
+enum class Unreached { kStop, kVerifyAll };
+
 // The plan is that of the study, whose tune block there is. Throws InputError: CountOutcomes', or too few
 // trials for the target.
-TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, int num_threads);
+TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached, int num_threads);
 
 // For people: "mu = 2, lambda = 0.5", one per setting.
 std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan& settings);
@@ -36,9 +39,9 @@ void CheckTrialsSuffice(const Tuning& tuning, size_t num_conditions);
 // A tuning repeated with fresh seeds: how often does what it chose violate the target?
 struct Repetitions {
   std::int64_t num_done = 0, num_without_choice = 0;
-  std::int64_t num_violations = 0;       // the chosen setting's rates in `reference` violate the target
-  std::vector<std::int64_t> num_chosen;  // per setting
-  std::vector<SettingCount> reference;   // per setting: many trials that no repetition saw
+  std::int64_t num_violated = 0, num_undecided = 0;  // verdicts of `reference` on what was chosen
+  std::vector<std::int64_t> num_chosen;              // per setting
+  std::vector<SettingCount> reference;               // per setting: many trials that no repetition saw
 };
 
 // Explores and calibrates with the seeds seed + 1, ..., seed + n; the reference are the study's trials for

@@ -23,6 +23,11 @@ double RateOf(const ErrorCount& count) {
   return static_cast<double>(count.errors) / static_cast<double>(count.n);
 }
 
+bool AllDecideAlike(const std::vector<SettingCount>& counts) {
+  return counts.size() > 1 &&
+         std::ranges::all_of(counts, [&](const SettingCount& count) { return count == counts.front(); });
+}
+
 std::string TrialsInWords(const StudyPlan& plan) {
   const Tuning& tuning = *plan.study.tuning;
   const auto c = static_cast<std::int64_t>(plan.conditions.size());
@@ -207,19 +212,24 @@ std::vector<size_t> ByTimesChosen(const Repetitions& repetitions) {
   return chosen;
 }
 
-// The first rows of `chosen`, and every setting that violates the target.
+const char* VerdictInWord(TargetVerdict verdict) {
+  if (verdict == TargetVerdict::kHolds) return "holds";
+  return verdict == TargetVerdict::kViolated ? "VIOLATED" : "undecided";
+}
+
+// The first rows of `chosen`, and every setting whose target is not known to hold.
 std::string ChosenAsTable(const Tuning& tuning, const SettingPlan& settings, const Repetitions& repetitions,
                           const std::vector<size_t>& chosen) {
   const std::vector<std::string> names = SettingsInWords(tuning, settings);
-  Rows rows = {{"chosen", "times", "failure", "refusal", "false refusal", "meets the target"}};
+  Rows rows = {{"chosen", "times", "failure", "refusal", "false refusal", "target"}};
   for (size_t i = 0; i < chosen.size(); ++i) {
     const size_t s = chosen[i];
     const SettingCount& count = repetitions.reference[s];
-    const bool violates = ViolatesTarget(tuning, count);
-    if (i >= kMaxChosenRows && !violates) continue;
+    const TargetVerdict verdict = VerdictOf(tuning, count);
+    if (i >= kMaxChosenRows && verdict == TargetVerdict::kHolds) continue;
     rows.push_back({names[s], fmt::format("{}", repetitions.num_chosen[s]), RateForTable(count.Failure()),
                     RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()),
-                    violates ? "no" : "yes"});
+                    VerdictInWord(verdict)});
   }
   return FormatColumns(rows);
 }
@@ -276,6 +286,9 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
       "Tango)\n\n{}",
       result.settings[*result.choice.setting], CertifiedInWords(tuning, result.choice),
       VerdictInWords(tuning, result), VerifiedAsTable(result), EstimatorsAsTable(result.estimators));
+  if (AllDecideAlike(result.verified)) {
+    text += "\nAll settings decided alike: the options that were tuned had no effect on these trials.\n";
+  }
   if (rocs.empty()) return text;
   return text +
          fmt::format("\nDoes psi tell good models from bad ones? (1: always, 0.5: chance; DeLong 95 %)\n\n{}",
@@ -286,19 +299,23 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
                                const Repetitions& repetitions) {
   const Tuning& tuning = *plan.study.tuning;
   const auto num_conditions = static_cast<std::int64_t>(plan.conditions.size());
-  const ErrorCount violations{repetitions.num_violations, repetitions.num_done};
+  const ErrorCount violated{repetitions.num_violated, repetitions.num_done};
+  const ErrorCount not_shown{violated.errors + repetitions.num_undecided, violated.n};
   const std::vector<size_t> chosen = ByTimesChosen(repetitions);
   std::string text = fmt::format(
       "{}: tuned {} times with fresh seeds ({} trials to explore, {} to calibrate each)\nTarget: {}\n"
-      "Violated: {} of {}: {}, promised at most {:.3g} %; without a choice: {}\n\n"
-      "What was chosen, on {} further trials\n\n{}",
+      "Violated: {} of {}: {}; violated or undecided: {}: {}; promised at most {:.3g} %; without a choice: "
+      "{}\n\n"
+      "What was chosen, on {} further trials (all 95 % intervals below the limits: holds)\n\n{}",
       plan.study.name, repetitions.num_done, tuning.explore * num_conditions,
-      tuning.calibrate * num_conditions, TargetInWords(tuning), violations.errors, violations.n,
-      RateForTable(violations), 100.0 * tuning.delta, repetitions.num_without_choice,
-      repetitions.reference.front().n, ChosenAsTable(tuning, settings, repetitions, chosen));
+      tuning.calibrate * num_conditions, TargetInWords(tuning), violated.errors, violated.n,
+      RateForTable(violated), not_shown.errors, RateForTable(not_shown), 100.0 * tuning.delta,
+      repetitions.num_without_choice, repetitions.reference.front().n,
+      ChosenAsTable(tuning, settings, repetitions, chosen));
   if (chosen.size() > kMaxChosenRows) {
     text += fmt::format(
-        "{} settings were chosen in all; shown are the {} most frequent, and all that violate the target\n",
+        "{} settings were chosen in all; shown are the {} most frequent, and all that are not shown to "
+        "hold\n",
         chosen.size(), kMaxChosenRows);
   }
   return text;
@@ -342,6 +359,9 @@ std::vector<std::pair<std::string, std::string>> ProvenanceOf(const StudyPlan& p
           {"estimator", tuning.estimator},
           {"tuned", result.settings[s]},
           {"target", TargetInWords(tuning)},
+          {"failure", fmt::format("rotation error above {} deg or direction error above {} deg",
+                                  plan.study.failure.max_rotation_error_deg,
+                                  plan.study.failure.max_direction_error_deg)},
           {"trials", TrialsInWords(plan)},
           {"as_tuned", rates(result.calibrated[s])},
           {"verified", rates(result.verified[s])},

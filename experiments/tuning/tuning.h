@@ -11,8 +11,8 @@
 namespace rcme {
 
 enum class TuneTarget {
-  kFalseRefusal,  // of the trials whose motion would be good without the quality test, at most so many are
-                  // refused; then the least failure
+  kFalseRefusal,  // of the trials whose motion would be good without the limits (SettingPlan), at most so
+                  // many are refused; then the least failure
   kFailure,       // at most so many trials fail; then the least refusal
   kRisk,          // cost_of_failure * failure + cost_of_refusal * refusal is least
 };

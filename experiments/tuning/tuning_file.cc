@@ -11,16 +11,6 @@
 namespace rcme {
 namespace {
 
-const EstimatorSpec& TunedEstimator(const std::string& label, const std::vector<EstimatorSpec>& estimators) {
-  std::vector<std::string> labels;
-  for (const EstimatorSpec& spec : estimators) {
-    if (spec.label == label) return spec;
-    labels.push_back(spec.label);
-  }
-  throw InputError(fmt::format("tune: estimator: '{}' is no label of the study; give one of: {}", label,
-                               fmt::join(labels, ", ")));
-}
-
 // How many decimal places a number has in its shortest form: 3 for 0.125.
 int DecimalPlaces(double value) {
   char text[32];
@@ -43,7 +33,7 @@ struct Steps {
       const std::string text = fmt::format("{:.{}f}", from + static_cast<double>(i) * step, places);
       double level = 0.0;
       if (!ParseReal(text, &level) || level > to) break;
-      levels.push_back(fmt::format("{}", level + 0.0));  // + 0.0: no -0
+      levels.push_back(fmt::format("{}", level));
     }
     return levels;
   }
@@ -131,6 +121,16 @@ std::vector<TunedOption> ReadOptions(const Place& place, const YAML::Node& node)
 
 }  // namespace
 
+const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators) {
+  std::vector<std::string> labels;
+  for (const EstimatorSpec& spec : estimators) {
+    if (spec.label == tuning.estimator) return spec;
+    labels.push_back(spec.label);
+  }
+  throw InputError(fmt::format("tune: estimator: '{}' is no label of the study; give one of: {}",
+                               tuning.estimator, fmt::join(labels, ", ")));
+}
+
 Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<EstimatorSpec>& estimators) {
   Tuning tuning;
   const std::vector<Parameter> parameters = Parameters(tuning);
@@ -148,22 +148,13 @@ Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<
   for (const char* key : {"estimator", "options"}) {
     if (!node[key]) place.Fail(node, fmt::format("tune: key '{}' is missing", key));
   }
-  place.At(node["estimator"], [&] { TunedEstimator(tuning.estimator, estimators); });
+  place.At(node["estimator"], [&] { TunedEstimator(tuning, estimators); });
   place.At(node["options"], [&] { CheckCombinations(tuning, estimators); });
   return tuning;
 }
 
-void WriteTuning(Tuning tuning, YAML::Emitter* out) {
-  *out << YAML::BeginMap;
-  for (const Parameter& p : Parameters(tuning)) *out << YAML::Key << p.name() << YAML::Value << p.Value();
-  *out << YAML::Key << "options" << YAML::Value << YAML::BeginMap;
-  for (const TunedOption& option : tuning.options)
-    *out << YAML::Key << option.name << YAML::Value << YAML::Flow << option.levels;
-  *out << YAML::EndMap << YAML::EndMap;
-}
-
 void CheckCombinations(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators) {
-  const EstimatorSpec& spec = TunedEstimator(tuning.estimator, estimators);
+  const EstimatorSpec& spec = TunedEstimator(tuning, estimators);
   const EstimatorEntry& entry = FindEstimator(spec.name);
   for (size_t i = 0; i < NumSettings(tuning); ++i) {
     const std::vector<std::string> levels = LevelsOfSetting(tuning, i);

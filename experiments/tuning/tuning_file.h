@@ -19,8 +19,8 @@ namespace rcme {
 // combination of them, is one that the estimator takes.
 Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<EstimatorSpec>& estimators);
 
-// The map of the block, levels written out as lists: ReadTuning gives the same tuning back.
-void WriteTuning(Tuning tuning, YAML::Emitter* out);
+// The estimator that is tuned. Throws InputError that lists the labels.
+const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators);
 
 // Throws InputError if two options of a combination contradict each other; names the combination.
 void CheckCombinations(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators);

@@ -71,7 +71,7 @@ TEST_F(BadInput, NumbersThatAreNone) {
                           {"m.csv:25: x2: '" + word + "' is not a finite number"}));
   }
   EXPECT_TRUE(IsRefused(Estimate("m.csv", MatchHeader() + MatchRows(20) + "1e308,1e308,1e308,1e308\n"),
-                        {"m.csv", "match 20", "not a finite pixel position"}));
+                        {"m.csv:25: x1: '1e308' is not a finite number in [-1000000, 1000000] px"}));
 }
 
 TEST_F(BadInput, SingularK) {
@@ -205,18 +205,91 @@ TEST_F(BadInput, CommandLine) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
+TEST_F(BadInput, NumbersOnTheCommandLine) {
+  const auto refuses = [](const std::vector<std::string>& arguments, const std::string& what) {
+    return IsRefused(RunRcme(arguments), {what});
+  };
+  const std::string whole = "' is not allowed; give a whole number in [0, ";
+  EXPECT_TRUE(refuses({"run", study_, "--out", out_, "--seed", "99999999999999999999"},
+                      "--seed: '99999999999999999999" + whole));
+  EXPECT_TRUE(refuses({"run", study_, "--out", out_, "--until", ""}, "--until: '' is not allowed; give ci="));
+  EXPECT_TRUE(refuses({"run", study_, "--out", out_, "--until", "ci=2"}, "--until: 'ci=2' is not allowed"));
+  EXPECT_TRUE(refuses({"run", study_, "--out", out_, "--until", "ci=0.1", "--max-trials", "99"},
+                      "--max-trials: '99' is not allowed; give a whole number in [100, 2000000000]"));
+  for (const std::string command : {"show", "replay"}) {
+    EXPECT_TRUE(refuses({command, study_, "--condition", "", "--trial", "0"}, "--condition: '" + whole));
+    EXPECT_TRUE(refuses({command, study_, "--condition", "-1", "--trial", "0"}, "--condition: '-1" + whole));
+    EXPECT_TRUE(refuses({command, study_, "--condition", "0", "--trial", ""}, "--trial: '" + whole));
+  }
+  EXPECT_TRUE(refuses({"estimate", study_, "--sigma", "0"},
+                      "--sigma: '0' is not allowed; give a number in [1e-09, 1000]"));
+  EXPECT_TRUE(refuses({"match", "1.png", "2.png", "--K1", "1", "1", "0", "0", "-o", out_, "--ratio", "nan"},
+                      "--ratio: 'nan' is not allowed; give a number in [0.01, 1]"));
+  EXPECT_TRUE(refuses({"match", "1.png", "2.png", "--K1", "1", "1", "inf", "0", "-o", out_},
+                      "--K1: 'inf' is not allowed; give a number"));
+  for (const std::string command : {"audit", "map"}) {
+    EXPECT_TRUE(refuses({command, "--out", out_, "--seed", "-1"}, "--seed: '-1" + whole));
+    EXPECT_TRUE(refuses({command, "--out", out_, "--threads", "1025"}, "--threads: '1025" + whole + "1024]"));
+  }
+  EXPECT_TRUE(refuses({"map", "--out", out_, "--trials", "0"}, "--trials: '0' is not allowed"));
+  EXPECT_TRUE(refuses({"tune", study_, "--threads", ""}, "--threads: '" + whole + "1024]"));
+  EXPECT_FALSE(std::filesystem::exists(out_));
+
+  ASSERT_EQ(Run({"--out", out_, "--seed", "010"}).exit_code, 0);
+  EXPECT_TRUE(IsRefused(Run({"--out", out_, "--seed", "8"}), {"'seed: 10' there, 'seed: 8' here"}));
+}
+
+TEST_F(BadInput, ImagesWithoutMatches) {
+  const std::string grey = "P5 64 64 255\n" + std::string(64 * 64, '\x80');
+  const std::string image = folder_.Write("grey.pgm", grey), out = folder_.Path("m.csv");
+  const ProgramResult result = RunRcme({"match", image, image, "--K1", "60", "60", "32", "32", "--out", out});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "no match was kept -> " + out + "\n");
+}
+
+TEST_F(BadInput, ComparisonsThatCannotBeMade) {
+  const auto compare = [&](const std::string& out, const std::string& yaml, const std::string& what) {
+    const std::string study = folder_.Write("compared.yaml", yaml);
+    EXPECT_EQ(RunRcme({"run", study, "--out", out, "--threads", "1"}).exit_code, 0);
+    return IsRefused(RunRcme({"compare", out}), {out + ": " + what});
+  };
+  std::string yaml = SmallStudyYaml();
+  EXPECT_TRUE(compare(folder_.Path("one.sqlite"), yaml.substr(0, yaml.rfind("  - {")),
+                      "study 'small' has one estimator, 'standard'; a comparison needs two"));
+  yaml.replace(yaml.find("sigma_px: 0.5"), 13, "sigma_px: 0.5, outlier_count: bernoulli, tilted_to: 0.4");
+  yaml.replace(yaml.find("[0.0, 0.3]"), 10, "[0.1, 0.3]");
+  EXPECT_TRUE(compare(folder_.Path("tilted.sqlite"), yaml, "trials are weighted (tilted_to)"));
+}
+
 TEST_F(BadInput, Set) {
   const auto refuses = [&](const std::string& text, const std::vector<std::string>& fragments) {
     return IsRefused(Run({"--out", out_, "--set", text}), fragments);
   };
   EXPECT_TRUE(refuses("garbage", {"--set", "'garbage'", "key=value"}));
   EXPECT_TRUE(refuses("=1", {"--set", "'=1'", "key=value"}));
-  EXPECT_TRUE(refuses("garbage=1", {"'garbage'", "known keys", "sigma_px"}));
+  EXPECT_TRUE(refuses("garbage=1", {"'garbage'", "known keys", "noise", "sigma_px"}));
+  EXPECT_TRUE(
+      refuses("scene=match_files", {"'num_matches'", "for scene match_files", "known keys: scene, folder"}));
+  EXPECT_TRUE(refuses("noise=", {"noise: ''", "give a name"}));
   EXPECT_TRUE(refuses("ours.garbage=1", {"'garbage'", "known keys", "num_iterations"}));
   EXPECT_TRUE(refuses("theirs.mu=1", {"theirs"}));
   EXPECT_TRUE(refuses("sigma_px=nan", {"sigma_px", "'nan'", "a number in"}));
   EXPECT_TRUE(refuses("outlier_ratio=2", {"outlier_ratio", "'2'", "a number in [0, 1]"}));
   EXPECT_FALSE(std::filesystem::exists(out_));
+}
+
+// An output onto what is read, or onto the results of a run, would destroy it.
+TEST_F(BadInput, OutputOntoAnInput) {
+  const std::string study = folder_.Write("study.yaml", SmallStudyYaml()), run = folder_.Path("run.sqlite");
+  ASSERT_EQ(RunRcme({"run", study, "--trials", "2", "--out", run}).exit_code, 0);
+  const std::string before = ReadBytes(run);
+  for (const char* command : {"summarize", "compare", "report"}) {
+    EXPECT_TRUE(IsRefused(RunRcme({command, run, "--out", run}), {run, "results of a run", "not replaced"}));
+  }
+  EXPECT_EQ(ReadBytes(run), before);
+  const std::string tuned = folder_.Write(
+      "tuned.yaml", SmallStudyYaml() + "tune: {estimator: ours, calibrate: 100, options: {mu: [5]}}\n");
+  EXPECT_TRUE(IsRefused(RunRcme({"tune", tuned, "--out", tuned}), {"--out", "is the input itself"}));
 }
 
 TEST_F(BadInput, TuneBlock) {

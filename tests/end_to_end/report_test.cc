@@ -99,6 +99,40 @@ TEST_F(Report, SaysBeforehandThatThePageCannotBeWritten) {
   EXPECT_THAT(full.err, HasSubstr("No space left"));
 }
 
+TEST_F(Report, TheRecipeGivesTheNumbersOfThePage) {
+  const auto page_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"run", study_, "--out", run_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(RunRcme(arguments).exit_code, 0);
+    EXPECT_EQ(RunRcme({"report", run_, "--out", page_}).exit_code, 0);
+    return ReadBytes(page_);
+  };
+  const std::string shorter = page_of({"--trials", "4"});
+  EXPECT_THAT(shorter, HasSubstr("12 of 12"));
+  EXPECT_THAT(shorter, HasSubstr("rcme run small.yaml --trials 6 --out small.sqlite"));
+  EXPECT_THAT(page_of({"--trials", "8"}), HasSubstr("rcme run small.yaml --trials 8 --out small.sqlite"));
+  const std::string until = "--until ci=0.3 --until-event refusal --max-trials 1000";
+  const std::string page = page_of({"--until", "ci=0.3", "--until-event", "refusal", "--max-trials", "1000"});
+  EXPECT_THAT(page, HasSubstr("rcme run small.yaml " + until + " --out small.sqlite"));
+  EXPECT_THAT(page, HasSubstr("200 of 200"));  // the first look of both conditions
+  EXPECT_THAT(RunRcme({"summarize", run_}).out, HasSubstr("200 of 200 trials done"));
+  const ProgramResult both = RunRcme({"run", study_, "--out", run_, "--until", "ci=0.3", "--trials", "8"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_THAT(both.err, HasSubstr("--trials excludes --until"));
+}
+
+TEST_F(Report, AnInfiniteBoundIsANumberOfThePage) {
+  const std::string run = folder_.Path("few.sqlite");
+  ASSERT_EQ(RunRcme({"run", study_, "--set", "num_matches=6", "--set", "outlier_ratio=0.5", "--out", run})
+                .exit_code,
+            0);
+  ASSERT_THAT(RunRcme({"summarize", run, "--format", "csv"}).out,
+              HasSubstr("crb_rotation_deg,mean,inf,,,,6,"));
+  const ProgramResult result = RunRcme({"report", run, "--out", page_});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(ReadBytes(page_), HasSubstr("<td>inf</td>"));
+}
+
 TEST_F(Report, HostileNamesAreOnlyText) {
   std::string yaml = SmallStudyYaml();
   yaml.replace(yaml.find("small"), 5, "'<script>alert(1)</script>'");

@@ -89,9 +89,17 @@ TEST_F(TuneProgram, AnUnreachableTargetNamesTheNearestFigure) {
                         {"study.yaml", "no setting is certified", "nearest is mu = ", "refusal", "10 %"}));
 }
 
+// With what was changed on the command line the figures cannot be found again from study and seed alone.
+TEST_F(TuneProgram, TheProvenanceSaysWhatWasChanged) {
+  ASSERT_EQ(Tune({"--out", out_, "--set", "sigma_px=0.4", "--set", "max_rotation_error_deg=5"}).exit_code, 0);
+  const std::string text = ReadBytes(out_);
+  EXPECT_NE(text.find("changed: sigma_px=0.4, max_rotation_error_deg=5"), std::string::npos) << text;
+  EXPECT_NE(text.find("rotation error above 5 deg"), std::string::npos) << text;
+}
+
 TEST_F(TuneProgram, TooFewTrialsSayHowManyWouldDo) {
   EXPECT_TRUE(IsRefused(Tune({"--out", out_, "--tune", "at_most=0.01"}),
-                        {"calibrate: 20 per condition, 2 conditions", "299 would do"}));
+                        {"calibrate: 20 in each of 2 conditions", "299 trials would do", "calibrate: 150"}));
 }
 
 TEST_F(TuneProgram, BadInput) {

@@ -92,6 +92,24 @@ TEST(CandidateSet, FirstOneWinsATie) {
   EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).sample[0], 1);
 }
 
+// The tags in the order of selection: the best first, the earlier one at a tie, no more than there are.
+TEST(CandidateSet, SelectsTheBestInOrder) {
+  CandidateSet candidates(GivenRatio(0.1, 0.5), kNumMatches);
+  const double entropies[] = {4.0, 1.0, 3.0, 1.0, 2.0, 3.0, 0.0};
+  for (int i = 0; i < 7; ++i)
+    candidates.Add(Make(i == 6 ? 4 : 50, entropies[i], i));  // the last is too small
+  const auto tags = [&](int count) {
+    std::vector<int> of;
+    for (const Candidate& candidate : candidates.SelectBest(count, LessEntropy))
+      of.push_back(candidate.sample[0]);
+    return of;
+  };
+  EXPECT_EQ(tags(1), (std::vector<int>{1}));
+  EXPECT_EQ(tags(4), (std::vector<int>{1, 3, 4, 2}));
+  EXPECT_EQ(tags(6), (std::vector<int>{1, 3, 4, 2, 5, 0}));
+  EXPECT_EQ(tags(100), tags(6));
+}
+
 TEST(CandidateSet, SelectsTheLeastOfMany) {
   RandomStream rng({.seed = 1, .purpose = 130});
   CandidateSet candidates(GivenRatio(0.5, 1.0), kNumMatches);

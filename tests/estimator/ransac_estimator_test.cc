@@ -1,9 +1,11 @@
 // Estimation taken apart: trace, decide, finish.
 #include "estimator/ransac_estimator.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "estimator/estimator_registry.h"
+#include "estimator/run_pipeline.h"
 #include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
 #include "simulator/scene_generator.h"
@@ -176,6 +178,36 @@ TEST(RansacEstimator, AMotionThatExplainsTooLittleIsRefused) {
   EXPECT_LT(share, 0.9);
   EXPECT_EQ(status_at(share), MotionStatus::kOk);
   EXPECT_EQ(status_at(share + 0.005), MotionStatus::kTooFewExplained);
+}
+
+// A share that is met exactly is met: 0.55 * 100 is more than 55 in floating point.
+TEST(RansacEstimator, AShareThatIsMetExactlyIsEnough) {
+  for (const int num_matches : {100, 200, 400, 1000}) {
+    for (int num_explained = 1; num_explained <= num_matches; ++num_explained) {
+      RansacOptions options;
+      options.least_explained_share = std::stod(fmt::format("{:.4f}", 1.0 * num_explained / num_matches));
+      MotionEstimate estimate;
+      estimate.status = MotionStatus::kOk;
+      estimate.num_explained = num_explained;
+      CheckExplainedShare(options, num_matches, &estimate);
+      ASSERT_EQ(estimate.status, MotionStatus::kOk) << num_explained << " of " << num_matches;
+      --estimate.num_explained;
+      CheckExplainedShare(options, num_matches, &estimate);
+      ASSERT_EQ(estimate.status, MotionStatus::kTooFewExplained) << num_explained << " of " << num_matches;
+    }
+  }
+}
+
+// Without entropies there is nothing to stop at: psi is zero for every hypothesis.
+TEST(RansacEstimator, StandardDoesNotStopEarly) {
+  const MotionProblem problem = MakeProblem(0.4, 120, 0);
+  RansacOptions options;
+  options.early_stop_entropy = 1.0;
+  EXPECT_EQ(EstimateWith(*FindEstimator("standard").make(options), problem).counts.num_hypotheses,
+            options.num_iterations);
+  options.reading = Reading::kRankAware;
+  options.early_stop_entropy = 100.0;
+  EXPECT_LT(EstimateWith(*FindEstimator("prcme").make(options), problem).counts.num_hypotheses, 10);
 }
 
 TEST(RansacEstimator, DecisionOptionsAreOptions) {

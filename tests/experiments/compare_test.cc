@@ -83,6 +83,15 @@ TEST_F(CompareTest, CountsByHand) {
   EXPECT_DOUBLE_EQ(Row(comparison, "failure").risk_difference, -4.0 / 19.0);
 }
 
+TEST_F(CompareTest, ATrialThatOneMotionIsNotScoredInTellsNothingOfFailures) {
+  Write("run", {{"ss", 5}, {"uf", 2}, {"su", 3}, {"uu", 1}, {"ru", 4}, {"fs", 1}, {"rs", 1}});
+  const Comparison comparison = ComparisonOf("run");
+  // both, ours only, standard only, neither
+  ExpectCounts(Row(comparison, "failure").counts, {0, 0, 1, 6});
+  ExpectCounts(Row(comparison, "refusal").counts, {0, 0, 5, 12});
+  ExpectCounts(Row(comparison, "failure_or_refusal").counts, {0, 0, 2, 5});
+}
+
 TEST_F(CompareTest, PublishedIntervalAndPValue) {
   // Tango's interval and McNemar's p-value as in stats/paired_test.cc: (1, 1, 7, 12).
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
@@ -127,7 +136,7 @@ TEST_F(CompareTest, NoTrialsNoNumbers) {
 }
 
 TEST_F(CompareTest, RatesAreThoseOfTheSummary) {
-  Write("run", {{"ss", 5}, {"sf", 1}, {"fs", 3}, {"ff", 2}, {"rs", 4}, {"sr", 1}, {"uu", 3}, {"ru", 1}});
+  Write("run", {{"ss", 5}, {"sf", 1}, {"fs", 3}, {"ff", 2}, {"rs", 4}, {"sr", 1}});
   const Summary summary = Summarize(ResultStore::OpenForReading(folder_.Path("run")), false);
   const auto rate = [&](const std::string& estimator, const std::string& quantity) {
     for (const SummaryRow& row : summary.rows) {
@@ -175,14 +184,14 @@ TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   EXPECT_EQ(lines[0],
             "study,condition,outlier_ratio,estimator,reference,event,n,both,estimator_only,reference_only,"
             "neither,risk_difference,lower,upper,p_mcnemar,p_holm");
-  EXPECT_EQ(lines[1], fmt::format("small,0,0.0,ours,standard,failure,21,1,1,7,12,-0.28571429,{:.8g},{:.8g},"
+  EXPECT_EQ(lines[1], fmt::format("small,0,0,ours,standard,failure,21,1,1,7,12,-0.28571429,{:.8g},{:.8g},"
                                   "0.0703125,0.0703125",
                                   comparison.rows[0].interval.lower, comparison.rows[0].interval.upper));
   EXPECT_EQ(lines[4], "small,1,0.3,ours,standard,failure,0,0,0,0,0,,-1,1,,");
   const nlohmann::json json = nlohmann::json::parse(ComparisonAsJson(comparison));
   EXPECT_EQ(json["reference"], "standard");
   ASSERT_EQ(json["rows"].size(), 6u);
-  EXPECT_EQ(json["rows"][0]["levels"]["outlier_ratio"], "0.0");
+  EXPECT_EQ(json["rows"][0]["levels"]["outlier_ratio"], "0");
   EXPECT_EQ(json["rows"][0]["reference_only"], 7);
   EXPECT_EQ(json["rows"][0]["p_mcnemar"], comparison.rows[0].p_value);
   EXPECT_TRUE(json["rows"][3]["risk_difference"].is_null());

@@ -103,6 +103,25 @@ TEST_F(MatchFileTest, SpacesAndExtraColumns) {
   ExpectFull(Read(Edited("# size1: 640 480", "#size1:640    480  ")));
 }
 
+TEST_F(MatchFileTest, ByteOrderMark) { ExpectFull(Read("\xEF\xBB\xBF" + FullText())); }
+
+TEST_F(MatchFileTest, ColumnNames) {
+  for (const char* names : {"x1,y1,x2,y2", " x1 ,\ty1, x2,y2 ", "x1,y1,x2,y2,ratio,,scale"}) {
+    ExpectFull(Read(Edited("x1,y1,x2,y2,ratio", names)));
+  }
+}
+
+TEST_F(MatchFileTest, OtherColumnNames) {
+  for (const std::string names : {"x1,x2,y1,y2", "y1,x1,y2,x2", "x2,y2,x1,y1", "x1,y1,x2",
+                                  "ratio,x1,y1,x2,y2", "x1,hello", "x1;y1,x2,y2"}) {
+    EXPECT_TRUE(Refuses(Edited("x1,y1,x2,y2,ratio", names),
+                        {":10: column names '" + names + "'", "give x1,y1,x2,y2[,...], before the first"}))
+        << names;
+  }
+  EXPECT_TRUE(Refuses(FullText() + "x1,y1,x2,y2\n", {":13: column names 'x1,y1,x2,y2'", "before the first"}));
+  EXPECT_TRUE(Refuses(FullText() + "x1,nonsense\n", {":13: column names 'x1,nonsense'"}));
+}
+
 TEST_F(MatchFileTest, WithoutColumnNamesSceneOrTruePose) {
   const MatchFile file = Read(MatchHeader() + "1,2,3,4\n");
   EXPECT_EQ(file.scene, "unnamed");
@@ -177,6 +196,11 @@ TEST_F(MatchFileTest, BadRows) {
   for (const char* word : {"nan", "NaN", "inf", "-inf", "1e999", "", "1.2.3", "0x10", "1 2"}) {
     EXPECT_TRUE(Refuses(Edited("192.5", word), {":11: x2", "is not a finite number"})) << word;
   }
+  for (const char* word : {"1e308", "-1e308", "1000000.1", "-1000000.1"}) {
+    EXPECT_TRUE(Refuses(Edited("192.5", word), {std::string(":11: x2: '") + word + "' is not a finite number",
+                                                "in [-1000000, 1000000] px"}));
+  }
+  EXPECT_EQ(Read(Edited("192.5", "-1e6")).matches[0].x2_px.x(), -1e6);
   EXPECT_TRUE(Refuses(Edited("-0.5,1e2,0,3", "-0.5,1e2,0"), {":12:", "3 columns; x1,y1,x2,y2 are needed"}));
   EXPECT_TRUE(Refuses(Edited("-0.5,1e2,0,3", "hello"), {":12:", "1 columns"}));
   EXPECT_TRUE(Refuses(std::string("\0\1\2\xFF\xFE", 5), {":1:"}));

@@ -203,6 +203,39 @@ TEST_F(ResultStoreTest, ReopensForMoreTrialsAndAnotherDescription) {
   EXPECT_EQ(ResultStore::OpenForReading(path_).Plan().study_yaml, longer.study_yaml);
 }
 
+TEST_F(ResultStoreTest, FewerTrialsTakeNoneOfTheEarlierAway) {
+  {
+    ResultStore store = ResultStore::OpenForRun(path_, plan_);
+    AddRecords(store, RecordsOfTrial(0, 0));
+  }
+  Study study = SmallStudy();
+  study.trials = 2;
+  { ResultStore::OpenForRun(path_, MakePlan(study)); }
+  const StudyPlan kept = ResultStore::OpenForReading(path_).Plan();
+  EXPECT_EQ(kept.study_yaml, plan_.study_yaml);
+  EXPECT_EQ(kept.NumTrials(), 12);
+}
+
+TEST_F(ResultStoreTest, UnderAStoppingRuleThePlanIsWhatWasDone) {
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  AddRecords(store, RecordsOfTrial(1, 0));
+  EXPECT_EQ(store.Plan().NumTrials(), 12);
+  store.NoteStoppingRule("a reason");
+  for (const std::uint32_t trial : {1u, 2u, 3u, 4u, 5u, 6u, 7u}) AddRecords(store, RecordsOfTrial(1, trial));
+  EXPECT_EQ(store.Plan().conditions[0].num_trials, 0);
+  EXPECT_EQ(store.Plan().conditions[1].num_trials, 8);
+}
+
+TEST_F(ResultStoreTest, UntilOptionsAreKnownAsLongAsTheyAloneGiveTheTrials) {
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  EXPECT_EQ(store.UntilOptionsOfAll(), "");
+  AddRecords(store, RecordsOfTrial(0, 0));
+  store.NoteUntilOptions("--until ci=0.1", 1);
+  EXPECT_EQ(store.UntilOptionsOfAll(), "--until ci=0.1");
+  AddRecords(store, RecordsOfTrial(0, 1));
+  EXPECT_EQ(store.UntilOptionsOfAll(), "");
+}
+
 TEST_F(ResultStoreTest, RefusesAnotherStudyAndSaysWhatDiffers) {
   {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);

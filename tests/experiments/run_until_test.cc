@@ -16,7 +16,7 @@ namespace {
 // No outliers, where hardly anything is refused, and 40 % of them, where most is.
 Study EasyAndHard() {
   Study study = SmallStudy();
-  study.factors[0].levels = {"0.0", "0.4"};
+  study.factors[0].levels = {"0", "0.4"};
   return study;
 }
 

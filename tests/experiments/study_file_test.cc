@@ -70,7 +70,7 @@ TEST(ParseStudy, ReadsEveryPart) {
   EXPECT_EQ(Setting(study, "num_matches"), "60");
   ASSERT_EQ(study.factors.size(), 2u);
   EXPECT_EQ(study.factors[0].key, "sigma_px");
-  EXPECT_EQ(study.factors[1].levels, (std::vector<std::string>{"0.0", "0.25", "0.5"}));
+  EXPECT_EQ(study.factors[1].levels, (std::vector<std::string>{"0", "0.25", "0.5"}));
   ASSERT_EQ(study.estimators.size(), 2u);
   EXPECT_EQ(study.estimators[0].label, "standard");
   EXPECT_EQ(study.estimators[0].options.num_iterations, 200);
@@ -262,6 +262,24 @@ TEST(ParseStudyErrors, TooManyCombinations) {
   EXPECT_TRUE(Refuses(
       Edited("outlier_ratio: [0.0, 0.3]", "num_matches: [" + levels + "]\n  focal_px: [" + levels + "]"),
       {":6:", "more than 100000 combinations"}));
+}
+
+// Equal numbers are one level, however they are written.
+TEST(ParseStudyErrors, OneLevelWrittenTwice) {
+  EXPECT_TRUE(
+      Refuses(Edited("[0.0, 0.3]", "[0.3, 0.0, 0.30]"), {":6:", "outlier_ratio", "'0.30'", "stands twice"}));
+  EXPECT_TRUE(Refuses(Edited("[0.0, 0.3]", "[-0, 0]"), {":6:", "'0'", "stands twice"}));
+}
+
+// The base of a design of one factor at a time is found among the levels, also in the study that a run
+// stores.
+TEST(ToYaml, RoundTripOfADesignWhoseNumbersAreNotInTheirShortestForm) {
+  std::string yaml = Edited("sigma_px: 0.5}", "outlier_ratio: 0.10}\ndesign: one_at_a_time");
+  yaml.replace(yaml.find("[0.0, 0.3]"), 10, "[0.1, 0.30, 5e-1]");
+  const Study study = ParseStudy(yaml, "small.yaml");
+  const std::vector<std::vector<std::string>> rows = {{"0.1"}, {"0.3"}, {"0.5"}};
+  EXPECT_EQ(DesignRows(study), rows);
+  EXPECT_EQ(DesignRows(ParseStudy(ToYaml(study), "stored.yaml")), rows);
 }
 
 TEST(LoadStudy, RefusesWhatIsNoFile) {

@@ -175,7 +175,7 @@ TEST_F(SummarizeTest, RowsAreComplete) {
   EXPECT_EQ(summary.num_trials_done, 10);
   EXPECT_EQ(summary.num_trials_planned, 12);
   EXPECT_EQ(summary.rows.size(), 2 * SummaryQuantities().size());
-  EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0.0"});
+  EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0"});
   EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
   for (const SummaryRow& row : SummaryOf("run").rows)
     EXPECT_NE(row.quantity, "time_ms") << "times were not asked for";
@@ -200,6 +200,20 @@ TEST_F(SummarizeTest, UnknownTruthIsNotCounted) {
   EXPECT_EQ(Row("num_support", 1).n, 2);
 }
 
+// What is not known is neither a success nor "no failure".
+TEST_F(SummarizeTest, AMotionWithoutAKnownTruthNeitherFailsNorSucceeds) {
+  std::vector<TrialRecord> records = {Motion(0, kNaN, kNaN, kNaN), Motion(1, kNaN, kNaN, kNaN),
+                                      Motion(2, 9.0, 1.0, 30.0), NoMotion(3, MotionStatus::kNoCandidate)};
+  for (TrialRecord& record : records) record.condition = 1;
+  Write("run", records);
+  EXPECT_EQ(Row("not_scored", 1).value, 0.5);
+  EXPECT_EQ(Row("not_scored", 1).n, 4);
+  EXPECT_EQ(Row("failure", 1).value, 0.5);
+  EXPECT_EQ(Row("failure", 1).n, 2);
+  EXPECT_EQ(Row("success", 1).n, 2);
+  EXPECT_EQ(Row("no_candidate", 1).n, 4);
+}
+
 std::vector<std::string> Lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -213,11 +227,11 @@ TEST_F(SummarizeTest, Csv) {
   EXPECT_EQ(
       lines[0],
       "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n,interval");
-  EXPECT_EQ(lines[1], "small,0,0.0,standard,success,rate,0.4,0.12155226,0.73762192,,10,exact");
+  EXPECT_EQ(lines[2], "small,0,0,standard,success,rate,0.4,0.12155226,0.73762192,,10,exact");
   const auto has_line = [&](const std::string& line) {
     return std::count(lines.begin(), lines.end(), line) == 1;
   };
-  EXPECT_TRUE(has_line("small,0,0.0,standard,rotation_error_deg,mean,2,,,0.40824829,4,"));  // sqrt(2 / 3 / 4)
+  EXPECT_TRUE(has_line("small,0,0,standard,rotation_error_deg,mean,2,,,0.40824829,4,"));  // sqrt(2 / 3 / 4)
   EXPECT_TRUE(has_line("small,1,0.3,standard,success,rate,,0,1,,0,exact"));
   EXPECT_TRUE(has_line("small,1,0.3,standard,nees,mean,,,,,0,"));
   for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 11) << line;
@@ -228,7 +242,7 @@ TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
   study_.estimators[0].label = "line\nbreak";
   Write("quoted", {});
   const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
-  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0.0,\"line\nbreak\",success,rate,,0,1,,0,exact\n"),
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"line\nbreak\",success,rate,,0,1,,0,exact\n"),
             std::string::npos)
       << csv;
 }
@@ -305,6 +319,38 @@ TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
     }
   }
   EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [1.26, 98.74]"), std::string::npos);
+}
+
+// Three problems, the second without a bound: the matches do not determine its motion.
+TEST_F(SummarizeTest, AMeanWithInfiniteNumbersIsInfiniteEverywhere) {
+  std::vector<ProblemRecord> problems(3);
+  std::vector<TrialRecord> records;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    problems[i].trial = i;
+    problems[i].severity.crb_rotation_deg = i == 1 ? std::numeric_limits<double>::infinity() : 0.5;
+    records.push_back(Motion(i, 1.0, 1.0, 1.0));
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("infinite"), MakePlan(study_));
+    store.Add(problems, records);
+  }
+  const Summary summary = SummaryOf("infinite");
+  const auto row = std::ranges::find_if(
+      summary.rows, [](const SummaryRow& r) { return r.condition == 0 && r.quantity == "crb_rotation_deg"; });
+  ASSERT_NE(row, summary.rows.end());
+  EXPECT_EQ(row->value, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(row->n, 3);
+  EXPECT_TRUE(std::isnan(row->standard_error));
+  EXPECT_NE(SummaryAsCsv(summary).find("small,0,0,scene,crb_rotation_deg,mean,inf,,,,3,\n"),
+            std::string::npos);
+  const std::string table = SummaryAsTable(summary);
+  EXPECT_NE(table.find("  inf"), std::string::npos) << table;
+  EXPECT_EQ(table.find("nan"), std::string::npos) << table;
+  const nlohmann::json entry =
+      nlohmann::json::parse(SummaryAsJson(summary))["rows"][row - summary.rows.begin()];
+  EXPECT_EQ(entry["quantity"], "crb_rotation_deg");
+  EXPECT_TRUE(entry["value"].is_null());  // JSON has no infinity
+  EXPECT_TRUE(entry["standard_error"].is_null());
 }
 
 TEST_F(SummarizeTest, TrialsThatStoppedByTheirOutcomesHaveAnytimeValidIntervals) {

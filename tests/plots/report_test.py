@@ -32,9 +32,10 @@ BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "
 def facts(**changes):
     """run.json of a run with one factor, two conditions and two estimators."""
     return {"run": "runs/a b.sqlite", "rcme_version": "0.1.0", "name": "demo", "description": "What fails?", "seed": 7,
-            "trials_done": 15, "trials_planned": 20, "study_yaml": "name: demo\nseed: 7\n", "reference": "standard",
-            "factors": ["noise"], "estimators": ["standard", "mine"],
-            "conditions": [{"index": index, "levels": [level], "trials_done": 10 - 5 * index, "trials_planned": 10,
+            "trials_done": 15, "trials_planned": 20, "until": "", "study_yaml": "name: demo\nseed: 7\n",
+            "reference": "standard", "factors": ["noise"], "estimators": ["standard", "mine"],
+            "conditions": [{"index": index, "levels": [level], "trials_done": 10 - 5 * index,
+                            "trials_end": 10 - 5 * index, "trials_planned": 10,
                             "first": [{"failure": None, "refusal": None}, {"failure": 3, "refusal": 1}]}
                            for index, level in enumerate(("gaussian", "laplace"))],
             "failure_bounds": [{"name": "max_rotation_error_deg", "value": "3", "unit": "deg"}],
@@ -182,13 +183,48 @@ class Page(ReportTest):
     def test_commands_can_be_pasted(self):
         self.add_run()
         text = "".join(Structure(self.page()).text)
-        for command in ("rcme replay 'runs/a b.sqlite' --condition 1 --trial T", "rcme run demo.yaml --out demo.sqlite",
+        for command in ("rcme replay 'runs/a b.sqlite' --condition 1 --trial T",
+                        "rcme run demo.yaml --trials 10 --out demo.sqlite",
                         "rcme replay 'runs/a b.sqlite' --condition 1 --trial 0",
                         "rcme summarize 'runs/a b.sqlite' --format csv",
                         "rcme compare 'runs/a b.sqlite' --against standard --format csv",
                         "--against standard --format csv --out comparison.csv && python3 plots/paired_difference.py"):
             self.assertIn(command, text)
         self.assertIn("3first failure", text)
+
+    def again(self, numbers, until="", interval="exact"):
+        """(the command that runs the study again, whether it gives fewer trials, whether other intervals); `numbers`:
+        trials done, end and planned of each condition."""
+        keys = ("trials_done", "trials_end", "trials_planned")
+        conditions = [condition | dict(zip(keys, of)) for condition, of in zip(facts()["conditions"], numbers)]
+        header, *rows = summary().splitlines()
+        self.add_run(run_json=facts(conditions=conditions, until=until),
+                     summary_csv="\n".join([f"{header},interval", *(f"{row},{interval}" for row in rows)]))
+        text = "".join(Structure(self.page()).text)
+        return (re.search("rcme run demo.yaml (.*) --out", text).group(1), "But this page has fewer trials" in text,
+                "those of the commands are exact" in text)
+
+    def test_the_recipe_gives_the_trials_of_the_page_or_says_that_it_does_not(self):
+        exactly = [((60, 60, 60), (60, 60, 60)), ((60, 60, 100), (60, 60, 100)),
+                   ((60, 60, 60), (40, 40, 40))]  # the last: a folder has no more pairs
+        for numbers in exactly:
+            self.assertEqual(self.again(numbers), ("--trials 60", False, False))
+        for numbers in (((60, 60, 60), (40, 40, 60)), ((59, 60, 60), (60, 60, 60))):  # cut off; with a gap
+            self.assertEqual(self.again(numbers), ("--trials 60", True, False))
+        stopped = ((100, 100, 100), (225, 225, 225))
+        self.assertEqual(self.again(stopped, "--until ci=0.1", "anytime_valid"), ("--until ci=0.1", False, False))
+        self.assertEqual(self.again(stopped, "", "anytime_valid"), ("--trials 225", True, True))
+        self.assertEqual(self.again(((9, 9, 9), (9, 9, 9)), "", "anytime_valid"), ("--trials 9", False, True))
+
+    def test_infinite_means_are_shown_and_other_infinite_numbers_refused(self):
+        scene = "demo,0,gaussian,scene,crb_rotation_deg,mean,inf,,,,10\n"
+        self.add_run(summary_csv=summary() + scene)
+        self.assertGreater(Structure(self.page()).text.count("inf"), 1)
+        self.out.unlink()
+        for old, new in (("mean,inf,,,,10", "mean,inf,,,,inf"), ("mean,inf,,,", "mean,1,,,inf"), ("mean,", "rate,"),
+                         ("inf", "nan"), ("inf", "")):
+            self.add_run(summary_csv=summary() + scene.replace(old, new))
+            self.assert_refused(self.run_main(), "summary.csv: line 18: column")
 
     def test_tables_have_captions_and_scopes_and_pictures_words(self):
         self.add_run()
@@ -251,8 +287,9 @@ class Page(ReportTest):
 class Figures(ReportTest):
     def drawn(self, factors, levels):
         """The captions of the figures, and the notes, of a run with these factors."""
-        conditions = [{"index": index, "levels": list(level), "trials_done": 10, "trials_planned": 10,
-                       "first": [{"failure": 0, "refusal": 0}] * 2} for index, level in enumerate(levels)]
+        conditions = [{"index": index, "levels": list(level), "trials_done": 10, "trials_end": 10,
+                       "trials_planned": 10, "first": [{"failure": 0, "refusal": 0}] * 2}
+                      for index, level in enumerate(levels)]
         self.add_run(run_json=facts(factors=list(factors), conditions=conditions),
                      summary_csv=summary(levels=levels, factors=factors),
                      comparison_csv=comparison(levels=levels, factors=factors))

@@ -224,6 +224,15 @@ class Words(unittest.TestCase):
         self.assertIn("which of them are true is not known", words_of(figure))
         self.assertIn("The true motion is not known", words_of(figure))
 
+    def test_a_trial_without_matches_is_drawn_empty(self):
+        none = dict(matches=[], selected=[], drawn=[0], estimators=[estimator("mine", "refused", status="too_few_matches")])
+        for changes in (dict(kinds=None, points_in_cam1_m=None, views=None, truth=None, severity={}, origin="pair.csv"),
+                        dict(kinds=[], points_in_cam1_m=[])):
+            figure = drawn(**none, **changes)
+            self.assertIn("0 matches", words_of(figure))
+            self.assertIn("refused (too_few_matches)", words_of(figure))
+            self.assertTrue({"Image 1", "Image 2"} <= set(panels_of(figure)))
+
     def test_names_are_only_text_and_long_ones_are_broken(self):
         figure = drawn(study="$x_{1}$ " + "very_long_name" * 20)
         self.assertIn("$x_{1}$", words_of(figure))

@@ -205,7 +205,7 @@ class Command(TransferTest):
         self.assert_refused(self.run_main(fake.tune()), "'kind'", "'transfer'")
         for key in ("kind", "study", "estimator", "seed", "target", "options", "families", "cells"):
             self.assert_refused(self.run_main({name: part for name, part in whole.items() if name != key}),
-                                f"no key '{key}'", "rcme tune")
+                                f"no key '{key}'", "expected the output of 'rcme transfer'")
         for changes, named in (
                 ({"families": [], "cells": []}, ("no families",)),
                 ({"cells": [cell(0, 3, 0.1)]}, ("cell 1", "0 to 2")),
@@ -226,6 +226,7 @@ class Command(TransferTest):
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
             script.main(["--help"])
         self.assertIn("plots/transfer.py transfer.json --out transfer", out.getvalue())
+        self.assertIn("file that 'rcme transfer' wrote", out.getvalue())
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import fake_tune as fake  # noqa: E402
+import numpy as np  # noqa: E402
 import tune as script  # noqa: E402
 from heat_map import luminance  # noqa: E402
 from matplotlib.colors import to_rgb  # noqa: E402
@@ -27,6 +28,7 @@ from tune_surface import Surface, draw_surface, grid_of  # noqa: E402
 
 GRID = [fake.option("mu", ("0", "1", "2"), "nats"), fake.option("lambda", ("2", "0.5"))]  # levels in any order
 FURTHER = [*GRID, fake.option("rank_aware", ("no", "yes"))]
+MANY = [*GRID, fake.option("batch", tuple("abcdefg"))]  # more panels than fit
 warnings.simplefilter("error")  # a layout that was given up is a fault
 
 
@@ -199,6 +201,18 @@ class TheSurface(TuneTest):
         self.assertEqual([axis.locate(level) for level in ("0.5", "51", "200", "-1")],
                          [(0.5, 0), (2.5, 0), (3, 1), (0, -1)])
 
+    def test_levels_too_close_for_ticks_of_their_own_share_them(self):
+        def axis_of(levels):
+            return LevelAxis(self.read(fake.tune([fake.option("mu", levels)], others=[], tuned=None)).options[0])
+        for levels in (("1",), fake.MUS, [f"{number / 7:.3f}" for number in range(200)]):
+            self.assertEqual(list(axis_of(levels).ticks()), axis_of(levels).places())
+        many = axis_of([f"{number / 7:.3f}" for number in range(1500)]).ticks()
+        self.assertLess(len(many), 310)
+        self.assertEqual(many[0], 0)
+        self.assertTrue(all(0.3 < gap < 1 for gap in np.diff(many)))  # of a range of 214
+        figure = draw_surface(self.read(fake.tune([fake.option("mu", [f"{number / 50}" for number in range(1500)])])))
+        self.assertLess(len(panels_of(figure)[0].xaxis.get_minorticklocs()), 310)
+
     def test_rates_without_trials_are_hatched(self):
         value = fake.tune(GRID)
         for one in value["settings"]:
@@ -228,6 +242,16 @@ class TheFront(TuneTest):
             tuple((round(refusal[end], 9), round(failure["value"], 9)) for end in ("lower", "upper")),
             tuple((round(refusal["value"], 9), round(failure[end], 9)) for end in ("lower", "upper"))})
         self.assertIn("RCME (as is)", legend_of(figure))
+
+    def test_a_long_path_needs_no_more_artists_than_a_short_one(self):
+        def count(num_levels):
+            value = fake.tune([fake.option("mu", [f"{number}" for number in range(num_levels)])], others=[], tuned=None)
+            for one in value["settings"]:
+                one["is_on_path"] = True
+            axes = draw_front(self.read(value)).axes[0]
+            self.assertEqual(sum(len(bars.get_segments()) for bars in axes.collections), 2 * num_levels)
+            return len(axes.collections)
+        self.assertEqual(count(300), count(3))
 
     def test_the_targets_lines_are_at_what_it_allows(self):
         def lines(kind):
@@ -357,13 +381,21 @@ class TheCommand(TuneTest):
         wrong["settings"][2]["failure"] = {"value": None, "lower": 0, "upper": 1, "n": 3}
         self.assert_refused(self.run_main(wrong), "setting 3, 'failure'", "null only where")
 
-    def test_too_many_panels_and_levels_that_are_not_there(self):
-        many = fake.tune([*GRID, fake.option("batch", tuple("abcdefg"))], others=[], tuned=None)
-        self.assert_refused(self.run_main(many), "7 combinations of batch", "--where batch=a")
+    def test_without_a_surface_the_others_are_drawn_and_a_note_says_why(self):
+        for options, *why in ((MANY, "7 combinations of batch", "--where batch=a"),
+                              ([fake.option("mu", ("1",))], "no option varies")):
+            code, out, err = self.run_main(fake.tune(options, others=[], tuned=None))
+            self.assertEqual((code, err.count("\n")), (0, 1), err)
+            for part in ("tune.py: no surface: ", *why):
+                self.assertIn(part, err)
+            self.assertEqual([pathlib.Path(path).name for path in out.split()],
+                             [f"figure_{name}.{kind}" for name in ("front", "roc") for kind in ("png", "pdf")])
+
+    def test_a_part_of_the_surface_that_is_asked_for_has_to_be_there(self):
+        many = fake.tune(MANY, others=[], tuned=None)
         self.assert_refused(self.run_main(many, "--where", "batch=z"), "--where batch=z", "has no such batch")
         self.assert_refused(self.run_main(many, "--where", "kappa=1"), "--where kappa=1", "mu, lambda, batch")
-        fixed = fake.tune([fake.option("mu", ("1",))], others=[], tuned=None)
-        self.assert_refused(self.run_main(fixed), "no option varies")
+        self.assert_refused(self.run_main(many, "--where", "mu=1"), "7 combinations of batch")
         self.assert_refused(self.run_main(fake.tune(GRID), out="figure.png"), "without .png")
 
     def test_help_teaches_with_an_example(self):

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "stats/random.h"
@@ -59,6 +60,27 @@ TEST(Moments, TooFewNumbersAreNan) {
   EXPECT_TRUE(std::isnan(one.variance()));
   EXPECT_TRUE(std::isnan(one.standard_error()));
   EXPECT_EQ(MomentsOf({3.0, 3.0}).variance(), 0.0);
+}
+
+TEST(Moments, InfiniteNumbersMakeTheMeanInfiniteWhereverTheyStand) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& numbers :
+       {std::vector<double>{kInf}, {kInf, 1, 2}, {1, kInf, 2}, {1, 2, kInf}, {kInf, 1, kInf, kInf}}) {
+    const Moments moments = MomentsOf(numbers);
+    EXPECT_EQ(moments.mean(), kInf);
+    EXPECT_TRUE(std::isnan(moments.variance()));
+    EXPECT_TRUE(std::isnan(moments.standard_error()));
+    Moments before = MomentsOf({3.0, 4.0}), after = moments, both = moments;
+    before.Merge(moments);
+    after.Merge(MomentsOf({3.0, 4.0}));
+    both.Merge(moments);
+    for (const Moments& merged : {before, after, both}) {
+      EXPECT_EQ(merged.mean(), kInf);
+      EXPECT_TRUE(std::isnan(merged.variance()));
+    }
+  }
+  EXPECT_EQ(MomentsOf({1.0, -kInf, 2.0}).mean(), -kInf);
+  EXPECT_TRUE(std::isnan(MomentsOf({-kInf, 1.0, kInf, 2.0}).mean()));
 }
 
 TEST(Moments, MergedPartsEqualOnePass) {

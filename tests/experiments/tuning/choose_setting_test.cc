@@ -52,13 +52,13 @@ testing::AssertionResult Says(const std::string& text, const std::vector<std::st
   return testing::AssertionSuccess();
 }
 
-// Failures against refusals: 1 is beaten by 3, 4 by 2; 2 and 5 are equal.
+// Failures against refusals: 1 is beaten by 3; 2, 4 and 5 tie in failures, 4 is more careful.
 const std::vector<SettingCount> kExplored = {Of(100, 0, 60), Of(100, 3, 40), Of(100, 6, 10),
                                              Of(100, 2, 40), Of(100, 6, 11), Of(100, 6, 10)};
 
 TEST(ChooseSetting, ThePathIsTheFrontInTheOrderOfSurety) {
   const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, kExplored);
-  EXPECT_EQ(choice.path, (Path{0, 3, 2, 5}));
+  EXPECT_EQ(choice.path, (Path{0, 3, 4, 2, 5}));
 }
 
 // The order is fixed before the calibration: here it would be the other way round.
@@ -66,7 +66,17 @@ TEST(ChooseSetting, TheCalibrationHasNoSayInThePath) {
   std::vector<SettingCount> calibrated(kExplored.size(), Of(1000, 0, 0));
   calibrated[0] = Of(1000, 30, 500);
   calibrated[3] = Of(1000, 20, 400);
-  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated).path, (Path{0, 3, 2, 5}));
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated).path, (Path{0, 3, 4, 2, 5}));
+}
+
+// No error of few trials is no proof: the lucky one of equals must not keep the careful one from being
+// certified.
+TEST(ChooseSetting, OfEqualsTheMoreCarefulIsTestedFirst) {
+  const std::vector<SettingCount> explored = {Of(20, 0, 2), Of(20, 0, 9), Of(20, 0, 5)};
+  const std::vector<SettingCount> calibrated = {Of(1000, 150, 100), Of(1000, 0, 450), Of(1000, 10, 250)};
+  const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05), explored, calibrated);
+  EXPECT_EQ(choice.path, (Path{1, 2, 0}));
+  EXPECT_EQ(choice.setting, 2u);
 }
 
 TEST(ChooseSetting, TestingEndsAtTheFirstThatIsNotCertified) {
@@ -86,11 +96,11 @@ TEST(ChooseSetting, OfTheCertifiedTheLeastRefusalIsChosenTheFirstAtATie) {
   std::vector<SettingCount> calibrated(kExplored.size(), Of(1000, 0, 300));
   calibrated[3] = Of(1000, 5, 150);
   Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated);
-  EXPECT_EQ(choice.num_certified, 4u);
+  EXPECT_EQ(choice.num_certified, 5u);
   EXPECT_EQ(choice.setting, 3u);
   calibrated[2] = calibrated[5] = Of(1000, 9, 150);
   EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated).setting, 3u);
-  calibrated[1] = calibrated[4] = Of(1000, 0, 0);  // not on the path
+  calibrated[1] = Of(1000, 0, 0);  // not on the path
   EXPECT_EQ(Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, calibrated).setting, 3u);
 }
 
@@ -151,7 +161,13 @@ TEST(ChooseSetting, ATargetOutOfReachNamesTheNearest) {
 TEST(ChooseSetting, TooFewTrialsSaysHowManyWouldDo) {
   const std::vector<SettingCount> counts = {Of(58, 0, 20)};
   const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05), counts, counts);
-  EXPECT_TRUE(Says(choice.why, {"too few trials", "59 certify 5 % with probability 0.9"})) << choice.why;
+  EXPECT_TRUE(Says(choice.why,
+                   {"too few trials", "59 certify 5 % with probability 0.9: calibrate: 407 instead of 400"}))
+      << choice.why;
+  // Of the same trials fewer are good: 59 good ones are in 2 * 59 of them.
+  const std::vector<SettingCount> half = {Quality(58, 0, 29, 0)};
+  const Choice of_half = Choose(TuningFor(TuneTarget::kFalseRefusal, 0.05), half, half);
+  EXPECT_TRUE(Says(of_half.why, {"59 certify 5 %", "calibrate: 814 instead of 400"})) << of_half.why;
   const std::vector<SettingCount> above = {Of(20, 1, 0)};
   EXPECT_TRUE(Says(Choose(TuningFor(TuneTarget::kFailure, 0.05), above, above).why, {"not below 5 %"}));
 }
@@ -192,19 +208,25 @@ TEST(ChooseSetting, AnotherTestedBeforeStandsInTheWay) {
   const std::vector<SettingCount> calibrated = {Of(1000, 100, 10), Of(1000, 0, 450)};
   const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.05, 0.5), explored, calibrated);
   EXPECT_EQ(choice.path, (Path{0, 1}));
-  EXPECT_TRUE(Says(choice.why, {"mu = 1", "it is certified", "more trials"})) << choice.why;
+  EXPECT_TRUE(Says(choice.why, {"mu = 1", "it could be certified", "explore more than 100"})) << choice.why;
 }
 
 TEST(ChooseSetting, TooFewTrialsWhateverTheyShow) {
   Tuning tuning = TuningFor(TuneTarget::kFailure, 0.05);
+  tuning.calibrate = 1;
   EXPECT_EQ(WhyTooFewTrials(tuning, 59), "");
-  EXPECT_TRUE(Says(WhyTooFewTrials(tuning, 58), {"58 trials", "5 %", "delta 0.05", "59 would do"}));
+  EXPECT_TRUE(Says(WhyTooFewTrials(tuning, 58), {"calibrate: 1 in each of 58", "5 %", "delta 0.05",
+                                                 "59 trials would do", "calibrate: 2"}));
   tuning.max_refusal = 0.01;  // 299 trials: 0.99^299 = 0.0495
   EXPECT_EQ(WhyTooFewTrials(tuning, 299), "");
-  EXPECT_TRUE(Says(WhyTooFewTrials(tuning, 298), {"298 trials", "1 %", "299 would do"}));
+  tuning.calibrate = 29;
+  EXPECT_TRUE(Says(WhyTooFewTrials(tuning, 10), {"29 in each of 10", "1 %", "299 trials", "calibrate: 30"}));
+  tuning.calibrate = 30;
+  EXPECT_EQ(WhyTooFewTrials(tuning, 10), "");
   tuning.target = TuneTarget::kFalseRefusal;  // which max_refusal does not limit
-  EXPECT_EQ(WhyTooFewTrials(tuning, 59), "");
+  EXPECT_EQ(WhyTooFewTrials(tuning, 2), "");
   tuning.target = TuneTarget::kRisk;
+  tuning.calibrate = 1;
   EXPECT_EQ(WhyTooFewTrials(tuning, 1), "");
 }
 
@@ -215,10 +237,11 @@ TEST(ChooseSetting, EnoughTrialsAreEnoughAndNoMore) {
     for (const double delta : {0.001, 0.01, 0.05, 0.1, 0.25, 0.5}) {
       Tuning tuning = TuningFor(TuneTarget::kFailure, at_most);
       tuning.delta = delta;
-      std::int64_t n = 1;
+      tuning.calibrate = 1;
+      size_t n = 1;
       while (!WhyTooFewTrials(tuning, n).empty()) ++n;
-      const auto is_certified = [&](std::int64_t num_trials) {
-        const std::vector<SettingCount> counts = {Of(num_trials, 0, 0)};
+      const auto is_certified = [&](size_t num_trials) {
+        const std::vector<SettingCount> counts = {Of(static_cast<std::int64_t>(num_trials), 0, 0)};
         return Choose(tuning, counts, counts).num_certified == 1;
       };
       EXPECT_TRUE(is_certified(n)) << at_most << " at " << delta;
@@ -231,7 +254,7 @@ TEST(ChooseSetting, NoGoodTrialCertifiesNothing) {
   const std::vector<SettingCount> counts = {Quality(1000, 0, 0, 0)};
   const Choice choice = Choose(TuningFor(TuneTarget::kFalseRefusal, 0.05), counts, counts);
   EXPECT_FALSE(choice.setting.has_value());
-  EXPECT_TRUE(Says(choice.why, {"nearest is mu = 0: false refusal: no trial is good"})) << choice.why;
+  EXPECT_TRUE(Says(choice.why, {"nearest is mu = 0: false refusal: no trial would be good"})) << choice.why;
 }
 
 TEST(ChooseSetting, OneTrialAndOneSetting) {
@@ -251,16 +274,6 @@ TEST(ChooseSetting, ManyEqualSettingsAreChosenFromInAMoment) {
   EXPECT_EQ(choice.num_certified, kMaxTunedSettings);
   EXPECT_EQ(choice.setting, 0u);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
-}
-
-TEST(ViolatesTarget, TakesTheLimitsOfTheTarget) {
-  const Tuning failure = TuningFor(TuneTarget::kFailure, 0.05, 0.5);
-  EXPECT_FALSE(ViolatesTarget(failure, Of(100, 5, 50)));
-  EXPECT_TRUE(ViolatesTarget(failure, Of(100, 6, 50)));
-  EXPECT_TRUE(ViolatesTarget(failure, Of(100, 5, 51)));
-  const Tuning quality = TuningFor(TuneTarget::kFalseRefusal, 0.05, 0.5);
-  EXPECT_FALSE(ViolatesTarget(quality, Quality(100, 4, 80, 90)));
-  EXPECT_TRUE(ViolatesTarget(quality, Quality(100, 5, 80, 0)));
 }
 
 // ---- Is the guarantee kept? ----
@@ -371,8 +384,9 @@ TEST(Guarantee, AChoiceWithoutCertificationIsFound) {
   const Violations violations = Repeat(tuning, Ladder(40), 200, 800, [&](const auto&, const auto& counts) {
     std::optional<size_t> best;
     for (size_t s = 0; s < counts.size(); ++s) {
-      if (!ViolatesTarget(tuning, counts[s]) && (!best || counts[s].refusals < counts[*best].refusals))
-        best = s;
+      const bool seems_to_hold =
+          static_cast<double>(counts[s].failures) <= tuning.at_most * static_cast<double>(counts[s].n);
+      if (seems_to_hold && (!best || counts[s].refusals < counts[*best].refusals)) best = s;
     }
     return best;
   });

@@ -32,25 +32,26 @@ void ExpectSame(const EntropyRoc& roc, const GoodAndBad& expected) {
 }
 
 // The estimators without a quality test, with so many hypotheses.
-StudyPlan WithoutTest(int num_iterations) {
+StudyPlan WithoutTest(int num_iterations, int num_refined = 1) {
   Study study = SmallStudy();
   study.failure = {0.1, 0.4};  // degrees: some winners are good and some are bad
   for (EstimatorSpec& spec : study.estimators) {
     spec.options.num_iterations = num_iterations;
+    spec.options.num_refined = num_refined;
     spec.options.mu = 1000.0;
   }
   return MakePlan(study);
 }
 
 // The quality test of the study's estimator plays no part.
-StudyPlan WithTest(int num_iterations) {
-  Study study = WithoutTest(num_iterations).study;
+StudyPlan WithTest(int num_iterations, int num_refined = 1) {
+  Study study = WithoutTest(num_iterations, num_refined).study;
   study.estimators[1].options.mu = -50.0;
   return MakePlan(study);
 }
 
-TEST(EntropyRoc, WinnersAreGoodWhereThePlainEstimateIs) {
-  const StudyPlan plain = WithoutTest(20);
+void ExpectWinnersOfPlainCalls(int num_refined) {
+  const StudyPlan plain = WithoutTest(20, num_refined);
   GoodAndBad expected;
   for (const Condition& condition : plain.conditions) {
     for (std::uint32_t trial = 5; trial < 45; ++trial) {
@@ -59,13 +60,18 @@ TEST(EntropyRoc, WinnersAreGoodWhereThePlainEstimateIs) {
       (HasFailed(record, plain.study.failure) ? expected.bad : expected.good).push_back(record.mean_entropy);
     }
   }
-  const std::vector<EntropyRoc> rocs = Measure(WithTest(20), {5, 45});
+  const std::vector<EntropyRoc> rocs = Measure(WithTest(20, num_refined), {5, 45});
   ASSERT_EQ(rocs.size(), 2u) << "the standard estimator has no entropies";
   EXPECT_EQ(rocs[0].of, "samples");
   EXPECT_EQ(rocs[1].of, "winners");
   EXPECT_EQ(rocs[1].estimator, 1u);
   ExpectSame(rocs[1], expected);
 }
+
+TEST(EntropyRoc, WinnersAreGoodWhereThePlainEstimateIs) { ExpectWinnersOfPlainCalls(1); }
+
+// psi is that of the model that is returned, not of the best score.
+TEST(EntropyRoc, OfSeveralRefinedTheOneThatIsReturnedCounts) { ExpectWinnersOfPlainCalls(8); }
 
 // With one hypothesis the winner is the sample's model, and the sample can be drawn here.
 TEST(EntropyRoc, SamplesAreGoodWhereAllEightMatchesAreTrue) {
@@ -116,7 +122,7 @@ TEST(EntropyRoc, OfATrialTheFirstOfEachKindCounts) {
 
 TEST(EntropyRoc, WithoutABadOneThereIsNoCurve) {
   Study study = WithTest(20).study;
-  study.factors[0].levels = {"0.0"};
+  study.factors[0].levels = {"0"};
   for (const EntropyRoc& roc : Measure(MakePlan(study), {0, 10})) EXPECT_NE(roc.of, "samples");
 }
 

@@ -20,13 +20,15 @@ std::vector<SettingCount> Count(const StudyPlan& plan, size_t condition, TrialRa
   return CountOutcomes(plan, SettingsOf(plan), trials, threads, &progress)[condition];
 }
 
-// The study's plan with two estimators: one setting, and the same at the highest mu.
+// The study's plan with two estimators: one setting, and the same without its limits.
 StudyPlan PlainPlan(const StudyPlan& plan, const EstimatorSpec& setting) {
   Study study = plan.study;
   study.tuning.reset();
   study.estimators = {setting, setting};
-  study.estimators[1].label = "without quality test";
+  study.estimators[1].label = "without limits";
   study.estimators[1].options.mu = 1000.0;
+  study.estimators[1].options.inlier_ratio = std::numeric_limits<double>::quiet_NaN();
+  study.estimators[1].options.least_explained_share = 0.0;
   return MakePlan(study);
 }
 
@@ -84,13 +86,27 @@ TEST(SettingCounts, AreThoseOfPlainCallsWhateverTheLoopDecides) {
 }
 
 // Bounds so narrow that the ending tells which hypothesis won.
-TEST(SettingCounts, AreThoseOfPlainCallsWhicheverHypothesisWins) {
-  Study study = TunedPlan(
-                    "  options: {selection: [mean_entropy, predictive_likelihood], "
-                    "refinement: [none, robust], mu: [4, 6], num_iterations: [30]}\n")
-                    .study;
+StudyPlan PlanWithNarrowBounds(const std::string& options) {
+  Study study = TunedPlan("  options: {" + options + "}\n").study;
   study.failure = {0.5, 3.0};
-  const StudyPlan plan = MakePlan(study);
+  return MakePlan(study);
+}
+
+// Several candidates refined, and a share that the best has to explain: 30 % of the matches are wrong.
+TEST(SettingCounts, AreThoseOfPlainCallsWithSeveralRefined) {
+  const StudyPlan plan = PlanWithNarrowBounds(
+      "num_refined: [1, 4, 20], least_explained_share: [0, 0.55, 0.75], num_iterations: [30]");
+  ExpectPlainCounts(plan, {0, 20});
+  const std::vector<SettingCount> counts = Count(plan, 1, {0, 20});
+  EXPECT_NE(Text({counts[0]}), Text({counts[6]})) << "how many are refined does not matter";
+  EXPECT_EQ(counts[0].good, counts[2].good) << "the share is a limit, not a measure of the good";
+  EXPECT_GT(counts[2].false_refusals, 3) << "that it refuses good motions is not seen";
+}
+
+TEST(SettingCounts, AreThoseOfPlainCallsWhicheverHypothesisWins) {
+  const StudyPlan plan = PlanWithNarrowBounds(
+      "selection: [mean_entropy, predictive_likelihood], refinement: [none, robust], mu: [4, 6], "
+      "num_iterations: [30]");
   ExpectPlainCounts(plan, {0, 20});
   const std::vector<SettingCount> counts = Count(plan, 0, {0, 20});
   EXPECT_NE(Text({counts[0]}), Text({counts[4]})) << "the selection does not matter";
@@ -103,10 +119,14 @@ TEST(SettingCounts, AreThoseOfPlainCallsAsPrinted) {
       {0, 20});
 }
 
-// It has no quality test: nothing is refused falsely.
+// It has no quality test: what it refuses falsely, it refuses for the size of the inlier set.
 TEST(SettingCounts, AreThoseOfPlainCallsOfTheStandardEstimator) {
-  ExpectPlainCounts(TunedPlan("  options: {num_iterations: [1, 20], lambda: [0.5, 1]}\n", "standard"),
-                    {0, 20});
+  const StudyPlan plan = TunedPlan(
+      "  options: {num_iterations: [1, 20], lambda: [0.5, 1], inlier_ratio: [inferred, 0.9]}\n", "standard");
+  ExpectPlainCounts(plan, {0, 20});
+  const std::vector<SettingCount> counts = Count(plan, 1, {0, 20});
+  EXPECT_EQ(counts[6].false_refusals, 0);
+  EXPECT_GT(counts[7].false_refusals, 3);
 }
 
 // An estimator whose loop cannot be taken apart is called setting by setting.
@@ -136,7 +156,7 @@ TEST(SettingCounts, ManyLevelsOfMuTakeNoFurtherTrace) {
   EXPECT_EQ(num_traces("mu: [3]"), 2 * 7);
   const int finishes_of_one = calls.finishes;
   EXPECT_EQ(num_traces("mu: {from: 0, to: 10, step: 0.1}"), 2 * 7);
-  EXPECT_EQ(calls.decisions, 2 * 7 * (101 + 1)) << "once per level and trial, and once without quality test";
+  EXPECT_EQ(calls.decisions, 2 * 7 * (101 + 1)) << "once per level and trial, and once without limits";
   EXPECT_LT(calls.finishes, 2 * 7 * 20) << "one per winner at most, not one per level";
   EXPECT_GE(calls.finishes, finishes_of_one);
   EXPECT_EQ(num_traces("mu: [3, 4, 5], significance_level: [0.01, 0.05]"), 2 * 2 * 7);

@@ -52,13 +52,14 @@ TEST(SettingPlan, OtherOptionsDoNotShareATrace) {
   }
 }
 
-TEST(SettingPlan, WithoutItsQualityTestASettingIsSharedByThoseThatDifferInMuAlone) {
-  const SettingPlan plan = PlanWith("mu: [2, 4, 6], lambda: [0.5, 1]");
+TEST(SettingPlan, WithoutItsLimitsASettingIsSharedByThoseThatDifferInLimitsAlone) {
+  const SettingPlan plan = PlanWith(
+      "mu: [2, 4], inlier_ratio: [inferred, 0.5], least_explained_share: [0, 0.5], lambda: [0.5, 1]");
   std::set<const MotionEstimator*> distinct;
-  for (const auto& estimator : plan.without_quality_test) distinct.insert(estimator.get());
+  for (const auto& estimator : plan.without_limits) distinct.insert(estimator.get());
   EXPECT_EQ(distinct.size(), 2u);
-  EXPECT_EQ(plan.without_quality_test[0], plan.without_quality_test[2]);
-  EXPECT_NE(plan.without_quality_test[0], plan.without_quality_test[1]);
+  EXPECT_EQ(plan.without_limits[0], plan.without_limits[14]);
+  EXPECT_NE(plan.without_limits[0], plan.without_limits[1]);
 }
 
 TEST(SettingPlan, TheTraceHasAsManyHypothesesAsAnySettingLooksAt) {

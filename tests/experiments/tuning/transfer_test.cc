@@ -43,14 +43,14 @@ std::vector<std::string> Words(const TransferResult& result) {
 TEST(Transfer, FamiliesAreTheConditions) {
   const TransferResult result = Transfer(FourConditions(), "");
   EXPECT_EQ(Words(result), (std::vector<std::string>{
-                               "sigma_px = 0.5, outlier_ratio = 0.0", "sigma_px = 0.5, outlier_ratio = 0.3",
-                               "sigma_px = 2, outlier_ratio = 0.0", "sigma_px = 2, outlier_ratio = 0.3"}));
+                               "sigma_px = 0.5, outlier_ratio = 0", "sigma_px = 0.5, outlier_ratio = 0.3",
+                               "sigma_px = 2, outlier_ratio = 0", "sigma_px = 2, outlier_ratio = 0.3"}));
   EXPECT_EQ(result.families[2].conditions, (std::vector<std::uint32_t>{2}));
 }
 
 TEST(Transfer, FamiliesOfAFactorTakeConditionsTogether) {
   const TransferResult result = Transfer(FourConditions(), "outlier_ratio");
-  EXPECT_EQ(Words(result), (std::vector<std::string>{"outlier_ratio = 0.0", "outlier_ratio = 0.3"}));
+  EXPECT_EQ(Words(result), (std::vector<std::string>{"outlier_ratio = 0", "outlier_ratio = 0.3"}));
   EXPECT_EQ(result.families[0].conditions, (std::vector<std::uint32_t>{0, 2}));
   EXPECT_EQ(result.families[1].conditions, (std::vector<std::uint32_t>{1, 3}));
   EXPECT_EQ(result.verified[0][0].n, 16);
@@ -68,7 +68,7 @@ TEST(Transfer, AFamilyIsTunedOnItsOwnConditionsAlone) {
   for (size_t f = 0; f < 2; ++f) {
     StudyPlan alone = plan;
     alone.conditions = {plan.conditions[f], plan.conditions[2 + f]};
-    const TuneResult tuned = Tune(alone, SettingsOf(alone), 2);
+    const TuneResult tuned = Tune(alone, SettingsOf(alone), Unreached::kVerifyAll, 2);
     EXPECT_EQ(result.families[f].choice.setting, tuned.choice.setting);
     EXPECT_EQ(result.families[f].choice.path, tuned.choice.path);
     EXPECT_EQ(result.families[f].choice.why, tuned.choice.why);
@@ -91,7 +91,7 @@ TEST(Transfer, WhatHasNoPromiseOrNoOtherFamilyIsRefused) {
   one.conditions.resize(1);
   EXPECT_TRUE(ThrowsInputError([&] { Transfer(one, ""); }, {"one family", "two are needed"}));
   plan.study.tuning->calibrate = 6;  // 0.65^6 = 0.075; two conditions together would do
-  EXPECT_TRUE(ThrowsInputError([&] { Transfer(plan, ""); }, {"calibrate: 6", "1 conditions", "7 would do"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Transfer(plan, ""); }, {"calibrate: 6 in each of 1 conditions", "7 trials would do"}));
   EXPECT_NO_THROW(Transfer(plan, "sigma_px"));
   plan.study.tuning->target = TuneTarget::kRisk;
   EXPECT_TRUE(ThrowsInputError([&] { Transfer(plan, ""); }, {"transfer", "risk"}));

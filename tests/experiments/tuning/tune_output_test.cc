@@ -110,6 +110,14 @@ TEST(TuneOutput, TheTableSaysWhatWasPromisedAndWhatWasSeen) {
                             "-1.00 points", "-26.00 % [", "area under the curve"}));
 }
 
+TEST(TuneOutput, OptionsWithoutEffectAreNamed) {
+  const StudyPlan plan = Plan();
+  TuneResult result = Result(plan);
+  EXPECT_EQ(TuneAsTable(plan, result, {}).find("All settings decided alike"), std::string::npos);
+  result.verified.assign(3, result.verified[1]);
+  EXPECT_TRUE(Holds(TuneAsTable(plan, result, {}), {"All settings decided alike"}));
+}
+
 TEST(TuneOutput, TheVerdictTakesBothLimits) {
   const StudyPlan plan = Plan();  // at most 10 % fail, at most 50 % are refused
   TuneResult result = Result(plan);
@@ -131,6 +139,7 @@ TEST(TuneOutput, ProvenanceHasTheFigures) {
   std::string text;
   for (const auto& [key, value] : ProvenanceOf(plan, Result(plan))) text += key + ": " + value + "\n";
   EXPECT_TRUE(Holds(text, {"study: small", "seed: 3", "tuned: mu = 2", "at most 10 %", "probability 0.05",
+                           "failure: rotation error above 3 deg or direction error above 15 deg",
                            "as_tuned: failure 3.00 %", "verified: failure 4.00 % [", "of 100",
                            "false refusal 5.00 %", "of 80", "program: rcme "}));
 }
@@ -171,12 +180,14 @@ TEST(TuneOutput, RepetitionsCountViolationsOfAllRepetitions) {
   Repetitions repetitions;
   repetitions.num_done = 20;
   repetitions.num_without_choice = 5;
-  repetitions.num_violations = 1;
+  repetitions.num_violated = 1;
+  repetitions.num_undecided = 2;
   repetitions.num_chosen = {0, 14, 1};
   repetitions.reference = Result(plan).verified;
   const std::string table = RepetitionsAsTable(plan, SettingsOf(plan), repetitions);
-  EXPECT_TRUE(Holds(table, {"tuned 20 times", "Violated: 1 of 20: 5.00 %", "promised at most 5 %",
-                            "without a choice: 5", "mu = 2", "mu = 3"}));
+  EXPECT_TRUE(
+      Holds(table, {"tuned 20 times", "Violated: 1 of 20: 5.00 %", "violated or undecided: 3: 15.00 %",
+                    "promised at most 5 %", "without a choice: 5", "mu = 2", "mu = 3"}));
   EXPECT_EQ(table.find("mu = 1 "), std::string::npos) << "never chosen";
 }
 

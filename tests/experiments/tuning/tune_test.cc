@@ -26,8 +26,8 @@ const std::string kBlock =
     "  verify: 10\n"
     "  options: {mu: [1, 2, 3], lambda: [0.5, 1]}\n";
 
-TuneResult TuneIt(const StudyPlan& plan, int num_threads = 2) {
-  return Tune(plan, SettingsOf(plan), num_threads);
+TuneResult TuneIt(const StudyPlan& plan, int num_threads = 2, Unreached unreached = Unreached::kVerifyAll) {
+  return Tune(plan, SettingsOf(plan), unreached, num_threads);
 }
 
 std::string AllOf(const StudyPlan& plan, const TuneResult& result) {
@@ -162,12 +162,27 @@ TEST(Tune, IsAFunctionOfSeedAndBlock) {
   EXPECT_NE(AllOf(other, TuneIt(other)), whole);
 }
 
+// Verification takes the most time, and without a choice only a figure shows it.
+TEST(Tune, WithoutAChoiceItMayStop) {
+  StudyPlan plan = TunedPlan(kBlock);
+  plan.study.tuning->max_refusal = 0.15;
+  WatchedData::Log log;
+  const TuneResult stopped = TuneIt(Watched(plan, &log), 2, Unreached::kStop), whole = TuneIt(plan);
+  EXPECT_FALSE(whole.choice.setting.has_value());
+  EXPECT_EQ(stopped.choice.why, whole.choice.why);
+  EXPECT_EQ(log.times.size(), 2u * 30u);
+  EXPECT_TRUE(stopped.verified.empty());
+  EXPECT_EQ(whole.verified.size(), 6u);
+  plan.study.tuning->max_refusal = 0.9;
+  EXPECT_EQ(AllOf(plan, TuneIt(plan, 2, Unreached::kStop)), AllOf(plan, TuneIt(plan)));
+}
+
 TEST(Tune, TooFewTrialsAreRefusedBeforeAnyIsRun) {
   WatchedData::Log log;
   StudyPlan plan = Watched(TunedPlan(kBlock), &log);
   plan.study.tuning->calibrate = 4;  // 0.7^9 = 0.040
-  EXPECT_TRUE(ThrowsInputError([&] { TuneIt(plan); }, {"tune: calibrate: 4 per condition, 2 conditions",
-                                                       "8 trials", "30 %", "delta 0.05", "9 would do"}));
+  EXPECT_TRUE(ThrowsInputError([&] { TuneIt(plan); }, {"tune: calibrate: 4 in each of 2 conditions", "30 %",
+                                                       "delta 0.05", "9 trials would do", "calibrate: 5"}));
   EXPECT_TRUE(log.times.empty());
   plan.study.tuning->calibrate = 5;
   EXPECT_NO_THROW(TuneIt(plan));
@@ -209,7 +224,8 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
   const Repetitions repetitions = RepeatTuning(watched, SettingsOf(watched), 8, 2);
   EXPECT_EQ(log.seeds.size(), 9u);
   std::vector<std::int64_t> num_chosen(6, 0);
-  std::int64_t num_without = 0, num_violations = 0;
+  std::int64_t num_without = 0;
+  std::map<TargetVerdict, std::int64_t> num_with;
   Progress progress("trials", 1);
   const std::vector<SettingCount> reference =
       SumOver(CountOutcomes(plan, SettingsOf(plan), {30, 40}, 1, &progress), {0, 1});
@@ -223,12 +239,13 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
       continue;
     }
     ++num_chosen[*setting];
-    num_violations += ViolatesTarget(*plan.study.tuning, reference[*setting]);
+    ++num_with[VerdictOf(*plan.study.tuning, reference[*setting])];
   }
   EXPECT_EQ(repetitions.num_done, 8);
   EXPECT_EQ(repetitions.num_without_choice, num_without);
   EXPECT_EQ(repetitions.num_chosen, num_chosen);
-  EXPECT_EQ(repetitions.num_violations, num_violations);
+  EXPECT_EQ(repetitions.num_violated, num_with[TargetVerdict::kViolated]);
+  EXPECT_EQ(repetitions.num_undecided, num_with[TargetVerdict::kUndecided]);
 }
 
 TEST(RepeatTuning, ARiskIsNoPromise) {
