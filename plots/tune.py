@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws what `rcme tune` found, three figures, each as PNG and PDF:
   PREFIX_surface  failure and refusal over the options, with the tuned setting, certified ones and other estimators
-  PREFIX_front    failure against refusal of every setting, with the path of those tested
+  PREFIX_front    failure against refusal of every setting, with the Pareto front and those that were tested
   PREFIX_roc      how well the score tells good models from bad ones (if the file has such curves)
 The first is left out, with a word, where there is no surface: one level of every option, or too many panels.
 It draws what the file says and computes nothing: rates, intervals, areas and the tuned setting are those of the

@@ -1,5 +1,5 @@
-"""Failure against refusal: every setting that `rcme tune` tried, the path of those it tested, the tuned one and the
-other estimators."""
+"""Failure against refusal: every setting that `rcme tune` tried with their Pareto front, those it tested, the tuned one
+and the other estimators."""
 
 import math
 
@@ -13,8 +13,8 @@ from tune_marks import (CERTIFIED, EXACT, TARGET_LINE, TUNED, add_legend_and_cap
                         head_in_words, looks_of, marks_of, plot_points, target_handle, tuned_handle, tuned_in_words)
 
 SETTING = dict(linestyle="none", marker=".", markersize=3.2, color="0.72", markeredgewidth=0)
-PATH = dict(color="0.35", linewidth=0.9)
-TESTED = {**CERTIFIED, "color": PATH["color"], "markeredgecolor": PATH["color"]}
+FRONT = dict(color="0.35", linewidth=0.9)
+TESTED = {**CERTIFIED, "color": FRONT["color"], "markeredgecolor": FRONT["color"]}
 UNCERTIFIED = {**TESTED, "markerfacecolor": "white"}
 MARGIN = 0.025  # of an axis, before its zero
 SUMS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1)  # of failure and refusal
@@ -38,15 +38,15 @@ def draw_bars(axes, settings, **look):
     axes.vlines(x.value, y.lower, y.upper, **look)
 
 
-def draw_path(axes, settings):
-    """The tested settings as a line, from the least refusal on."""
-    path = sorted((setting for setting in settings if setting.is_on_path),
-                  key=lambda one: (one.rates["refusal"].value, -one.rates["failure"].value))
-    if path:
-        draw_bars(axes, path, color="0.72", linewidth=0.5, zorder=2)
-    axes.plot(*places_of(path), **PATH, zorder=3, label="_path")
+def draw_tested(axes, settings):
+    """The Pareto front of all settings as a line from the least refusal on, and those that were tested as points."""
+    front = sorted(zip(*places_of([one for one in settings if one.is_on_front])))
+    axes.plot(*zip(*front), **FRONT, zorder=2.5, label="_front")
+    tested = [one for one in settings if one.is_on_path]
+    if tested:
+        draw_bars(axes, tested, color="0.72", linewidth=0.5, zorder=2)
     for is_certified, look, label in ((False, UNCERTIFIED, "_tested"), (True, TESTED, "_certified")):
-        plot_points(axes, *places_of([one for one in path if one.is_certified == is_certified]), **look, zorder=3,
+        plot_points(axes, *places_of([one for one in tested if one.is_certified == is_certified]), **look, zorder=3,
                     label=label)
 
 
@@ -102,9 +102,10 @@ def tops_of(marks, target):
 def legend_of(tune, settings, others):
     is_tested = {setting.is_certified for setting in settings if setting.is_on_path}
     handles = tuned_handle(tune)
-    handles += [handle("tested, certified", **{**TESTED, **PATH, "linestyle": "-"})] * (True in is_tested)
-    handles += [handle("tested, not certified", **{**UNCERTIFIED, **PATH, "linestyle": "-"})] * (False in is_tested)
+    handles += [handle("tested, certified", **TESTED)] * (True in is_tested)
+    handles += [handle("tested, not certified", **UNCERTIFIED)] * (False in is_tested)
     handles += [handle("other setting", **{**SETTING, "markersize": 6})]
+    handles += [handle("Pareto front", **FRONT)]
     handles += target_handle(tune.target, ("failure", "refusal"))
     handles += [handle("failure + refusal (%)", **{**SUM_LINE, "color": "0.6"})]
     return handles + [handle(other.name(), **marks_of(look)) for other, look in others]
@@ -121,7 +122,7 @@ def draw_front(tune):
     draw_target(axes, tune.target)
     plot_points(axes, *places_of([one for one in settings if not one.is_on_path]), **SETTING, zorder=1.5,
                 label="_settings")
-    draw_path(axes, settings)
+    draw_tested(axes, settings)
     for other, look in others:
         draw_mark(axes, other, {**marks_of(look), "label": f"_{other.name()}"})
     for one in tuned:

@@ -71,7 +71,8 @@ class Setting:
 
     levels: tuple
     rates: dict  # quantity -> Rate
-    is_on_path: bool = False
+    is_on_front: bool = False  # none fails and is refused as seldom, and one of the two less often
+    is_on_path: bool = False  # one of those that were tested
     is_certified: bool = False
 
 
@@ -210,7 +211,7 @@ def is_real(text):
 
 def read_setting(node):
     return Setting(node.texts("levels"), read_rates(node, SETTING_RATES),
-                   node.boolean("is_on_path"), node.boolean("is_certified"))
+                   *map(node.boolean, ("is_on_front", "is_on_path", "is_certified")))
 
 
 def read_settings(file, options):

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <numeric>
 
 #include "experiments/field_text.h"
 #include "experiments/file_output.h"
@@ -186,7 +188,25 @@ Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
                               {"true_accept_rate", ShareAtMost(roc.good, mu)}}})}};
 }
 
+// Per setting, whether it is on the Pareto front: none fails and is refused as seldom, and one of the two
+// less often.
+std::vector<bool> AreOnFront(const std::vector<SettingCount>& counts) {
+  std::vector<size_t> order(counts.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto rates = [&](size_t s) { return std::pair(counts[s].refusals, counts[s].failures); };
+  std::ranges::sort(order, {}, rates);
+  std::vector<bool> are_on_front(counts.size());
+  auto last = std::pair(std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::max());
+  for (const size_t s : order) {
+    if (rates(s).second >= last.second && rates(s) != last) continue;
+    are_on_front[s] = true;
+    last = rates(s);
+  }
+  return are_on_front;
+}
+
 Json SettingsAsJson(const SettingPlan& settings, const TuneResult& result) {
+  const std::vector<bool> are_on_front = AreOnFront(result.verified);
   Json all = Json::array();
   const std::vector<size_t>& path = result.choice.path;
   for (size_t s = 0; s < settings.settings.size(); ++s) {
@@ -196,6 +216,7 @@ Json SettingsAsJson(const SettingPlan& settings, const TuneResult& result) {
          {"failure", RateAsJson(result.verified[s].Failure())},
          {"refusal", RateAsJson(result.verified[s].Refusal())},
          {"false_refusal", RateAsJson(result.verified[s].FalseRefusal())},
+         {"is_on_front", static_cast<bool>(are_on_front[s])},
          {"is_on_path", place != path.end()},
          {"is_certified", place - path.begin() < static_cast<std::ptrdiff_t>(result.choice.num_certified)}});
   }

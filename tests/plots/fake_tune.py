@@ -46,7 +46,7 @@ def setting(levels, noise):
     refusal = 0.9 * logistic(0.7 * (mu - 6 + rest))
     return {"levels": list(levels), "failure": rate(failure + noise.gauss(0, 0.003)),
             "refusal": rate(refusal + noise.gauss(0, 0.004), 0.03), "false_refusal": rate(0.6 * refusal),
-            "is_on_path": False, "is_certified": False}
+            "is_on_front": False, "is_on_path": False, "is_certified": False}
 
 
 def settings(options, seed=1):
@@ -56,6 +56,7 @@ def settings(options, seed=1):
         place = one["refusal"]["value"], one["failure"]["value"]
         one["is_on_path"] = not any(better["refusal"]["value"] < place[0] and
                                     better["failure"]["value"] < place[1] - 0.004 for better in found)
+        one["is_on_front"] = one["is_on_path"]
         one["is_certified"] = one["is_on_path"] and one["failure"]["upper"] < 0.065
     return found
 

@@ -228,12 +228,12 @@ class TheFront(TuneTest):
     def test_every_setting_and_estimator_stands_at_its_rates_with_its_intervals(self):
         value = fake.tune(GRID, others=[fake.other("rcme", "as is", None, 0.31, 0.12)])
         for number, one in enumerate(value["settings"]):
-            one.update(is_on_path=number in (0, 3), is_certified=number == 3)
+            one.update(is_on_front=number in (3, 4), is_on_path=number in (0, 3), is_certified=number == 3)
         value["tuned"] = fake.chosen(value["settings"][3])
         figure = draw_front(self.read(value))
         axes, places = figure.axes[0], [(one["refusal"]["value"], one["failure"]["value"]) for one in value["settings"]]
         self.assertEqual(points_of(axes, "_settings"), [places[number] for number in (1, 2, 4, 5)])
-        self.assertEqual(points_of(axes, "_path"), sorted([places[0], places[3]]))
+        self.assertEqual(points_of(axes, "_front"), sorted([places[3], places[4]]))
         self.assertEqual((points_of(axes, "_tested"), points_of(axes, "_certified")), ([places[0]], [places[3]]))
         self.assertEqual(points_of(axes, "_tuned"), [places[3]])
         self.assertEqual(points_of(axes, "_RCME (as is)"), [(0.12, 0.31)])
@@ -276,7 +276,7 @@ class TheFront(TuneTest):
         nowhere = {**fake.other("rcme", "", None, 0.1, 0.1), "failure": fake.rate(None)}
         value = fake.tune(GRID, tuned=None, others=[nowhere])
         for one in value["settings"]:
-            one.update(refusal=fake.rate(None), is_on_path=False)
+            one.update(refusal=fake.rate(None), is_on_front=False, is_on_path=False)
         figure = draw_front(self.read(value))
         figure.canvas.draw()
         self.assertEqual(points_of(figure.axes[0], "_settings"), [])

@@ -63,11 +63,28 @@ TEST(TuneOutput, RatesOfTheJsonAreThoseOfVerification) {
     EXPECT_EQ(json["settings"][s]["is_on_path"], on_path) << s;
     EXPECT_EQ(json["settings"][s]["is_certified"], certified) << s;
   }
+  for (const Json& setting : json["settings"])
+    EXPECT_EQ(setting["is_on_front"], true);  // 0 / 50, 4 / 20, 25 / 0
   EXPECT_EQ(json["tuned"]["levels"], Json::array({"2"}));
   EXPECT_EQ(json["tuned"]["failure_or_refusal"]["value"], 0.24);
   ASSERT_EQ(json["others"].size(), 1u);
   EXPECT_EQ(json["others"][0]["label"], "standard");
   EXPECT_TRUE(json["others"][0]["levels"].is_null()) << "another estimator has no place among the levels";
+}
+
+// Failures / refusals of 100: 2 is beaten by 1, and of equals both are on the front.
+TEST(TuneOutput, TheFrontHasTheSettingsThatNoneBeats) {
+  const StudyPlan plan = TunedPlan("  at_most: 0.1\n  options: {mu: [1, 2, 3, 4, 5]}\n");
+  TuneResult result = Result(plan);
+  result.verified = {{100, 4, 20, 80, 0},
+                     {100, 4, 21, 80, 0},
+                     {100, 0, 50, 50, 0},
+                     {100, 4, 20, 80, 0},
+                     {100, 5, 20, 80, 0}};
+  const Json json = Json::parse(TuneAsJson(plan, SettingsOf(plan), result, {}));
+  std::string on_front;
+  for (const Json& setting : json["settings"]) on_front += setting["is_on_front"] ? '1' : '0';
+  EXPECT_EQ(on_front, "10110");
 }
 
 // The study's own estimator at its mu, which is the default, 6.
