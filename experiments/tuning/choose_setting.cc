@@ -157,6 +157,18 @@ ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count) {
   return tuning.target == TuneTarget::kFalseRefusal ? count.FalseRefusal() : count.Failure();
 }
 
+const char* VerdictName(TargetVerdict verdict) {
+  switch (verdict) {
+    case TargetVerdict::kHolds:
+      return "holds";
+    case TargetVerdict::kViolated:
+      return "violated";
+    case TargetVerdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
 bool HasRefusalLimit(const Tuning& tuning) {
   return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
 }

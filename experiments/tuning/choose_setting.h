@@ -34,6 +34,8 @@ bool HasRefusalLimit(const Tuning& tuning);
 
 enum class TargetVerdict { kHolds, kViolated, kUndecided };
 
+const char* VerdictName(TargetVerdict verdict);
+
 // Whether a setting meets the target on the trials of a count: the whole 95 % interval of every rate that it
 // limits below the limit, that of one above, or neither.
 TargetVerdict VerdictOf(const Tuning& tuning, const SettingCount& count);

@@ -13,18 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string VerdictName(TargetVerdict verdict) {
-  switch (verdict) {
-    case TargetVerdict::kHolds:
-      return "holds";
-    case TargetVerdict::kViolated:
-      return "violated";
-    case TargetVerdict::kUndecided:
-      break;
-  }
-  return "undecided";
-}
-
 // The other families on which a family's choice has this verdict.
 std::vector<std::string> OthersWith(TargetVerdict verdict, const Tuning& tuning, const TransferResult& result,
                                     size_t family) {

@@ -233,11 +233,6 @@ std::vector<size_t> ByTimesChosen(const Repetitions& repetitions) {
   return chosen;
 }
 
-const char* VerdictInWord(TargetVerdict verdict) {
-  if (verdict == TargetVerdict::kHolds) return "holds";
-  return verdict == TargetVerdict::kViolated ? "VIOLATED" : "undecided";
-}
-
 // The first rows of `chosen`, and every setting whose target is not known to hold.
 std::string ChosenAsTable(const Tuning& tuning, const SettingPlan& settings, const Repetitions& repetitions,
                           const std::vector<size_t>& chosen) {
@@ -249,8 +244,7 @@ std::string ChosenAsTable(const Tuning& tuning, const SettingPlan& settings, con
     const TargetVerdict verdict = VerdictOf(tuning, count);
     if (i >= kMaxChosenRows && verdict == TargetVerdict::kHolds) continue;
     rows.push_back({names[s], fmt::format("{}", repetitions.num_chosen[s]), RateForTable(count.Failure()),
-                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()),
-                    VerdictInWord(verdict)});
+                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()), VerdictName(verdict)});
   }
   return FormatColumns(rows);
 }
