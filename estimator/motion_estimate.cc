@@ -9,7 +9,11 @@ const std::string& StatusName(MotionStatus status) {
                                                  "degenerate_matches",
                                                  "refinement_diverged",
                                                  "too_few_explained",
-                                                 "invalid_input"};
+                                                 "direction_not_observable",
+                                                 "not_better_than_chance",
+                                                 "invalid_input",
+                                                 "invalid_motion",
+                                                 "invalid_covariance"};
   return names[static_cast<size_t>(status)];
 }
 
@@ -20,7 +24,11 @@ const std::vector<MotionStatus>& AllStatuses() {
                                                 MotionStatus::kDegenerateMatches,
                                                 MotionStatus::kRefinementDiverged,
                                                 MotionStatus::kTooFewExplained,
-                                                MotionStatus::kInvalidInput};
+                                                MotionStatus::kDirectionNotObservable,
+                                                MotionStatus::kNotBetterThanChance,
+                                                MotionStatus::kInvalidInput,
+                                                MotionStatus::kInvalidMotion,
+                                                MotionStatus::kInvalidCovariance};
   return all;
 }
 

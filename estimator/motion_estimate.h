@@ -9,13 +9,18 @@ namespace rcme {
 
 // How a call ended. Every call ends in one of these; only kOk carries a motion.
 enum class MotionStatus {
-  kOk,                  // a motion was found and refined
-  kNoCandidate,         // the paper's "Detect-fail": the candidate set is empty
-  kTooFewMatches,       // fewer distinct matches than a minimal sample needs
-  kDegenerateMatches,   // the matches cannot determine a motion (collinear, or every sample is singular)
-  kRefinementDiverged,  // the refinement found no finite optimum, or no more than five matches agree with it
-  kTooFewExplained,     // the refined motion explains a smaller share of the matches than was asked for
-  kInvalidInput,        // NaN or infinite coordinates, a singular camera, a noise level that is not positive
+  kOk,                      // a motion was found and refined
+  kNoCandidate,             // the paper's "Detect-fail": the candidate set is empty
+  kTooFewMatches,           // fewer distinct matches than a minimal sample needs
+  kDegenerateMatches,       // the matches cannot determine a motion (collinear, or every sample is singular)
+  kRefinementDiverged,      // the refinement found no finite optimum, or at most five matches agree with it
+  kTooFewExplained,         // the refined motion explains a smaller share of the matches than was asked for
+  kDirectionNotObservable,  // the parallax is within its noise: the rotation is given, the direction is not
+  kNotBetterThanChance,     // no more matches agree with the motion than would agree with any motion
+  kInvalidInput,            // NaN or infinite coordinates, a singular camera, a noise level not positive
+  // Never an estimator's own: what the check of its answer makes of kOk.
+  kInvalidMotion,      // not a rotation and a unit vector, or not finite
+  kInvalidCovariance,  // not finite, symmetric and positive semidefinite
 };
 
 // The status as a word for files and programs ("ok", "no_candidate", ...), and back.

@@ -47,11 +47,20 @@ ProblemRecord Describe(const TrialData& data, const StreamName& name) {
 
 }  // namespace
 
+bool IsInvalid(const TrialRecord& record) {
+  return record.status == MotionStatus::kInvalidMotion || record.status == MotionStatus::kInvalidCovariance;
+}
+
+bool HasRefused(const TrialRecord& record) {
+  return record.status != MotionStatus::kOk && !IsInvalid(record);
+}
+
 bool IsScored(const TrialRecord& record) {
   return record.status != MotionStatus::kOk || !std::isnan(record.rotation_error_deg);
 }
 
 bool HasFailed(const TrialRecord& record, const FailureBounds& bounds) {
+  if (IsInvalid(record)) return true;
   return record.status == MotionStatus::kOk && (record.rotation_error_deg > bounds.max_rotation_error_deg ||
                                                 record.direction_error_deg > bounds.max_direction_error_deg);
 }

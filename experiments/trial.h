@@ -38,9 +38,14 @@ struct ProblemRecord {
   Severity severity;
 };
 
+// An answer that is no motion or comes with no covariance: a failure, whatever the truth is.
+bool IsInvalid(const TrialRecord& record);
+// No motion: neither a success nor a failure.
+bool HasRefused(const TrialRecord& record);
 // False for a returned motion whose truth is not known: it has neither failed nor succeeded.
 bool IsScored(const TrialRecord& record);
-// A returned motion beyond a bound. False where no motion was returned, or no truth is known.
+// An invalid answer, or a returned motion beyond a bound. False where no motion was returned, or no truth is
+// known.
 bool HasFailed(const TrialRecord& record, const FailureBounds& bounds);
 // A returned motion within the bounds.
 bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds);

@@ -3,12 +3,10 @@
 namespace rcme {
 namespace {
 
-bool HasRefused(const TrialRecord& record, const FailureBounds&) {
-  return record.status != MotionStatus::kOk;
-}
+bool Refused(const TrialRecord& record, const FailureBounds&) { return HasRefused(record); }
 
 bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) {
-  return HasRefused(record, bounds) || HasFailed(record, bounds);
+  return HasRefused(record) || HasFailed(record, bounds);
 }
 
 }  // namespace
@@ -16,7 +14,7 @@ bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) 
 const std::vector<TrialEvent>& TrialEvents() {
   static const std::vector<TrialEvent> events = {
       {"failure", "a motion beyond a failure bound", HasFailed, true},
-      {"refusal", "no motion, for whatever reason", HasRefused, false},
+      {"refusal", "no motion, for whatever reason", Refused, false},
       {"failure_or_refusal", "one of the two", HasFailedOrRefused, true}};
   return events;
 }

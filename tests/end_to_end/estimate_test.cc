@@ -10,12 +10,13 @@
 #include "estimator/geometry/pose.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/paths.h"
 #include "tests/test_support/run_program.h"
 
 namespace rcme {
 namespace {
 
-const std::string kFountain = RCME_SOURCE_DIR "/../shared/real/dev/strecha_fountain_000.csv.gz";
+const std::string kFountain = SourceFolder() + "/../shared/real/dev/strecha_fountain_000.csv.gz";
 
 nlohmann::json Estimate(const std::string& path, const std::string& estimator,
                         const std::vector<std::string>& more = {}) {

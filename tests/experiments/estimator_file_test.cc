@@ -10,6 +10,7 @@
 
 #include "experiments/study_file.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/paths.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -203,7 +204,7 @@ TEST_F(EstimatorFileInStudy, Errors) {
 // Those that come with the project.
 TEST(EstimatorFile, EveryFileOfTheProjectIsValid) {
   int num_files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(RCME_SOURCE_DIR "/experiments/estimators")) {
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/experiments/estimators")) {
     EXPECT_NO_THROW(LoadEstimatorFile(entry.path().string())) << entry.path();
     ++num_files;
   }

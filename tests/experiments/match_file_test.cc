@@ -14,12 +14,13 @@
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/paths.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
 namespace {
 
-const std::string kRealFolder = RCME_SOURCE_DIR "/../shared/real/dev";
+const std::string kRealFolder = SourceFolder() + "/../shared/real/dev";
 
 // A small file with everything in it; `replace` puts one piece of text in place of another.
 std::string FullText() {

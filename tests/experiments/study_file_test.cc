@@ -11,6 +11,7 @@
 
 #include "experiments/study_plan.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/paths.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -119,7 +120,7 @@ TEST(ToYaml, RoundTripOfAwkwardText) {
 
 TEST(ToYaml, RoundTripOfTheCommittedStudies) {
   int num_studies = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(RCME_SOURCE_DIR "/experiments/studies")) {
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/experiments/studies")) {
     if (entry.path().extension() != ".yaml") continue;
     const Study study = LoadStudy(entry.path().string());
     const std::string text = ToYaml(study);

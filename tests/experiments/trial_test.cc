@@ -185,7 +185,8 @@ TEST(Score, NoMotionIsNeitherSuccessNorFailure) {
                                  record.inlier_precision, record.inlier_recall}) {
       EXPECT_TRUE(std::isnan(unknown)) << StatusName(status);
     }
-    EXPECT_FALSE(HasFailed(record, {})) << StatusName(status);
+    EXPECT_EQ(HasFailed(record, {}), IsInvalid(record)) << StatusName(status);
+    EXPECT_EQ(HasRefused(record), !IsInvalid(record)) << StatusName(status);
     EXPECT_FALSE(HasSucceeded(record, {})) << StatusName(status);
   }
 }

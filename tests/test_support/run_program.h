@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/test_support/paths.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
@@ -76,7 +77,7 @@ class RunningProgram {
 
 // The built program with these arguments.
 inline std::vector<std::string> RcmeCommand(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RCME_PROGRAM);
+  arguments.insert(arguments.begin(), ProgramPath());
   return arguments;
 }
 
@@ -86,7 +87,7 @@ inline ProgramResult RunRcme(const std::vector<std::string>& arguments) {
 
 // A line of shell, for redirections and limits; the program is "$RCME" in it.
 inline ProgramResult RunShell(const std::string& line) {
-  return RunningProgram({"/bin/sh", "-c", "RCME='" RCME_PROGRAM "'\n" + line}).Wait();
+  return RunningProgram({"/bin/sh", "-c", "RCME='" + ProgramPath() + "'\n" + line}).Wait();
 }
 
 }  // namespace rcme
