@@ -80,12 +80,14 @@ ComparisonRow RowOf(const PairedCounts& counts) {
   return row;
 }
 
-// A comparison without trials is no test: it costs the others nothing.
-void AdjustForAllTestsOf(const std::string& event, std::vector<ComparisonRow>* rows) {
+// One family: whoever reads the tables reads all of them, and Holm's procedure holds however the tests depend
+// on each other (an event and its union with another do). A comparison without trials is no test: it costs
+// the others nothing.
+void AdjustForAllTests(std::vector<ComparisonRow>* rows) {
   std::vector<ComparisonRow*> tested;
   std::vector<double> p_values;
   for (ComparisonRow& row : *rows) {
-    if (row.event != event || row.counts.n() == 0) continue;
+    if (row.counts.n() == 0) continue;
     tested.push_back(&row);
     p_values.push_back(row.p_value);
   }
@@ -134,7 +136,7 @@ Comparison Compare(const ResultStore& store, const std::string& reference) {
       }
     }
   }
-  for (const TrialEvent& event : TrialEvents()) AdjustForAllTestsOf(event.name, &comparison.rows);
+  AdjustForAllTests(&comparison.rows);
   return comparison;
 }
 

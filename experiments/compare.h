@@ -23,7 +23,7 @@ struct ComparisonRow {
   double risk_difference = 0.0;  // rate of the estimator minus rate of the reference; NaN where n is 0
   Interval interval;             // of the risk difference: Tango's 95 %
   double p_value = 0.0;          // McNemar's exact test of equal rates; NaN where n is 0
-  double holm_p_value = 0.0;     // the same, adjusted for all rows of this event in the run that have trials
+  double holm_p_value = 0.0;     // the same, adjusted for all rows of the comparison that have trials
 };
 
 struct Comparison {

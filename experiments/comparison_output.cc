@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "experiments/field_text.h"
@@ -49,8 +50,10 @@ std::string ComparisonAsTable(const Comparison& comparison) {
       "\nCounts of trials in which the event happened to both, to one only, to neither.\n"
       "Difference: rate of the estimator minus rate of {}, with Tango's 95 % interval.\n"
       "p: McNemar's exact test of equal rates.\n"
-      "Holm p: adjusted for all tests of the same event in this table; * below 0.05.\n",
-      comparison.reference);
+      "Holm p: adjusted for all {} tests of this comparison (events, estimators, conditions); * below "
+      "0.05.\n",
+      comparison.reference,
+      std::ranges::count_if(comparison.rows, [](const ComparisonRow& row) { return row.counts.n() > 0; }));
   return text;
 }
 

@@ -119,7 +119,7 @@ def draw(comparison, x, events):
     style.add_legend_and_caption(figure, legend_of(looks), "; ".join(
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors),
          f"rate of each estimator minus that of {reference}, on the same trials", n_in_words(rows, "point"),
-         "bars: Tango's 95 % intervals; p-values adjusted by Holm for all comparisons of the event in the run"]) + ".")
+         "bars: Tango's 95 % intervals; p-values adjusted by Holm for all tests of the comparison"]) + ".")
     return figure
 
 

@@ -143,7 +143,8 @@ def comparison(run, event):
     caption = joined([
         code(event["name"]), f" ({event['doc']}): in how many of n trials it happened to the estimator and to {reference}; "
         f"rate of the estimator minus rate of {reference}, in percentage points, with Tango's 95 % interval; McNemar's "
-        f"exact p, and that adjusted by Holm for all tests in this table (* and bold: below {SIGNIFICANCE_LEVEL:g})."])
+        f"exact p, and that adjusted by Holm for all tests of the comparison, of every event (* and bold: below "
+        f"{SIGNIFICANCE_LEVEL:g})."])
     return table(caption, ["estimator", "n", "both", "estimator only", f"{reference} only", "neither", "difference",
                            "p (McNemar)", "p (Holm)"],
                  by_condition(lines, lambda row: condition_heading(run, row, run.comparison.factors)))

@@ -99,7 +99,7 @@ TEST_F(CompareTest, PublishedIntervalAndPValue) {
   EXPECT_NEAR(row.interval.lower, -0.517232276, 2e-9);
   EXPECT_NEAR(row.interval.upper, -0.026003034, 2e-9);
   EXPECT_NEAR(row.p_value, 0.0703125, 1e-12);
-  EXPECT_EQ(row.holm_p_value, row.p_value) << "the only test of its event: the other condition has no trial";
+  EXPECT_DOUBLE_EQ(row.holm_p_value, 3 * row.p_value) << "three events: the other condition has no trial";
 }
 
 TEST_F(CompareTest, AnotherReferenceMirrorsTheComparison) {
@@ -112,18 +112,28 @@ TEST_F(CompareTest, AnotherReferenceMirrorsTheComparison) {
   EXPECT_NEAR(row.interval.lower, 0.026003034, 2e-9);
 }
 
-TEST_F(CompareTest, HolmGoesOverAllComparisonsOfAnEvent) {
+// Catches a family per event (2 p for two estimators), one per estimator (3 p), and conditions without trials
+// that are counted as tests (12 p).
+TEST_F(CompareTest, HolmGoesOverAllEventsEstimatorsAndConditions) {
   study_.estimators.push_back(study_.estimators[1]);
   study_.estimators[2].label = "third";
-  // ours fails alone in 6 of 10: p = 2 / 2^6 = 0.03125; third in 3: p = 2 / 2^3 = 0.25; no one refuses: p
-  // = 1.
-  Write("run", {{"sff", 3}, {"sfs", 3}, {"sss", 4}});
-  const Comparison comparison = ComparisonOf("run");
-  EXPECT_DOUBLE_EQ(Row(comparison, "failure", "ours").p_value, 0.03125);
-  EXPECT_DOUBLE_EQ(Row(comparison, "failure", "ours").holm_p_value, 2 * 0.03125);
-  EXPECT_DOUBLE_EQ(Row(comparison, "failure", "third").p_value, 0.25);
-  EXPECT_DOUBLE_EQ(Row(comparison, "failure", "third").holm_p_value, 0.25);
-  EXPECT_EQ(Row(comparison, "refusal", "third").holm_p_value, 1.0);
+  // ours fails alone in 8 of 12: p = 2 / 2^8; third in 4: p = 2 / 2^4; nobody refuses: p = 1.
+  Write("run", {{"sff", 4}, {"sfs", 4}, {"sss", 4}});
+  const Comparison one = ComparisonOf("run");
+  const double p8 = 2.0 / 256.0, p4 = 2.0 / 16.0;
+  EXPECT_DOUBLE_EQ(Row(one, "failure", "ours").p_value, p8);
+  EXPECT_DOUBLE_EQ(Row(one, "failure", "ours").holm_p_value, 6 * p8) << "two estimators, three events";
+  EXPECT_DOUBLE_EQ(Row(one, "failure_or_refusal", "ours").holm_p_value, 6 * p8)
+      << "the larger of 6 p and 5 p";
+  EXPECT_DOUBLE_EQ(Row(one, "failure", "third").p_value, p4);
+  EXPECT_DOUBLE_EQ(Row(one, "failure", "third").holm_p_value, 4 * p4);
+  EXPECT_EQ(Row(one, "refusal", "third").holm_p_value, 1.0);
+  // Four trials of the other condition, in which nothing happens: six more tests.
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_));
+    for (std::uint32_t trial = 0; trial < 4; ++trial) AddRecords(store, Trial(1, trial, "sss"));
+  }
+  EXPECT_DOUBLE_EQ(Row(ComparisonOf("run"), "failure", "ours").holm_p_value, 12 * p8);
 }
 
 TEST_F(CompareTest, NoTrialsNoNumbers) {
@@ -185,7 +195,7 @@ TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
             "study,condition,outlier_ratio,estimator,reference,event,n,both,estimator_only,reference_only,"
             "neither,risk_difference,lower,upper,p_mcnemar,p_holm");
   EXPECT_EQ(lines[1], fmt::format("small,0,0,ours,standard,failure,21,1,1,7,12,-0.28571429,{:.8g},{:.8g},"
-                                  "0.0703125,0.0703125",
+                                  "0.0703125,0.2109375",
                                   comparison.rows[0].interval.lower, comparison.rows[0].interval.upper));
   EXPECT_EQ(lines[4], "small,1,0.3,ours,standard,failure,0,0,0,0,0,,-1,1,,");
   const nlohmann::json json = nlohmann::json::parse(ComparisonAsJson(comparison));
@@ -201,7 +211,7 @@ TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
   const std::string table = ComparisonAsTable(ComparisonOf("run"));
   for (const char* part : {"Study small against standard: 21 of 12 trials done", "standard only",
-                           "-28.57 [-51.72, -2.60]", "0.0703", "Tango", "McNemar", "Holm"}) {
+                           "-28.57 [-51.72, -2.60]", "0.0703", "Tango", "McNemar", "all 3 tests"}) {
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
   }
 }
