@@ -17,9 +17,9 @@ HWY_INLINE Mask AreClearlyBehind(const TwoViewPose& pose, const RayScale& scale,
   const Mask are_in_front = hn::And(sides.inverse_depth > Set(0.0), sides.is_ahead_of_camera2);
   const Vec3& y = sides.ray1_in_cam2;
   const Vec inverse_z = Set(1.0) / y.z;
-  const Vec parallax_x = hn::MulSub(y.x, inverse_z, sides.ray2.x) / Set(scale.x2);
-  const Vec parallax_y = hn::MulSub(y.y, inverse_z, sides.ray2.y) / Set(scale.y2);
-  const Mask is_far = hn::MulAdd(parallax_x, parallax_x, Square(parallax_y)) > Set(36.0);
+  const Vec parallax_x = FusedMulSub(y.x, inverse_z, sides.ray2.x) / Set(scale.x2);
+  const Vec parallax_y = FusedMulSub(y.y, inverse_z, sides.ray2.y) / Set(scale.y2);
+  const Mask is_far = FusedMulAdd(parallax_x, parallax_x, Square(parallax_y)) > Set(36.0);
   return hn::AndNot(are_in_front, hn::Or(y.z <= Set(0.0), is_far));
 }
 

@@ -33,7 +33,7 @@ HWY_INLINE Sides EvaluateSides(const TwoViewPose& pose, const RayScale& scale, c
   const Vec3 y = Mat3{{row(0), row(1), row(2)}} * ray1;
   const Vec3 parallax = Cross(ray2, {Set(pose.t[0]), Set(pose.t[1]), Set(pose.t[2])});
   const Vec w = hn::Neg(Dot(Cross(ray2, y), parallax));
-  const Vec depth = hn::MulAdd(Dot(parallax, parallax), y.z, w * Set(pose.t[2]));
+  const Vec depth = FusedMulAdd(Dot(parallax, parallax), y.z, w * Set(pose.t[2]));
   return {ray2, y, w, depth > Set(0.0)};
 }
 

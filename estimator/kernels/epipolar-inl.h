@@ -33,17 +33,17 @@ struct Constraint {
 template <typename Entries>
 HWY_INLINE Constraint EvaluateConstraint(const Entries& F, const Matches& m) {
   Constraint c;
-  c.gradient[0] = hn::MulAdd(F(0), m.x2, hn::MulAdd(F(3), m.y2, F(6)));
-  c.gradient[1] = hn::MulAdd(F(1), m.x2, hn::MulAdd(F(4), m.y2, F(7)));
-  c.gradient[2] = hn::MulAdd(F(0), m.x1, hn::MulAdd(F(1), m.y1, F(2)));
-  c.gradient[3] = hn::MulAdd(F(3), m.x1, hn::MulAdd(F(4), m.y1, F(5)));
-  const Vec last = hn::MulAdd(F(6), m.x1, hn::MulAdd(F(7), m.y1, F(8)));
-  c.g = hn::MulAdd(m.x2, c.gradient[2], hn::MulAdd(m.y2, c.gradient[3], last));
+  c.gradient[0] = FusedMulAdd(F(0), m.x2, FusedMulAdd(F(3), m.y2, F(6)));
+  c.gradient[1] = FusedMulAdd(F(1), m.x2, FusedMulAdd(F(4), m.y2, F(7)));
+  c.gradient[2] = FusedMulAdd(F(0), m.x1, FusedMulAdd(F(1), m.y1, F(2)));
+  c.gradient[3] = FusedMulAdd(F(3), m.x1, FusedMulAdd(F(4), m.y1, F(5)));
+  const Vec last = FusedMulAdd(F(6), m.x1, FusedMulAdd(F(7), m.y1, F(8)));
+  c.g = FusedMulAdd(m.x2, c.gradient[2], FusedMulAdd(m.y2, c.gradient[3], last));
   return c;
 }
 
 HWY_INLINE Vec Dot4(const Vec* a, const Vec* b) {
-  return hn::MulAdd(a[0], b[0], hn::MulAdd(a[1], b[1], hn::MulAdd(a[2], b[2], a[3] * b[3])));
+  return FusedMulAdd(a[0], b[0], FusedMulAdd(a[1], b[1], FusedMulAdd(a[2], b[2], a[3] * b[3])));
 }
 
 // One model for all lanes.

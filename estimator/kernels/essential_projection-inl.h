@@ -15,8 +15,6 @@
 #define RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
-
 #include "estimator/kernels/lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,19 +26,36 @@ struct EssentialBasis {
   Mask determines_direction;  // the second singular value of M is above 1e-9 of the first
 };
 
+// cos(acos(c) / 3) of c in [-1, 1], s = sqrt((1 + c) / 2): with acos(c) = 2 acos(s) it is cos(2/3 acos(s)),
+// analytic but at s = -1. Its Chebyshev interpolant of degree 18 on [0, 1], in powers of w = 2 s - 1, is off
+// by at most 2.7e-17 before rounding.
+HWY_INLINE Vec CosineOfThird(Vec s) {
+  constexpr double kCoefficients[] = {
+      0.766044443118978,       0.2474090663228534,     -0.015509188436485936,   0.0024663528150656285,
+      -0.0005041246911381233,  0.00011642545331824931, -2.891993630551945e-05,  7.541075563453027e-06,
+      -2.0358696650818406e-06, 5.641643328528482e-07,  -1.5954336266674776e-07, 4.5826322066904776e-08,
+      -1.334861626366851e-08,  3.982036064644077e-09,  -1.1846250703174136e-09, 3.093616173100703e-10,
+      -9.309326514430476e-11,  5.11466452650849e-11,   -1.5686102744613355e-11};
+  const Vec w = FusedMulSub(Set(2.0), s, Set(1.0));
+  Vec sum = Set(kCoefficients[18]);
+  for (int k = 17; k >= 0; --k) sum = FusedMulAdd(sum, w, Set(kCoefficients[k]));
+  return sum;
+}
+
 // Unit eigenvector of the smallest eigenvalue of S (symmetric, positive semi-definite).
 HWY_INLINE Vec3 SmallestEigenvector(const Mat3& S) {
   const Vec mean = (S.row[0].x + S.row[1].y + S.row[2].z) * Set(1.0 / 3.0);
   const Vec a = S.row[0].x - mean, b = S.row[1].y - mean, c = S.row[2].z - mean;
   const Vec off_diagonal = Dot({S.row[0].y, S.row[0].z, S.row[1].z}, {S.row[0].y, S.row[0].z, S.row[1].z});
   const Vec p = hn::Sqrt((Dot({a, b, c}, {a, b, c}) + off_diagonal + off_diagonal) * Set(1.0 / 6.0));
-  // det(S - mean I) / (2 p^3) is the cosine of three times the angle of the eigenvalues.
+  // det(S - mean I) / (2 p^3) is the cosine of three times the angle of the eigenvalues; the smallest is mean
+  // + 2 p cos(angle + 2 pi / 3) = mean - 2 p cos(acos(-cosine) / 3).
   const Vec3 shifted0 = {a, S.row[0].y, S.row[0].z}, shifted1 = {S.row[1].x, b, S.row[1].z},
              shifted2 = {S.row[2].x, S.row[2].y, c};
   const Vec cosine = Dot(shifted0, Cross(shifted1, shifted2)) / (Set(2.0) * p * p * p);
-  const Vec angle = hn::Acos(Tag(), hn::Clamp(cosine, Set(-1.0), Set(1.0))) * Set(1.0 / 3.0);
-  const Vec smallest =
-      hn::MulAdd(p + p, hn::Cos(Tag(), angle + Set(2.0943951023931954923)), mean);  // 2 pi / 3
+  const Vec half =
+      Greater(Lesser(FusedMulAdd(Set(-0.5), cosine, Set(0.5)), Set(1.0)), Set(0.0));  // (1 - cosine) / 2
+  const Vec smallest = FusedNegMulAdd(p + p, CosineOfThird(hn::Sqrt(half)), mean);
 
   const Vec3 row0 = {S.row[0].x - smallest, S.row[0].y, S.row[0].z};
   const Vec3 row1 = {S.row[1].x, S.row[1].y - smallest, S.row[1].z};
@@ -50,7 +65,7 @@ HWY_INLINE Vec3 SmallestEigenvector(const Mat3& S) {
   for (const Vec3& other : {Cross(row0, row2), Cross(row1, row2)}) {
     const Vec norm = Dot(other, other);
     best = Select(norm > best_norm, other, best);
-    best_norm = hn::Max(norm, best_norm);
+    best_norm = Greater(norm, best_norm);
   }
   return Normalized(best);
 }
@@ -59,8 +74,8 @@ HWY_INLINE Vec3 SmallestEigenvector(const Mat3& S) {
 HWY_INLINE void CompleteBasis(const Vec3& n, Vec3* first, Vec3* second) {
   const Vec one = Set(1.0), sign = hn::CopySign(one, n.z);
   const Vec a = Set(-1.0) / (sign + n.z), b = n.x * n.y * a;
-  *first = {hn::MulAdd(sign * n.x, n.x * a, one), sign * b, hn::Neg(sign * n.x)};
-  *second = {b, hn::MulAdd(n.y, n.y * a, sign), hn::Neg(n.y)};
+  *first = {FusedMulAdd(sign * n.x, n.x * a, one), sign * b, hn::Neg(sign * n.x)};
+  *second = {b, FusedMulAdd(n.y, n.y * a, sign), hn::Neg(n.y)};
 }
 
 HWY_INLINE EssentialBasis ProjectToEssential(const Mat3& M) {
@@ -75,11 +90,11 @@ HWY_INLINE EssentialBasis ProjectToEssential(const Mat3& M) {
   basis.v[1] = Cross(basis.v[2], basis.v[0]);
   const Vec c = Dot(r2, basis.v[0]), d = Dot(r2, basis.v[1]);
 
-  const Vec sum = a + d, h = hn::Sqrt(hn::MulAdd(sum, sum, c * c)), inverse_h = Set(1.0) / h;  // s1 + s2
+  const Vec sum = a + d, h = hn::Sqrt(FusedMulAdd(sum, sum, c * c)), inverse_h = Set(1.0) / h;  // s1 + s2
   const Vec cos = sum * inverse_h, sin = c * inverse_h;
   basis.u[0] = Combine(u1, cos, u2, sin);
   basis.u[1] = Combine(u2, cos, u1, hn::Neg(sin));
-  const Vec difference = hn::Sqrt(hn::MulAdd(a - d, a - d, c * c));  // s1 - s2
+  const Vec difference = hn::Sqrt(FusedMulAdd(a - d, a - d, c * c));  // s1 - s2
   basis.determines_direction = (h - difference) > Set(1e-9) * (h + difference);
 
   const Vec root_half = Set(0.70710678118654752440);

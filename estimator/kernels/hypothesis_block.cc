@@ -34,9 +34,9 @@ HWY_INLINE void SumOfProducts(const Vec3& u, const Vec3& v, const Vec3& s, const
   Product(u, v, b);
   const Vec ss[] = {s.x, s.y, s.z};
   for (int i = 0; i < 3; ++i) {
-    b[3 * i] = hn::MulAdd(ss[i], r.x, b[3 * i]);
-    b[3 * i + 1] = hn::MulAdd(ss[i], r.y, b[3 * i + 1]);
-    b[3 * i + 2] = hn::MulAdd(ss[i], r.z, b[3 * i + 2]);
+    b[3 * i] = FusedMulAdd(ss[i], r.x, b[3 * i]);
+    b[3 * i + 1] = FusedMulAdd(ss[i], r.y, b[3 * i + 1]);
+    b[3 * i + 2] = FusedMulAdd(ss[i], r.z, b[3 * i + 2]);
   }
 }
 
@@ -64,13 +64,13 @@ HWY_INLINE void Cholesky(const Vec (&S)[m][m], Vec (&L)[m][m]) {
       scaled[m][m];  // S = L1 diag(pivots) L1' first, scaled = L1 diag(pivots): no root on the long chain
   for (int j = 0; j < m; ++j) {
     Vec pivot = S[j][j];
-    for (int k = 0; k < j; ++k) pivot = hn::NegMulAdd(scaled[j][k], L[j][k], pivot);
+    for (int k = 0; k < j; ++k) pivot = FusedNegMulAdd(scaled[j][k], L[j][k], pivot);
     const Mask is_positive = pivot > Set(0.0);
     pivots[j] = hn::IfThenElseZero(is_positive, pivot);
     const Vec inverse = hn::IfThenElseZero(is_positive, Set(1.0) / pivot);
     for (int i = j + 1; i < m; ++i) {
       Vec rest = S[i][j];
-      for (int k = 0; k < j; ++k) rest = hn::NegMulAdd(scaled[i][k], L[j][k], rest);
+      for (int k = 0; k < j; ++k) rest = FusedNegMulAdd(scaled[i][k], L[j][k], rest);
       scaled[i][j] = rest;
       L[i][j] = rest * inverse;
     }
@@ -85,13 +85,13 @@ HWY_INLINE void Cholesky(const Vec (&S)[m][m], Vec (&L)[m][m]) {
 HWY_INLINE Vec SquaredMahalanobis(const Vec* m, const Vec (&C)[3][3]) {
   const Vec inverse0 = Set(1.0) / C[0][0];
   const Vec l10 = C[1][0] * inverse0, l20 = C[2][0] * inverse0;
-  const Vec d1 = hn::NegMulAdd(l10, C[1][0], C[1][1]), inverse1 = Set(1.0) / d1;
-  const Vec s21 = hn::NegMulAdd(l10, C[2][0], C[2][1]), l21 = s21 * inverse1;
-  const Vec d2 = hn::NegMulAdd(l21, s21, hn::NegMulAdd(l20, C[2][0], C[2][2]));
-  const Vec m1 = hn::NegMulAdd(l10, m[0], m[1]);
-  const Vec m2 = hn::NegMulAdd(l21, m1, hn::NegMulAdd(l20, m[0], m[2]));
+  const Vec d1 = FusedNegMulAdd(l10, C[1][0], C[1][1]), inverse1 = Set(1.0) / d1;
+  const Vec s21 = FusedNegMulAdd(l10, C[2][0], C[2][1]), l21 = s21 * inverse1;
+  const Vec d2 = FusedNegMulAdd(l21, s21, FusedNegMulAdd(l20, C[2][0], C[2][2]));
+  const Vec m1 = FusedNegMulAdd(l10, m[0], m[1]);
+  const Vec m2 = FusedNegMulAdd(l21, m1, FusedNegMulAdd(l20, m[0], m[2]));
   const Vec squared = Square(m[0]) * inverse0 + Square(m1) * inverse1 + Square(m2) / d2;
-  const Mask is_definite = hn::Min(C[0][0], hn::Min(d1, d2)) > Set(0.0);
+  const Mask is_definite = Lesser(C[0][0], Lesser(d1, d2)) > Set(0.0);
   return hn::IfThenElse(is_definite, squared, Set(std::numeric_limits<double>::infinity()));
 }
 
@@ -129,12 +129,12 @@ HWY_INLINE void ConstraintVariances(const SampleLanes& sample, const Whitening& 
   Vec F[9];
   for (int i = 0; i < 9; ++i) F[i] = whitening(i / 3, i % 3, f[i]);
   for (int k = 0; k < 8; ++k) {
-    const Vec in_2_x = hn::MulAdd(F[0], sample.x1[k], hn::MulAdd(F[1], sample.y1[k], F[2]));
-    const Vec in_2_y = hn::MulAdd(F[3], sample.x1[k], hn::MulAdd(F[4], sample.y1[k], F[5]));
-    const Vec in_1_x = hn::MulAdd(F[0], sample.x2[k], hn::MulAdd(F[3], sample.y2[k], F[6]));
-    const Vec in_1_y = hn::MulAdd(F[1], sample.x2[k], hn::MulAdd(F[4], sample.y2[k], F[7]));
-    D[k] =
-        hn::MulAdd(in_2_x, in_2_x, hn::MulAdd(in_2_y, in_2_y, hn::MulAdd(in_1_x, in_1_x, in_1_y * in_1_y)));
+    const Vec in_2_x = FusedMulAdd(F[0], sample.x1[k], FusedMulAdd(F[1], sample.y1[k], F[2]));
+    const Vec in_2_y = FusedMulAdd(F[3], sample.x1[k], FusedMulAdd(F[4], sample.y1[k], F[5]));
+    const Vec in_1_x = FusedMulAdd(F[0], sample.x2[k], FusedMulAdd(F[3], sample.y2[k], F[6]));
+    const Vec in_1_y = FusedMulAdd(F[1], sample.x2[k], FusedMulAdd(F[4], sample.y2[k], F[7]));
+    D[k] = FusedMulAdd(in_2_x, in_2_x,
+                       FusedMulAdd(in_2_y, in_2_y, FusedMulAdd(in_1_x, in_1_x, in_1_y * in_1_y)));
   }
 }
 
@@ -151,8 +151,8 @@ HWY_INLINE void PropagateCovariance(const ConstraintFactors& factors, const Vec*
     for (int c = 0; c <= row; ++c) {
       Vec even = scaled[0] * gain[c][0], odd = scaled[1] * gain[c][1];
       for (int k = 2; k < 8; k += 2) {
-        even = hn::MulAdd(scaled[k], gain[c][k], even);
-        odd = hn::MulAdd(scaled[k + 1], gain[c][k + 1], odd);
+        even = FusedMulAdd(scaled[k], gain[c][k], even);
+        odd = FusedMulAdd(scaled[k + 1], gain[c][k + 1], odd);
       }
       cov[row][c] = even + odd;
     }
@@ -171,8 +171,8 @@ HWY_INLINE void Derivative(const EssentialBasis& e, const Vec* l, Mat3* dE) {
   const Mat3 u = {{e.u[0], e.u[1], e.u[2]}};
   const auto row = [&](Vec a, Vec b, Vec c) {
     const Vec3 two = Combine(along1, a, along2, b);
-    return Vec3{hn::MulAdd(along3.x, c, two.x), hn::MulAdd(along3.y, c, two.y),
-                hn::MulAdd(along3.z, c, two.z)};
+    return Vec3{FusedMulAdd(along3.x, c, two.x), FusedMulAdd(along3.y, c, two.y),
+                FusedMulAdd(along3.z, c, two.z)};
   };
   dE->row[0] = row(u.row[0].x, u.row[1].x, u.row[2].x);
   dE->row[1] = row(u.row[0].y, u.row[1].y, u.row[2].y);

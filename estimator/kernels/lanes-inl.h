@@ -1,5 +1,10 @@
 // Eight numbers side by side, as many per vector as the instruction set holds, and 3-vectors of them.
 // Included once per instruction set. No Eigen in here: its templates would be compiled for several sets.
+//
+// Every instruction set gives the same bits: products and sums are fused where the source says FusedMulAdd,
+// by rounding once, and nowhere else; sums over matches have eight partial sums, one for each number of a
+// block, that are added in one order (SumOfEight). Of Highway's own functions, those whose rounding depends
+// on the instruction set have no use here: MulAdd and its kin, Min, Max, SumOfLanes, hwy/contrib/math.
 #if defined(RCME_ESTIMATOR_KERNELS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_LANES_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_LANES_INL_H_
@@ -9,6 +14,7 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
@@ -25,6 +31,26 @@ HWY_INLINE Vec Set(double value) { return hn::Set(Tag(), value); }
 HWY_INLINE Vec Load(const double* from) { return hn::Load(Tag(), from); }
 HWY_INLINE void Store(Vec v, double* to) { hn::Store(v, Tag(), to); }
 HWY_INLINE Vec Square(Vec a) { return a * a; }
+
+// a b + c, a b - c and c - a b, rounded once. Plain code has the library's fma, slow where the machine has
+// none.
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE Vec FusedMulAdd(Vec a, Vec b, Vec c) { return Vec(std::fma(a.raw, b.raw, c.raw)); }
+HWY_INLINE Vec FusedMulSub(Vec a, Vec b, Vec c) { return Vec(std::fma(a.raw, b.raw, -c.raw)); }
+HWY_INLINE Vec FusedNegMulAdd(Vec a, Vec b, Vec c) { return Vec(std::fma(-a.raw, b.raw, c.raw)); }
+#else
+HWY_INLINE Vec FusedMulAdd(Vec a, Vec b, Vec c) { return hn::MulAdd(a, b, c); }
+HWY_INLINE Vec FusedMulSub(Vec a, Vec b, Vec c) { return hn::MulSub(a, b, c); }
+HWY_INLINE Vec FusedNegMulAdd(Vec a, Vec b, Vec c) { return hn::NegMulAdd(a, b, c); }
+#endif
+// The second where one of them is NaN.
+HWY_INLINE Vec Lesser(Vec a, Vec b) { return hn::IfThenElse(a < b, a, b); }
+HWY_INLINE Vec Greater(Vec a, Vec b) { return hn::IfThenElse(a > b, a, b); }
+
+// Of eight partial sums, in one order.
+HWY_INLINE double SumOfEight(const double* s) {
+  return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+}
 // Bit l is lane l of the mask.
 HWY_INLINE unsigned BitsOf(Mask mask) {
   std::uint8_t bits[8] = {};
@@ -42,15 +68,16 @@ struct Vec3 {
   Vec x, y, z;
 };
 HWY_INLINE Vec Dot(const Vec3& a, const Vec3& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, a.z * b.z));
+  return FusedMulAdd(a.x, b.x, FusedMulAdd(a.y, b.y, a.z * b.z));
 }
 HWY_INLINE Vec3 Cross(const Vec3& a, const Vec3& b) {
-  return {hn::MulSub(a.y, b.z, a.z * b.y), hn::MulSub(a.z, b.x, a.x * b.z), hn::MulSub(a.x, b.y, a.y * b.x)};
+  return {FusedMulSub(a.y, b.z, a.z * b.y), FusedMulSub(a.z, b.x, a.x * b.z),
+          FusedMulSub(a.x, b.y, a.y * b.x)};
 }
 HWY_INLINE Vec3 Times(const Vec3& a, Vec s) { return {a.x * s, a.y * s, a.z * s}; }
 // a s + b r
 HWY_INLINE Vec3 Combine(const Vec3& a, Vec s, const Vec3& b, Vec r) {
-  return {hn::MulAdd(a.x, s, b.x * r), hn::MulAdd(a.y, s, b.y * r), hn::MulAdd(a.z, s, b.z * r)};
+  return {FusedMulAdd(a.x, s, b.x * r), FusedMulAdd(a.y, s, b.y * r), FusedMulAdd(a.z, s, b.z * r)};
 }
 HWY_INLINE Vec3 Normalized(const Vec3& a) { return Times(a, Set(1.0) / hn::Sqrt(Dot(a, a))); }
 HWY_INLINE Vec3 Select(Mask first, const Vec3& a, const Vec3& b) {
@@ -67,8 +94,8 @@ HWY_INLINE Vec3 operator*(const Mat3& m, const Vec3& v) {
 // m' v
 HWY_INLINE Vec3 TransposeTimes(const Mat3& m, const Vec3& v) {
   const Vec3 upper = Combine(m.row[0], v.x, m.row[1], v.y);
-  return {hn::MulAdd(m.row[2].x, v.z, upper.x), hn::MulAdd(m.row[2].y, v.z, upper.y),
-          hn::MulAdd(m.row[2].z, v.z, upper.z)};
+  return {FusedMulAdd(m.row[2].x, v.z, upper.x), FusedMulAdd(m.row[2].y, v.z, upper.y),
+          FusedMulAdd(m.row[2].z, v.z, upper.z)};
 }
 
 }  // namespace rcme::HWY_NAMESPACE

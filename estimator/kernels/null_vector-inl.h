@@ -29,7 +29,7 @@ struct ConstraintFactors {
 template <int k>
 HWY_INLINE Vec DotFrom(const Vec* a, const Vec* b) {
   Vec sums[3] = {Set(0.0), Set(0.0), a[8] * b[8]};
-  for (int i = 7; i >= k; --i) sums[i % 3] = hn::MulAdd(a[i], b[i], sums[i % 3]);
+  for (int i = 7; i >= k; --i) sums[i % 3] = FusedMulAdd(a[i], b[i], sums[i % 3]);
   return (sums[0] + sums[1]) + sums[2];
 }
 
@@ -37,7 +37,7 @@ HWY_INLINE Vec DotFrom(const Vec* a, const Vec* b) {
 template <int k>
 HWY_INLINE void Reflect(const Vec* v, Vec tau, Vec* b) {
   const Vec weight = tau * DotFrom<k>(v, b);
-  for (int i = k; i < 9; ++i) b[i] = hn::MulAdd(v[i], weight, b[i]);
+  for (int i = k; i < 9; ++i) b[i] = FusedMulAdd(v[i], weight, b[i]);
 }
 
 // The same to m vectors: first all sums, then all updates.
@@ -46,7 +46,7 @@ HWY_INLINE void ReflectAll(const Vec* v, Vec tau, Vec (&b)[m][9]) {
   Vec weights[m];
   for (int i = 0; i < m; ++i) weights[i] = tau * DotFrom<k>(v, b[i]);
   for (int row = k; row < 9; ++row) {
-    for (int i = 0; i < m; ++i) b[i][row] = hn::MulAdd(v[row], weights[i], b[i][row]);
+    for (int i = 0; i < m; ++i) b[i][row] = FusedMulAdd(v[row], weights[i], b[i][row]);
   }
 }
 
@@ -58,8 +58,8 @@ HWY_INLINE void FactorColumn(ConstraintFactors& factors) {
   const Vec v_0 = x[k] - alpha;
   factors.tau[k] = Set(1.0) / (alpha * v_0);
   factors.inverse_pivot[k] = factors.tau[k] * v_0;
-  factors.smallest_pivot = k == 0 ? norm : hn::Min(norm, factors.smallest_pivot);
-  factors.largest_pivot = k == 0 ? norm : hn::Max(norm, factors.largest_pivot);
+  factors.smallest_pivot = k == 0 ? norm : Lesser(norm, factors.smallest_pivot);
+  factors.largest_pivot = k == 0 ? norm : Greater(norm, factors.largest_pivot);
   x[k] = v_0;
   for (int c = k + 1; c < 8; ++c) Reflect<k>(x, factors.tau[k], factors.columns[c]);
 }
@@ -90,7 +90,7 @@ HWY_INLINE void ApplyGainTransposed(const ConstraintFactors& factors, Vec (&b)[m
   for (int row = 7; row >= 0; --row) {
     for (int i = 0; i < m; ++i) {
       Vec rest = b[i][row];
-      for (int c = row + 1; c < 8; ++c) rest = hn::NegMulAdd(factors.columns[c][row], y[i][c], rest);
+      for (int c = row + 1; c < 8; ++c) rest = FusedNegMulAdd(factors.columns[c][row], y[i][c], rest);
       y[i][row] = rest * factors.inverse_pivot[row];
     }
   }

@@ -1,14 +1,15 @@
 #include "estimator/kernels/sampson_equations.h"
 
+#include <algorithm>
+
 #include "estimator/geometry/essential_matrix.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "estimator/kernels/sampson_equations.cc"
 #include <hwy/foreach_target.h>
 // The above must come before these.
-#include <hwy/contrib/math/math-inl.h>
-
 #include "estimator/kernels/epipolar-inl.h"
+#include "stats/portable_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
@@ -16,36 +17,31 @@ namespace rcme::HWY_NAMESPACE {
 HWY_INLINE void AddTriangle(const Vec* a, Vec weight, Vec* sums) {
   for (int row = 0, i = 0; row < 5; ++row) {
     const Vec weighted = weight * a[row];
-    for (int c = 0; c <= row; ++c, ++i) sums[i] = hn::MulAdd(weighted, a[c], sums[i]);
+    for (int c = 0; c <= row; ++c, ++i) sums[i] = FusedMulAdd(weighted, a[c], sums[i]);
   }
 }
 
-HWY_INLINE double Total(Vec sum) { return hn::GetLane(hn::SumOfLanes(Tag(), sum)); }
-
-// Calls visit(matches, constraint, 1 / |J|^2, i) for every vector of matches, the i-th; 1 / |J|^2 is zero
-// where unused.
+// Calls visit(matches, constraint, 1 / |J|^2, b) for the matches `lane` to `lane` + kLanes - 1 of every block
+// b; 1 / |J|^2 is zero where unused.
 template <typename Visit>
-HWY_INLINE void ForEach(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
-                        const Visit& visit) {
+HWY_INLINE void ForEachBlock(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
+                             int lane, const Visit& visit) {
   for (int b = 0; b < matches.num_blocks(); ++b) {
-    const unsigned used = mask[static_cast<size_t>(b)];
-    for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-      const Mask is_used = MaskFromBits(used >> lane);
-      const Matches m = LoadMatches(matches[b], lane);
-      const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
-      const Vec n2 = hn::IfThenElse(is_used, Dot4(c.gradient, c.gradient), Set(1.0));
-      visit(m, c, hn::IfThenElseZero(is_used, Set(1.0) / n2), (b * kBlockSize + lane) / kLanes);
-    }
+    const Mask is_used = MaskFromBits(static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
+    const Matches m = LoadMatches(matches[b], lane);
+    const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
+    const Vec n2 = hn::IfThenElse(is_used, Dot4(c.gradient, c.gradient), Set(1.0));
+    visit(m, c, hn::IfThenElseZero(is_used, Set(1.0) / n2), b);
   }
 }
 
-// sum log x of numbers x >= 1, one logarithm for eight vectors of them, i = 0, 1, ...; each up to 1e38.
+// sum log x of numbers x >= 1, one logarithm for eight blocks of them, b = 0, 1, ...; each up to 1e38.
 class LogSum {
  public:
   HWY_INLINE LogSum() : product_(Set(1.0)), sum_(Set(0.0)) {}
-  HWY_INLINE void Add(Vec x, int i) {
+  HWY_INLINE void Add(Vec x, int b) {
     product_ = product_ * x;
-    if (i % 8 == 7) Flush();
+    if (b % 8 == 7) Flush();
   }
   HWY_INLINE Vec Get() {
     Flush();
@@ -54,45 +50,69 @@ class LogSum {
 
  private:
   HWY_INLINE void Flush() {
-    sum_ = sum_ + hn::Log(Tag(), product_);
+    sum_ = sum_ + LogOf(Tag(), product_);
     product_ = Set(1.0);
   }
   Vec product_, sum_;
 };
 
+// The eight partial sums of each of m numbers; each lane of a block has its own.
+template <int m>
+struct alignas(64) PartialSums {
+  double lanes[m][kBlockSize];
+  HWY_INLINE void Put(const Vec* sums, int lane) {
+    for (int i = 0; i < m; ++i) Store(sums[i], lanes[i] + lane);
+  }
+  HWY_INLINE void Total(double* totals) const {
+    for (int i = 0; i < m; ++i) totals[i] = SumOfEight(lanes[i]);
+  }
+};
+
 // With u = g / |J|^2 and e_k = g_k - u J'J_k: r^2 = g u, r dr/dp_k = u e_k, dr/dp_k dr/dp_l = e_k e_l /
-// |J|^2. No root is needed.
+// |J|^2. No root is needed. Sums of cost, gradient, Hessian, of a lane's matches.
 template <Loss loss>
-HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
-                    SampsonSums* sums) {
-  const Vec zero = Set(0.0), one = Set(1.0), inverse_c2 = Set(1.0 / (kCauchyScale * kCauchyScale));
-  Vec squares = zero, gradient[5] = {zero, zero, zero, zero, zero}, hessian[15];
-  for (Vec& sum : hessian) sum = zero;
+HWY_INLINE void SumLane(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
+                        int lane, Vec (&sums)[21]) {
+  const Vec one = Set(1.0), inverse_c2 = Set(1.0 / (kCauchyScale * kCauchyScale));
+  for (Vec& sum : sums) sum = Set(0.0);
   LogSum logs;
-  ForEach(matches, mask, model, [&](const Matches& m, const Constraint& c, Vec inverse_n2, int i) {
+  ForEachBlock(matches, mask, model, lane, [&](const Matches& m, const Constraint& c, Vec inverse_n2, int b) {
     const Vec u = c.g * inverse_n2, r2 = c.g * u;
     Vec e[5];
     for (int k = 0; k < 5; ++k) {
       const Constraint d = EvaluateConstraint(Broadcast{model.dF[k]}, m);
-      e[k] = hn::NegMulAdd(u, Dot4(c.gradient, d.gradient), d.g);
+      e[k] = FusedNegMulAdd(u, Dot4(c.gradient, d.gradient), d.g);
     }
     Vec weight = u, curvature = inverse_n2;
     if constexpr (loss == Loss::kCauchy) {
       // rho = c2 log(1 + r2 / c2), w = rho' = 1 / (1 + r2 / c2), psi' = 2 w^2 - w.
-      const Vec ratio = hn::MulAdd(r2, inverse_c2, one), w = one / ratio;
-      logs.Add(ratio, i);
+      const Vec ratio = FusedMulAdd(r2, inverse_c2, one), w = one / ratio;
+      logs.Add(ratio, b);
       weight = weight * w;
-      curvature = curvature * hn::Max(hn::MulSub(w + w, w, w), Set(0.7) * w);
+      curvature = curvature * Greater(FusedMulSub(w + w, w, w), Set(0.7) * w);
     } else {
-      squares = squares + r2;
+      sums[0] = sums[0] + r2;
     }
-    for (int k = 0; k < 5; ++k) gradient[k] = hn::MulAdd(weight, e[k], gradient[k]);
-    AddTriangle(e, curvature, hessian);
+    for (int k = 0; k < 5; ++k) sums[1 + k] = FusedMulAdd(weight, e[k], sums[1 + k]);
+    AddTriangle(e, curvature, sums + 6);
   });
-  sums->cost =
-      loss == Loss::kCauchy ? 0.5 * kCauchyScale * kCauchyScale * Total(logs.Get()) : 0.5 * Total(squares);
-  for (int k = 0; k < 5; ++k) sums->gradient[k] = Total(gradient[k]);
-  for (int i = 0; i < 15; ++i) sums->hessian[i] = Total(hessian[i]);
+  if constexpr (loss == Loss::kCauchy) sums[0] = logs.Get();
+}
+
+template <Loss loss>
+HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
+                    SampsonSums* sums) {
+  PartialSums<21> partial;
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    Vec of_lane[21];
+    SumLane<loss>(matches, mask, model, lane, of_lane);
+    partial.Put(of_lane, lane);
+  }
+  double totals[21];
+  partial.Total(totals);
+  sums->cost = totals[0] * (loss == Loss::kCauchy ? 0.5 * kCauchyScale * kCauchyScale : 0.5);
+  std::copy(totals + 1, totals + 6, sums->gradient);
+  std::copy(totals + 6, totals + 21, sums->hessian);
 }
 
 void SumSquared(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
@@ -106,14 +126,18 @@ void SumCauchy(const MatchBlocks& matches, const MatchMask& mask, const SampsonM
 
 void SumInformation(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                     double* triangle) {
-  Vec information[15];
-  for (Vec& sum : information) sum = Set(0.0);
-  ForEach(matches, mask, model, [&](const Matches& m, const Constraint&, Vec inverse_n2, int) {
-    Vec g_p[5];
-    for (int k = 0; k < 5; ++k) g_p[k] = EvaluateConstraint(Broadcast{model.dF[k]}, m).g;
-    AddTriangle(g_p, inverse_n2, information);
-  });
-  for (int i = 0; i < 15; ++i) triangle[i] = Total(information[i]);
+  PartialSums<15> partial;
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    Vec information[15];
+    for (Vec& sum : information) sum = Set(0.0);
+    ForEachBlock(matches, mask, model, lane, [&](const Matches& m, const Constraint&, Vec inverse_n2, int) {
+      Vec g_p[5];
+      for (int k = 0; k < 5; ++k) g_p[k] = EvaluateConstraint(Broadcast{model.dF[k]}, m).g;
+      AddTriangle(g_p, inverse_n2, information);
+    });
+    partial.Put(information, lane);
+  }
+  partial.Total(triangle);
 }
 
 }  // namespace rcme::HWY_NAMESPACE

@@ -6,12 +6,11 @@
 #define HWY_TARGET_INCLUDE "estimator/kernels/score.cc"
 #include <hwy/foreach_target.h>
 // The above must come before these.
-#include <hwy/contrib/math/math-inl.h>
-
 #include "estimator/kernels/epipolar-inl.h"
 #include "estimator/kernels/lanes-inl.h"
 #include "estimator/kernels/printed_distance-inl.h"
 #include "estimator/kernels/variance-inl.h"
+#include "stats/portable_math-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
@@ -94,43 +93,57 @@ void ScanUncertain(const MatchBlock* blocks, int num_matches, const double* F, c
 double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const double* F,
                                 const double* coefficients, double outlier_cost) {
   const Vec half = Set(0.5), log_two_pi = Set(1.8378770664093454836), limit = Set(outlier_cost);
-  Vec sum = Set(0.0);
-  for (int first = 0; first < num_matches; first += kLanes) {
-    const Matches matches = LoadMatches(blocks[first / kBlockSize], first % kBlockSize);
-    const RankAwareTerms terms = EvaluateRankAware(F, coefficients, matches);
-    const Vec total = terms.n2 + terms.variance;
-    const Vec d2 = terms.g2 / total, log_s2 = hn::Log(Tag(), total / terms.n2);
-    const Vec cost = hn::Min(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
-    sum = sum + hn::IfThenElseZero(AreMatches(first, num_matches), cost);
+  HWY_ALIGN double sums[kBlockSize];
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    Vec sum = Set(0.0);
+    for (int first = lane; first < num_matches; first += kBlockSize) {
+      const Matches matches = LoadMatches(blocks[first / kBlockSize], lane);
+      const RankAwareTerms terms = EvaluateRankAware(F, coefficients, matches);
+      const Vec total = terms.n2 + terms.variance;
+      const Vec d2 = terms.g2 / total, log_s2 = LogOf(Tag(), total / terms.n2);
+      const Vec cost = Lesser(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
+      sum = sum + hn::IfThenElseZero(AreMatches(first, num_matches), cost);
+    }
+    Store(sum, sums + lane);
   }
-  return hn::GetLane(hn::SumOfLanes(Tag(), sum));
+  return SumOfEight(sums);
+}
+
+// sum visit(i, are_inliers) over vectors of inliers that start at i.
+template <typename Visit>
+HWY_INLINE double SumOverInliers(int count, const Visit& visit) {
+  HWY_ALIGN double sums[kBlockSize];
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    Vec sum = Set(0.0);
+    for (int i = lane; i < count; i += kBlockSize) {
+      const Mask are_inliers = AreMatches(i, count);
+      sum = sum + hn::IfThenElseZero(are_inliers, visit(i, are_inliers));
+    }
+    Store(sum, sums + lane);
+  }
+  return SumOfEight(sums);
 }
 
 // Two passes: the sum of squares about the mean loses no digits. `spreads` may be read beyond count, up to a
-// vector.
+// block.
 void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
   const Vec half = Set(0.5), shift = Set(offset);
-  const auto entropy = [&](int i) {
-    const Mask is_inlier = AreMatches(i, count);
-    const Vec spread = hn::IfThenElse(is_inlier, hn::LoadU(Tag(), spreads + i), Set(1.0));
-    return hn::IfThenElseZero(is_inlier, hn::MulAdd(half, hn::Log(Tag(), spread), shift));
+  const auto entropy = [&](int i, Mask are_inliers) {
+    const Vec spread = hn::IfThenElse(are_inliers, hn::LoadU(Tag(), spreads + i), Set(1.0));
+    return FusedMulAdd(half, LogOf(Tag(), spread), shift);
   };
   HWY_ALIGN double
       stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice
-  Vec sum = Set(0.0);
-  for (int i = 0; i < count; i += kLanes) {
-    const Vec h = entropy(i);
+  const double sum = SumOverInliers(count, [&](int i, Mask are_inliers) {
+    const Vec h = entropy(i, are_inliers);
     if (i < 512) Store(h, stored + i);
-    sum = sum + h;
-  }
-  *mean = hn::GetLane(hn::SumOfLanes(Tag(), sum)) / count;
+    return h;
+  });
+  *mean = sum / count;
   const Vec center = Set(*mean);
-  Vec squares = Set(0.0);
-  for (int i = 0; i < count; i += kLanes) {
-    const Vec h = i < 512 ? Load(stored + i) : entropy(i);
-    squares = squares + Square(hn::IfThenElseZero(AreMatches(i, count), h - center));
-  }
-  *sum_squares = hn::GetLane(hn::SumOfLanes(Tag(), squares));
+  *sum_squares = SumOverInliers(count, [&](int i, Mask are_inliers) {
+    return Square((i < 512 ? Load(stored + i) : entropy(i, are_inliers)) - center);
+  });
 }
 
 // Each lane a hypothesis with its own model.

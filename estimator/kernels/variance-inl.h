@@ -20,8 +20,8 @@ HWY_INLINE Vec EvaluateVariance(const double* coefficients, const Matches& m) {
   Vec value = Set(0.0);
   for (int a = 5; a >= 0; --a) {
     Vec inner = Set(coefficients[6 * a + 5]);
-    for (int b = 0; b < 5; ++b) inner = hn::MulAdd(Set(coefficients[6 * a + b]), one[b], inner);
-    value = a == 5 ? inner : hn::MulAdd(inner, two[a], value);
+    for (int b = 0; b < 5; ++b) inner = FusedMulAdd(Set(coefficients[6 * a + b]), one[b], inner);
+    value = a == 5 ? inner : FusedMulAdd(inner, two[a], value);
   }
   return value;
 }
@@ -34,7 +34,7 @@ HWY_INLINE RankAwareTerms EvaluateRankAware(const double* F, const double* coeff
                                             const Matches& matches) {
   const Constraint c = EvaluateConstraint(Broadcast{F}, matches);
   const Vec n2 = Dot4(c.gradient, c.gradient);
-  return {c.g * c.g, n2, hn::Max(EvaluateVariance(coefficients, matches), Set(0.0))};
+  return {c.g * c.g, n2, Greater(EvaluateVariance(coefficients, matches), Set(0.0))};
 }
 
 }  // namespace rcme::HWY_NAMESPACE
