@@ -5,24 +5,15 @@
 #include <thread>
 
 #include "estimator/estimator_registry.h"
-#include "simulator/noise/noise_laws.h"
-#include "simulator/observe.h"
-#include "simulator/scene_generator.h"
 #include "tests/test_support/every_target.h"
+#include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
 namespace {
 
 constexpr std::uint32_t kNumTrials = 12;
 
-MotionProblem MakeProblem(std::uint32_t trial) {
-  SceneGenerator model("uniform_volume");
-  FindParameter(model.Parameters(), "num_matches").SetFromText("120");
-  RandomStream scene_rng({1, 9, trial, 1}), noise_rng({1, 9, trial, 2}), outlier_rng({1, 9, trial, 3});
-  const Scene scene = model.Generate(scene_rng);
-  return {Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(0.3), noise_rng, outlier_rng).matches,
-          scene.camera1, scene.camera2, 0.5};
-}
+MotionProblem MakeProblem(std::uint32_t trial) { return TwoCameraProblem(120, 0.5, 0.3, trial); }
 
 // Every number of an estimate, as bits.
 std::vector<std::uint64_t> BitsOf(const MotionEstimate& e) {

@@ -9,9 +9,7 @@
 #include <limits>
 
 #include "parameters/input_error.h"
-#include "simulator/noise/noise_laws.h"
-#include "simulator/observe.h"
-#include "simulator/scene_generator.h"
+#include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
 namespace {
@@ -22,14 +20,9 @@ struct Pair {
 };
 
 Pair MakePair(int num_matches, double sigma_px, double outlier_ratio, std::uint32_t trial) {
-  SceneGenerator model("uniform_volume");
-  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
-  RandomStream scene_rng({1, 0, trial, 1}), noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
-  const Scene scene = model.Generate(scene_rng);
-  return {{Observe(scene, *MakeGaussianNoise(sigma_px), OutlierModel(outlier_ratio), noise_rng, outlier_rng)
-               .matches,
-           scene.camera1, scene.camera2, sigma_px},
-          scene.cam2_from_cam1_true};
+  Pair pair;
+  pair.problem = TwoCameraProblem(num_matches, sigma_px, outlier_ratio, trial, &pair.pose_true);
+  return pair;
 }
 
 class EstimatorContract : public testing::TestWithParam<std::tuple<EstimatorEntry, Reading, Implementation>> {

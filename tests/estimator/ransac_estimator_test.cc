@@ -6,21 +6,13 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/run_pipeline.h"
-#include "simulator/noise/noise_laws.h"
-#include "simulator/observe.h"
-#include "simulator/scene_generator.h"
+#include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
 namespace {
 
 MotionProblem MakeProblem(double outlier_ratio, int num_matches, std::uint32_t trial) {
-  SceneGenerator model("uniform_volume");
-  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
-  RandomStream scene_rng({1, 3, trial, 1}), noise_rng({1, 3, trial, 2}), outlier_rng({1, 3, trial, 3});
-  const Scene scene = model.Generate(scene_rng);
-  return {
-      Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(outlier_ratio), noise_rng, outlier_rng).matches,
-      scene.camera1, scene.camera2, 0.5};
+  return TwoCameraProblem(num_matches, 0.5, outlier_ratio, trial);
 }
 
 // Few matches refuse, many outliers leave no candidate, identical matches are degenerate.

@@ -3,17 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <new>
 #include <set>
 
 #include "estimator/kernels/block_search.h"
 #include "estimator/reference_search.h"
-#include "simulator/noise/noise_laws.h"
-#include "simulator/observe.h"
-#include "simulator/scene_generator.h"
 #include "stats/distributions.h"
+#include "tests/test_support/two_camera_scene.h"
 
 namespace {
 std::atomic<long> num_allocations{0};
@@ -47,20 +47,11 @@ struct BareReference : BarePipeline {
   }
 };
 
-MotionProblem MakeProblem(int num_matches) {
-  SceneGenerator model("uniform_volume");
-  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
-  RandomStream scene_rng({1, 0, 0, 1}), noise_rng({1, 0, 0, 2}), outlier_rng({1, 0, 0, 3});
-  const Scene scene = model.Generate(scene_rng);
-  return {Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(0.2), noise_rng, outlier_rng).matches,
-          scene.camera1, scene.camera2, 0.5};
-}
-
 // Allocations of the loop alone; `run` makes a search and runs the loop with it.
 template <typename MakeAndRun>
 void ExpectNoAllocationPerHypothesisOrPoint(const MakeAndRun& run) {
   const auto count = [&](int num_matches, int num_iterations) {
-    const MotionProblem problem = MakeProblem(num_matches);
+    const MotionProblem problem = TwoCameraProblem(num_matches, 0.5, 0.2, 0);
     RansacOptions options;
     options.num_iterations = num_iterations;
     RandomStream rng({1, 0, 0, 4});
@@ -103,6 +94,68 @@ TEST(RansacLoop, DoesNotAllocatePerHypothesisOrPoint) {
   ExpectBlocksDoNotAllocate(BlockSearch::Reading::kKnownPose);
   ExpectBlocksDoNotAllocate(BlockSearch::Reading::kAsPrinted);
   ExpectBlocksDoNotAllocate(BlockSearch::Reading::kRankAware);
+}
+
+// A search that has made its hypotheses before: all consistent, with these inliers and mean entropies.
+class ScriptedSearch {
+ public:
+  explicit ScriptedSearch(std::vector<InlierScore> scores) : scores_(std::move(scores)) {}
+  const Thresholds& thresholds() const { return thresholds_; }
+  Proposal Next() { return {{static_cast<int>(num_proposed_++)}, SampleVerdict::kConsistent}; }
+  InlierScore Score() const { return scores_[num_proposed_ - 1]; }
+
+ private:
+  Thresholds thresholds_;
+  std::vector<InlierScore> scores_;
+  size_t num_proposed_ = 0;
+};
+
+// 100 matches; omega_p = 0.8 and lambda = 0.5 ask for 40 inliers.
+LoopResult RunScript(const std::vector<InlierScore>& scores, double early_stop_entropy) {
+  RansacOptions options;
+  options.num_iterations = static_cast<int>(scores.size());
+  options.inlier_ratio = 0.8;
+  options.lambda = 0.5;
+  options.early_stop_entropy = early_stop_entropy;
+  ScriptedSearch search(scores);
+  return RunRansacLoop<BarePipeline>(options, 100, search);
+}
+
+TEST(RansacLoop, StopsEarlyOnlyAtAMemberOfTheCandidateSet) {
+  // The first and second are certain enough but too small, the third is large enough but not certain enough.
+  const LoopResult result = RunScript({{10, -9.0}, {39, -9.0}, {90, -1.0}, {40, -4.0}, {95, -9.0}}, -4.0);
+  EXPECT_EQ(result.counts.num_hypotheses, 4) << "an entropy at the bound is enough, and so is a size";
+  EXPECT_EQ(result.counts.num_candidates, 2);
+  EXPECT_EQ(result.counts.num_too_small_inlier_sets, 2);
+  EXPECT_EQ(result.winner->score.num_inliers, 90);
+}
+
+TEST(RansacLoop, WithoutABoundItRunsToItsEndAndTheFirstOfEqualsWins) {
+  const double off = std::numeric_limits<double>::quiet_NaN();
+  const LoopResult result = RunScript({{50, -9.0}, {70, -9.0}, {70, -1.0}}, off);
+  EXPECT_EQ(result.counts.num_hypotheses, 3);
+  EXPECT_EQ(result.winner->sample[0], 1);
+  EXPECT_FALSE(RunScript({{39, -9.0}}, off).winner);
+}
+
+// An outlier costs what a uniform law over image 2's diagonal does, 1000 px here and 800 px in image 1.
+TEST(Thresholds, AreThoseOfTheProblemAndTheOptions) {
+  MotionProblem problem{{}, TestCamera1(), TestCamera2(), 0.25};
+  RansacOptions options;
+  options.significance_level = 0.02;
+  const Thresholds printed = Thresholds::For(problem, options, 3);
+  EXPECT_DOUBLE_EQ(printed.outlier_cost, std::log(1000.0 / 0.25));
+  EXPECT_DOUBLE_EQ(printed.point, ChiSquareQuantile(3, 0.98));
+  EXPECT_DOUBLE_EQ(printed.sample, ChiSquareQuantile(3, 0.98));
+  EXPECT_DOUBLE_EQ(printed.normal, NormalQuantile(0.98));
+  options.sample_significance_level = 0.1;
+  for (const int dof : {1, 3}) {
+    const Thresholds own_level = Thresholds::For(problem, options, dof);
+    EXPECT_DOUBLE_EQ(own_level.point, ChiSquareQuantile(dof, 0.98));
+    EXPECT_DOUBLE_EQ(own_level.sample, ChiSquareQuantile(3, 0.9));
+  }
+  problem.sigma_px = 5000.0;
+  EXPECT_EQ(Thresholds::For(problem, options, 1).outlier_cost, 0.0) << "noise wider than the image";
 }
 
 TEST(DrawSample, IndicesAreDistinctAndInRange) {

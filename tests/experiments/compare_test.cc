@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -202,6 +203,7 @@ TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   EXPECT_EQ(json["reference"], "standard");
   ASSERT_EQ(json["rows"].size(), 6u);
   EXPECT_EQ(json["rows"][0]["levels"]["outlier_ratio"], "0");
+  EXPECT_EQ(json["rows"][0]["estimator_only"], 1);
   EXPECT_EQ(json["rows"][0]["reference_only"], 7);
   EXPECT_EQ(json["rows"][0]["p_mcnemar"], comparison.rows[0].p_value);
   EXPECT_TRUE(json["rows"][3]["risk_difference"].is_null());
@@ -210,6 +212,7 @@ TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
 TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
   const std::string table = ComparisonAsTable(ComparisonOf("run"));
+  EXPECT_TRUE(std::regex_search(table, std::regex("ours +21 +1 +1 +7 +12 "))) << table;  // n, both, ours only
   for (const char* part : {"Study small against standard: 21 of 12 trials done", "standard only",
                            "-28.57 [-51.72, -2.60]", "0.0703", "Tango", "McNemar", "all 3 tests"}) {
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;

@@ -82,6 +82,22 @@ TEST_F(RunUntilTest, TheSameTrialsWhateverTheThreadsAndHoweverOftenItWasCutOff) 
   EXPECT_EQ(CsvOf("whole"), CsvOf("parts"));
 }
 
+// A run that was killed has the trial after the last one of the first look, a refusal: it is not counted
+// among the 100.
+TEST_F(RunUntilTest, TheTrialAfterTheLastOneIsNotCounted) {
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("run"), plan_);
+    TrialResult result = RunTrial(plan_, plan_.conditions[0], 100);
+    for (TrialRecord& record : result.records) record.status = MotionStatus::kNoCandidate;
+    store.Add({result.problem}, result.records);
+  }
+  const std::vector<CellPrecision> cells = Run("run", Until("ci=0.06", 100)),
+                                   clean = Run("clean", Until("ci=0.06", 100));
+  EXPECT_EQ(cells[0].num_trials, 100);
+  EXPECT_EQ(cells[0].rate, clean[0].rate);
+  EXPECT_EQ(cells[0].interval.upper, clean[0].interval.upper);
+}
+
 TEST_F(RunUntilTest, ARelativeTargetWhereNothingHappensEndsAtTheLimitAndSaysSo) {
   const std::vector<CellPrecision> cells = Run("run", Until("rel=0.3", 400));
   EXPECT_FALSE(cells[0].is_reached);

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numbers>
 #include <set>
 
+#include "experiments/covariance_score.h"
 #include "experiments/simulated_data.h"
+#include "stats/consistency.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {
@@ -150,6 +153,49 @@ TEST(Score, ErrorsByHand) {
   EXPECT_EQ(record.seconds, 0.25);
 }
 
+// NEES is of the truth's coordinates around the estimate, where the covariance is, and not the other way
+// round: 25 deg apart the two bases of the direction differ. A covariance that tells all axes apart, so that
+// no order and no sign can be exchanged.
+TEST(Score, NeesIsTakenAtTheEstimate) {
+  TrialData data = HandMadeData();
+  MotionEstimate estimate = HandMadeEstimate(0.0, 0.0);
+  estimate.cam2_from_cam1 = {RotationFromVector({0.3, -0.2, 0.1}),
+                             Eigen::Vector3d(0.2, 0.5, 0.7).normalized()};
+  Vector5d error;  // [rotation, direction], rad
+  error << 0.02, -0.05, 0.03, 0.4, -0.2;
+  data.truth.cam2_from_cam1_true = Retract(estimate.cam2_from_cam1, error);
+  Matrix5d root = Matrix5d::Zero();
+  for (int row = 0; row < 5; ++row) {
+    for (int col = 0; col <= row; ++col)
+      root(row, col) = row == col ? 0.1 + 0.07 * row : 0.02 * (row - 2 * col);
+  }
+  estimate.pose_cov = root * root.transpose();
+  const double expected = error.dot(estimate.pose_cov.inverse() * error);
+  const double exchanged = NormalizedErrorSquared(
+      LocalCoordinates(*data.truth.cam2_from_cam1_true, estimate.cam2_from_cam1), estimate.pose_cov);
+  EXPECT_GT(std::abs(exchanged - expected), 0.05 * expected) << "no power";
+  EXPECT_NEAR(Score(estimate, data, 0.0).nees, expected, 1e-9 * expected);
+  EXPECT_NEAR(
+      NormalizedErrorOfPose(estimate.cam2_from_cam1, estimate.pose_cov, *data.truth.cam2_from_cam1_true),
+      expected, 1e-9 * expected);
+}
+
+// A wrong match on the true epipolar line is no wrong inlier: no epipolar test can tell it.
+TEST(Score, UndetectableMatchesAreNotCountedAsWrong) {
+  TrialData data = HandMadeData();  // 0 to 3 are true, 4 and 5 wrong
+  data.truth.is_undetectable = {false, false, false, false, true, false};
+  MotionEstimate estimate = HandMadeEstimate(0.0, 0.0);
+  const auto precision_of = [&](const std::vector<int>& inliers) {
+    estimate.inliers = inliers;
+    return Score(estimate, data, 0.0).inlier_precision;
+  };
+  EXPECT_EQ(precision_of({0, 1, 4}), 1.0);
+  EXPECT_DOUBLE_EQ(precision_of({0, 1, 5}), 2.0 / 3.0);
+  EXPECT_DOUBLE_EQ(precision_of({0, 1, 4, 5}), 2.0 / 3.0);
+  EXPECT_TRUE(std::isnan(precision_of({4})));
+  EXPECT_EQ(Score(estimate, data, 0.0).inlier_recall, 0.0);
+}
+
 TEST(Score, ThePointOnTheOtherSideOfTheSphere) {
   EXPECT_NEAR(Score(HandMadeEstimate(0.0, 180.0), HandMadeData(), 0.0).direction_error_deg, 180.0, 1e-6);
   EXPECT_NEAR(Score(HandMadeEstimate(180.0, 0.0), HandMadeData(), 0.0).rotation_error_deg, 180.0, 1e-6);
@@ -170,6 +216,7 @@ TEST(Score, SuccessAndFailureAtTheBounds) {
   EXPECT_FALSE(outcome(std::nextafter(3.0, 4.0), 0.0));
   EXPECT_FALSE(outcome(0.0, std::nextafter(15.0, 16.0)));
   EXPECT_FALSE(outcome(4.0, 16.0));
+  EXPECT_FALSE(outcome(14.0, 2.0)) << "each error against its own bound";
   EXPECT_TRUE(outcome(1.0, std::numeric_limits<double>::quiet_NaN()));  // direction unknown: rotation decides
   EXPECT_FALSE(outcome(4.0, std::numeric_limits<double>::quiet_NaN()));
 }

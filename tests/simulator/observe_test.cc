@@ -8,19 +8,14 @@
 #include <set>
 
 #include "simulator/noise/noise_laws.h"
-#include "simulator/scene_generator.h"
 #include "stats/distributions.h"
 #include "stats/goodness_of_fit.h"
+#include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
 namespace {
 
-Scene MakeScene(int num_matches, std::uint32_t trial = 0) {
-  SceneGenerator model("uniform_volume");
-  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
-  RandomStream rng({1, 0, trial, 1});
-  return model.Generate(rng);
-}
+Scene MakeScene(int num_matches, std::uint32_t trial = 0) { return TwoCameraScene(num_matches, trial); }
 
 Observation ObserveScene(const Scene& scene, double sigma_px, double outlier_ratio, std::uint32_t trial = 0) {
   RandomStream noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
@@ -75,8 +70,8 @@ TEST(Observe, OutliersAreUniformInImage2) {
   const Observation observation = ObserveScene(MakeScene(5000), 0.5, 1.0);
   std::vector<double> x, y;
   for (const Correspondence& match : observation.matches) {
-    x.push_back((match.x2_px.x() + 0.5) / 640.0);
-    y.push_back((match.x2_px.y() + 0.5) / 480.0);
+    x.push_back((match.x2_px.x() + 0.5) / TestCamera2().width);
+    y.push_back((match.x2_px.y() + 0.5) / TestCamera2().height);
   }
   const auto uniform = [](double u) { return std::clamp(u, 0.0, 1.0); };
   EXPECT_GT(TestKolmogorovSmirnov(x, uniform).p_value, 1e-4);

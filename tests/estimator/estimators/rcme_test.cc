@@ -6,21 +6,13 @@
 #include <opencv2/calib3d.hpp>
 
 #include "estimator/estimators/standard.h"
-#include "simulator/noise/noise_laws.h"
-#include "simulator/observe.h"
-#include "simulator/scene_generator.h"
+#include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
 namespace {
 
 MotionProblem MakeProblem(double outlier_ratio, std::uint32_t trial, RelativePose* pose_true = nullptr) {
-  const SceneGenerator model("uniform_volume");
-  RandomStream scene_rng({1, 0, trial, 1}), noise_rng({1, 0, trial, 2}), outlier_rng({1, 0, trial, 3});
-  const Scene scene = model.Generate(scene_rng);
-  if (pose_true) *pose_true = scene.cam2_from_cam1_true;
-  return {
-      Observe(scene, *MakeGaussianNoise(0.5), OutlierModel(outlier_ratio), noise_rng, outlier_rng).matches,
-      scene.camera1, scene.camera2, 0.5};
+  return TwoCameraProblem(500, 0.5, outlier_ratio, trial, pose_true);
 }
 
 MotionEstimate RunOn(const MotionEstimator& estimator, const MotionProblem& problem,
@@ -113,7 +105,8 @@ TEST(Standard, AgreesWithOpenCv) {
     std::vector<cv::Point2d> x1, x2;
     for (const Correspondence& match : problem.matches) {
       x1.emplace_back(match.x1_px.x(), match.x1_px.y());
-      x2.emplace_back(match.x2_px.x(), match.x2_px.y());
+      const Eigen::Vector2d x2_px = problem.camera1.Project(problem.camera2.Ray(match.x2_px));
+      x2.emplace_back(x2_px.x(), x2_px.y());  // OpenCV takes one camera: as if camera 1 had seen it
     }
     const Camera& c = problem.camera1;
     const cv::Mat K = (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);

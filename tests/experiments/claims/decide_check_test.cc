@@ -95,6 +95,7 @@ TEST(DecideCheck, KindsCountWhatTheySay) {
   EXPECT_EQ(result.targets[2].measured, 0.75);
   EXPECT_EQ(result.targets[3].measured, 1.0);
   EXPECT_EQ(result.targets[3].n, 48);  // NaN is no trial of this target
+  for (const size_t of_all : {0, 1, 2}) EXPECT_EQ(result.targets[of_all].n, 64) << "infinity is one";
   EXPECT_EQ(result.num_trials, 64);
 }
 

@@ -150,6 +150,24 @@ TEST(MovingObject, LiesAroundAPointOfTheScene) {
   EXPECT_GT(sum_shift_px.norm() / 4000.0, 0.01);
 }
 
+// The object turns about its own centre and not about the camera: a point-like one that hardly shifts stays
+// where it was, however far from the optical axis and however much it turns.
+TEST(MovingObject, TurnsAboutItsOwnCentre) {
+  Scene scene = SceneForOutliers(1, 0, "pure_rotation", {{"max_rotation_deg", "0"}});
+  scene.points_in_cam1.assign(40, Eigen::Vector3d(0.9, -0.6, 5.0));
+  const auto law =
+      WithSettings(MakeMovingObject(),
+                   {{"object_size_m", "1e-6"}, {"object_shift_m", "1e-6"}, {"object_rotation_deg", "90"}});
+  const Correspondence centre = ExactMatch(scene, scene.points_in_cam1[0]);
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const WrongMatches wrong = MakeWrong(*law, scene, 40, 0.0, trial);
+    for (const Correspondence& match : wrong.matches) {
+      EXPECT_LT((match.x1_px - centre.x1_px).norm(), 0.01);
+      EXPECT_LT((match.x2_px - centre.x2_px).norm(), 0.01);
+    }
+  }
+}
+
 TEST(MovingObject, KeepsTheNoiseOfTheMatchItReplaces) {
   const Scene scene = SceneForOutliers(50);
   const auto law = MakeMovingObject();

@@ -5,18 +5,11 @@
 #include <Eigen/Dense>
 
 #include "estimator/geometry/sampson.h"
-#include "simulator/scene_generator.h"
 #include "tests/test_support/numeric_jacobian.h"
+#include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
 namespace {
-
-Scene MakeScene(const std::string& motion, std::uint32_t trial) {
-  SceneGenerator generator("uniform_volume", "", motion);
-  FindParameter(generator.Parameters(), "num_matches").SetFromText("30");
-  RandomStream rng({1, 0, trial, 1});
-  return generator.Generate(rng);
-}
 
 // The four pixels of a point, and the same as the motion and the point move: x = [rotation, direction,
 // point].
@@ -36,7 +29,7 @@ Eigen::MatrixXd PixelJacobian(const ViewPair& view, const Eigen::Vector3d& point
 
 TEST(PointConstraint, DoesNotDependOnThePointAndMovesWithTheMotion) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const Scene scene = MakeScene("general", trial);
+    const Scene scene = TwoCameraScene(30, trial);
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
       const PointConstraint constraint = ConstraintOf(scene, point);
       const Eigen::RowVectorXd moved = constraint.gradient_px.transpose() * PixelJacobian(scene, point);
@@ -52,7 +45,7 @@ TEST(PointConstraint, DoesNotDependOnThePointAndMovesWithTheMotion) {
 // use.
 TEST(PointConstraint, HasTheInformationOfTheEpipolarConstraint) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const Scene scene = MakeScene("general", trial);
+    const Scene scene = TwoCameraScene(30, trial);
     const RelativePose& pose = scene.cam2_from_cam1_true;
     const auto to_F = [&](const Eigen::Matrix3d& E) {
       return FundamentalFromEssential(E, scene.camera1, scene.camera2);
@@ -78,7 +71,7 @@ TEST(PointConstraint, HasTheInformationOfTheEpipolarConstraint) {
 TEST(RotationInformation, IsThatOfTheFullProblemWithoutTranslation) {
   const double sigma_px = 0.7;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const Scene scene = MakeScene("pure_rotation", trial);
+    const Scene scene = TwoCameraScene(30, trial, 0.0);
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
       const Eigen::MatrixXd J = PixelJacobian(scene, point) / sigma_px;
       const Eigen::MatrixXd Jr = J.leftCols(3), Jx = J.block(0, 5, 4, 2);  // x and y at a fixed depth

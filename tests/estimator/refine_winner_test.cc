@@ -1,0 +1,92 @@
+// The last step's own account of itself, on sets of matches whose counts are written down.
+#include "estimator/refine_winner.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "estimator/reference_matches.h"
+#include "tests/test_support/random_problem.h"
+
+namespace rcme {
+namespace {
+
+// Says what it is told of how many matches are consistent: before and after the refinement, and of all.
+class ScriptedMatches : public ReferenceMatches {
+ public:
+  ScriptedMatches(const MotionProblem& problem, int before, int after, int explained)
+      : ReferenceMatches(problem, RefinementError::kSampson), counts_{before, after, explained} {}
+  int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {
+    sizes.push_back(set.size());
+    poses.push_back(pose);
+    thresholds.push_back(threshold);
+    return counts_[sizes.size() - 1];
+  }
+  mutable std::vector<size_t> sizes;
+  mutable std::vector<RelativePose> poses;
+  mutable std::vector<double> thresholds;
+
+ private:
+  std::array<int, 3> counts_;
+};
+
+// 30 noisy matches, the first 20 of them the support.
+struct Case {
+  MotionProblem problem;
+  Sample sample;
+  std::vector<int> support;
+};
+Case MakeCase() {
+  RandomStream rng({.seed = 1, .purpose = 930});
+  RandomProblem random = MakeRandomProblem(rng, {.num_matches = 30});
+  AddNoise(0.5, rng, &random.problem);
+  Case made{random.problem, {}, std::vector<int>(20)};
+  std::iota(made.sample.begin(), made.sample.end(), 0);
+  std::iota(made.support.begin(), made.support.end(), 0);
+  return made;
+}
+
+MotionEstimate Refined(const Case& made, const ScriptedMatches& matches, double kappa) {
+  RansacOptions options;
+  options.refinement = Refinement::kMle;
+  options.kappa = kappa;
+  MotionEstimate estimate;
+  RefineWinner(matches, options, made.sample, made.support, &estimate);
+  return estimate;
+}
+
+// n*_I / n_I <= kappa: equality is a failure.
+TEST(RefineWinner, TheKappaFlagIsSetAtEqualityToo) {
+  const Case made = MakeCase();
+  const auto flag = [&](int before, int after, double kappa) {
+    return Refined(made, ScriptedMatches(made.problem, before, after, 30), kappa).failed_by_kappa;
+  };
+  EXPECT_TRUE(flag(10, 5, 0.5));
+  EXPECT_FALSE(flag(10, 6, 0.5));
+  EXPECT_TRUE(flag(20, 4, 0.25));
+  EXPECT_TRUE(flag(20, 5, 0.25));
+  EXPECT_FALSE(flag(20, 6, 0.25));
+  EXPECT_TRUE(flag(0, 0, 0.5));
+}
+
+// The winner's motion and the refined one are counted on the support, the refined one on all matches too;
+// each with chi2_2.
+TEST(RefineWinner, CountsWhatItSaysItCounts) {
+  const Case made = MakeCase();
+  const ScriptedMatches matches(made.problem, 11, 17, 23);
+  const MotionEstimate estimate = Refined(made, matches, 0.5);
+  ASSERT_EQ(estimate.status, MotionStatus::kOk);
+  EXPECT_EQ(estimate.num_consistent_before, 11);
+  EXPECT_EQ(estimate.num_consistent_after, 17);
+  EXPECT_EQ(estimate.num_explained, 23);
+  EXPECT_EQ(matches.sizes, (std::vector<size_t>{20, 20, 30}));
+  EXPECT_EQ(matches.poses[0].R, estimate.initial_pose.R);
+  EXPECT_EQ(matches.poses[1].R, estimate.cam2_from_cam1.R);
+  EXPECT_EQ(matches.poses[2].R, estimate.cam2_from_cam1.R);
+  EXPECT_NE(estimate.initial_pose.R, estimate.cam2_from_cam1.R);
+  for (const double threshold : matches.thresholds)
+    EXPECT_NEAR(threshold, 5.991464547, 1e-9);  // chi2_2, 95 %
+}
+
+}  // namespace
+}  // namespace rcme
