@@ -40,6 +40,7 @@ bool IsNamed(const Claim& claim, const std::string& name) {
 
 // Seconds on all threads that the check takes if no verdict stops it.
 double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
+  if (!check.not_possible.empty()) return 0.0;
   constexpr std::uint32_t kLeastTimed = 4;
   constexpr double kLeastSeconds = 0.002, kMostSeconds = 0.1;
   const auto start = std::chrono::steady_clock::now();
@@ -88,8 +89,9 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   const std::vector<double> work = WorkPerCheck(audit.claims, options);
   double total_work = 0.0;
   for (const double seconds : work) total_work += seconds;
-  fmt::print(stderr, "audit: {} claims, {} checks; at most {}, less where a verdict falls early\n",
-             audit.claims.size(), work.size(), DurationInWords(total_work));
+  fmt::print(stderr,
+             "audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
+             audit.claims.size(), work.size(), DurationInWords(total_work), NumThreads(options.num_threads));
   Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
   double done_work = 0.0;
   size_t next = 0;

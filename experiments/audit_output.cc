@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
 
-#include "experiments/claims/case.h"
 #include "experiments/summary_output.h"
 
 namespace rcme {
@@ -40,30 +41,40 @@ std::string ClaimedInWords(const Target& target) {
                      target.allowed.upper);
 }
 
-std::string VerdictInWords(const ClaimResult& result) {
+std::string VerdictInWords(const Claim& claim, const ClaimResult& result) {
   const std::string words = Name(result.verdict);
-  if (result.verdict != ClaimVerdict::kSmallNoiseOnly) return words;
-  return fmt::format("{} (up to {} px)", words, *result.holds_up_to_sigma_px);
+  if (result.verdict == ClaimVerdict::kSmallNoiseOnly) {
+    return fmt::format("{} (up to {} px)", words, *result.holds_up_to_sigma_px);
+  }
+  const auto num_impossible =
+      std::ranges::count_if(claim.checks, [](const Check& check) { return !check.not_possible.empty(); });
+  if (num_impossible == 0 || result.verdict == ClaimVerdict::kNotPossible) return words;
+  return fmt::format("{} (not possible in {} of {} conditions)", words, num_impossible, claim.checks.size());
 }
 
-// The target that decided the claim: of the check at the asserted noise level (or the nearest below), the
-// first that does not hold, else the first undecided, else the first.
+std::string VerdictInWords(const Check& check, const CheckResult& result) {
+  return check.not_possible.empty() ? VerdictName(result.verdict) : Name(ClaimVerdict::kNotPossible);
+}
+
+// The target that decided the checks [begin, end) of a claim: of the check at the asserted noise level (or
+// the nearest below), the first that does not hold, else the first undecided, else the first. Null: none of
+// them has a target.
 struct Decisive {
   const Check* check;
   const Target* target;
   const TargetResult* result;
 };
 
-Decisive DecisiveOf(const Claim& claim, const ClaimResult& result) {
+Decisive DecisiveOf(const Claim& claim, const ClaimResult& result, size_t begin, size_t end) {
   const auto distance = [](const Check& check) {
-    const double excess = check.sigma_px - kAssertedSigmaPx;
+    const double excess = check.sigma_px.value_or(kAssertedSigmaPx) - kAssertedSigmaPx;
     return excess > 0.0 ? 1e3 + excess : -excess;
   };
   const auto severity = [](const std::optional<Verdict>& verdict) {
     return !verdict ? 0 : *verdict == Verdict::kHolds ? 1 : *verdict == Verdict::kUndecided ? 2 : 3;
   };
   Decisive best{nullptr, nullptr, nullptr};
-  for (size_t c = 0; c < claim.checks.size(); ++c) {
+  for (size_t c = begin; c < end; ++c) {
     for (size_t t = 0; t < claim.checks[c].targets.size(); ++t) {
       const Decisive candidate{&claim.checks[c], &claim.checks[c].targets[t], &result.checks[c].targets[t]};
       const bool is_nearer = !best.check || distance(*candidate.check) < distance(*best.check);
@@ -96,8 +107,9 @@ Json CheckAsJson(const Check& check, const CheckResult& result) {
   Json json = {{"conditions", Json::object()},
                {"num_trials", result.num_trials},
                {"verdict", VerdictName(result.verdict)},
+               {"not_possible", check.not_possible},
                {"targets", Json::array()}};
-  json["conditions"]["sigma_px"] = fmt::format("{}", check.sigma_px);
+  if (check.sigma_px) json["conditions"]["sigma_px"] = fmt::format("{}", *check.sigma_px);
   for (const auto& [key, value] : check.conditions) json["conditions"][key] = value;
   for (size_t t = 0; t < check.targets.size(); ++t) {
     json["targets"].push_back(TargetAsJson(check.targets[t], result.targets[t]));
@@ -122,12 +134,22 @@ Json ClaimAsJson(const Claim& claim, const ClaimResult& result) {
   return json;
 }
 
+// n, and of how many trials where not all of them say something of the target.
+std::string TrialsInWords(const TargetResult& target, const CheckResult& check) {
+  return target.n == check.num_trials ? fmt::format("{}", target.n)
+                                      : fmt::format("{} of {}", target.n, check.num_trials);
+}
+
 std::string ClaimAsMarkdown(const Claim& claim, const ClaimResult& result) {
   std::string text =
       fmt::format("### {} ({})\n\n{}: \"{}.\" Measured: {}.\n\n**{}**\n\n", claim.id, claim.reading,
-                  claim.label, claim.sentence, claim.statistic, VerdictInWords(result));
+                  claim.label, claim.sentence, claim.statistic, VerdictInWords(claim, result));
   text += "| conditions | quantity | claimed | measured | n | verdict |\n|---|---|---|---|---|---|\n";
   for (size_t c = 0; c < claim.checks.size(); ++c) {
+    if (!claim.checks[c].not_possible.empty()) {
+      text += fmt::format("| {} | | | | 0 | not possible: {} |\n", ConditionsInWords(claim.checks[c]),
+                          claim.checks[c].not_possible);
+    }
     for (size_t t = 0; t < claim.checks[c].targets.size(); ++t) {
       const TargetResult& target = result.checks[c].targets[t];
       std::string verdict = VerdictName(target.verdict);
@@ -138,7 +160,7 @@ std::string ClaimAsMarkdown(const Claim& claim, const ClaimResult& result) {
       }
       text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", ConditionsInWords(claim.checks[c]),
                           claim.checks[c].targets[t].quantity, ClaimedInWords(claim.checks[c].targets[t]),
-                          MeasuredInWords(target), target.n, verdict);
+                          MeasuredInWords(target), TrialsInWords(target, result.checks[c]), verdict);
     }
   }
   return text + "\n";
@@ -152,16 +174,70 @@ std::string ErrorStatement(const Audit& audit) {
       1.0 - audit.confidence, audit.num_targets, kAuditErrorRate);
 }
 
+bool IsOnStudy(const Audit& audit) { return !audit.options.study.empty(); }
+
+// One row per claim and condition of a study, after one for all conditions where there are several.
+std::vector<std::vector<std::string>> RowsPerCondition(const Audit& audit) {
+  std::vector<std::vector<std::string>> rows = {
+      {"claim", "condition", "verdict", "quantity", "claimed", "measured", "n"}};
+  for (size_t i = 0; i < audit.claims.size(); ++i) {
+    const Claim& claim = audit.claims[i];
+    const ClaimResult& result = audit.results[i];
+    if (claim.checks.size() > 1) {
+      rows.push_back({claim.id, fmt::format("all {}", claim.checks.size()), VerdictInWords(claim, result), "",
+                      "", "", ""});
+    }
+    for (size_t c = 0; c < claim.checks.size(); ++c) {
+      const Decisive decisive = DecisiveOf(claim, result, c, c + 1);
+      rows.push_back({claim.id, ConditionsInWords(claim.checks[c]),
+                      VerdictInWords(claim.checks[c], result.checks[c]), claim.checks[c].not_possible, "", "",
+                      ""});
+      if (!decisive.target) continue;
+      rows.back()[3] = decisive.target->quantity;
+      rows.back()[4] = ClaimedInWords(*decisive.target);
+      rows.back()[5] = MeasuredInWords(*decisive.result);
+      rows.back()[6] = TrialsInWords(*decisive.result, result.checks[c]);
+    }
+  }
+  return rows;
+}
+
+// The verdicts: of the claims, and beside them those of a study's conditions where they fit on a page.
+std::string VerdictTableAsMarkdown(const Audit& audit) {
+  constexpr size_t kMostColumns = 8;
+  const auto num_conditions = [](const Claim& claim) { return claim.checks.size(); };
+  const size_t num_columns =
+      IsOnStudy(audit) ? std::ranges::max(audit.claims | std::views::transform(num_conditions)) : 0;
+  const bool has_columns = num_columns > 1 && num_columns <= kMostColumns;
+  std::string header = "| claim | reading | verdict |", rule = "|---|---|---|", rows;
+  for (size_t c = 0; has_columns && c < num_columns; ++c) {
+    header += fmt::format(" {} |", ConditionsInWords(audit.claims.front().checks[c]));
+    rule += "---|";
+  }
+  for (size_t i = 0; i < audit.claims.size(); ++i) {
+    const Claim& claim = audit.claims[i];
+    rows += fmt::format("| {} | {} | {} |", claim.id, claim.reading, VerdictInWords(claim, audit.results[i]));
+    for (size_t c = 0; has_columns && c < num_columns; ++c) {
+      rows += fmt::format(" {} |", VerdictInWords(claim.checks[c], audit.results[i].checks[c]));
+    }
+    rows += "\n";
+  }
+  return header + "\n" + rule + "\n" + rows;
+}
+
 }  // namespace
 
 std::string AuditAsTable(const Audit& audit) {
+  if (IsOnStudy(audit)) return FormatColumns(RowsPerCondition(audit)) + "\n" + ErrorStatement(audit) + "\n";
   std::vector<std::vector<std::string>> rows = {
       {"claim", "verdict", "quantity", "sigma_px", "claimed", "measured", "n"}};
   for (size_t i = 0; i < audit.claims.size(); ++i) {
-    const Decisive decisive = DecisiveOf(audit.claims[i], audit.results[i]);
-    rows.push_back({audit.claims[i].id, VerdictInWords(audit.results[i]), decisive.target->quantity,
-                    fmt::format("{}", decisive.check->sigma_px), ClaimedInWords(*decisive.target),
-                    MeasuredInWords(*decisive.result), fmt::format("{}", decisive.result->n)});
+    const Claim& claim = audit.claims[i];
+    const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
+    rows.push_back({claim.id, VerdictInWords(claim, audit.results[i]), decisive.target->quantity,
+                    fmt::format("{}", decisive.check->sigma_px.value_or(kAssertedSigmaPx)),
+                    ClaimedInWords(*decisive.target), MeasuredInWords(*decisive.result),
+                    fmt::format("{}", decisive.result->n)});
   }
   return FormatColumns(rows) + "\n" + ErrorStatement(audit) + "\n";
 }
@@ -171,8 +247,9 @@ std::string AuditAsJson(const Audit& audit) {
                {"seed", audit.options.seed},
                {"budget", BudgetName(audit.options.budget)},
                {"confidence_per_target", audit.confidence},
-               {"num_targets", audit.num_targets}};
-  for (const auto& [key, value] : ResolveCaseSettings({})) json["default_conditions"][key] = value;
+               {"num_targets", audit.num_targets},
+               {"study", audit.options.study}};
+  for (const auto& [key, value] : audit.options.conditions) json["default_conditions"][key] = value;
   json["claims"] = Json::array();
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     json["claims"].push_back(ClaimAsJson(audit.claims[i], audit.results[i]));
@@ -182,12 +259,9 @@ std::string AuditAsJson(const Audit& audit) {
 
 std::string AuditAsMarkdown(const Audit& audit) {
   std::string text =
-      fmt::format("# Claim audit\n\nSeed {}, budget {}. {}\n\n| claim | reading | verdict |\n|---|---|---|\n",
-                  audit.options.seed, BudgetName(audit.options.budget), ErrorStatement(audit));
-  for (size_t i = 0; i < audit.claims.size(); ++i) {
-    const Claim& claim = audit.claims[i];
-    text += fmt::format("| {} | {} | {} |\n", claim.id, claim.reading, VerdictInWords(audit.results[i]));
-  }
+      fmt::format("# Claim audit{}\n\nSeed {}, budget {}. {}\n\n{}",
+                  IsOnStudy(audit) ? " on study " + audit.options.study : "", audit.options.seed,
+                  BudgetName(audit.options.budget), ErrorStatement(audit), VerdictTableAsMarkdown(audit));
   std::string family;
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];

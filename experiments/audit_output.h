@@ -7,7 +7,8 @@
 
 namespace rcme {
 
-// One row per claim: its verdict and the number that decided it, with interval and n.
+// One row per claim: its verdict and the number that decided it, with interval and n; on a study one per
+// claim and condition.
 std::string AuditAsTable(const Audit& audit);
 
 // Everything: claims, conditions, targets, intervals, verdicts. plots/audit.py draws it. Unknown or unbounded

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -11,6 +13,7 @@
 #include "estimator/point_consistency.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "experiments/covariance_score.h"
+#include "experiments/field_text.h"
 #include "experiments/for_each_index.h"
 #include "experiments/progress.h"
 #include "stats/accuracy.h"
@@ -33,7 +36,7 @@ constexpr std::array<Quantity, 4> kQuantities = {{{"f", 8, &ValidityTrial::f_nee
                                                   {"ml_pose", 5, &ValidityTrial::ml_pose_nees}}};
 
 struct Cell {
-  double baseline_m;
+  std::string level;  // of the condition, as a field of the table
   int num_points;
   double sigma_px;
   std::vector<ValidityTrial> trials;
@@ -81,15 +84,25 @@ std::int64_t CountCovered(const Group& group, const Quantity& quantity) {
                        [&](const ValidityTrial* trial) { return trial->*quantity.statistic <= limit; });
 }
 
+std::string ParallaxField(double parallax_deg) {
+  return std::isnan(parallax_deg) ? "" : fmt::format("{:.4g}", parallax_deg);
+}
+
 std::string RowsOf(const Cell& cell, double median_parallax_deg) {
   std::string text;
+  for (const Quantity& quantity : kQuantities) {
+    if (!cell.trials.empty()) break;
+    text += fmt::format("{},{},{},{},all,,{},0,0,,,\n", cell.sigma_px, cell.num_points, cell.level,
+                        ParallaxField(median_parallax_deg), quantity.name);
+  }
+  if (cell.trials.empty()) return text;
   for (const Group& group : GroupsOf(cell.trials)) {
     for (const Quantity& quantity : kQuantities) {
       const auto n = static_cast<std::int64_t>(group.trials.size());
       const std::int64_t num_covered = CountCovered(group, quantity);
       const Interval interval = ExactBinomialInterval(num_covered, n);
-      text += fmt::format("{},{},{},{:.4g},{},{:.3g},{},{},{},{:.4f},{:.4f},{:.4f}\n", cell.sigma_px,
-                          cell.num_points, cell.baseline_m, median_parallax_deg, group.name,
+      text += fmt::format("{},{},{},{},{},{:.3g},{},{},{},{:.4f},{:.4f},{:.4f}\n", cell.sigma_px,
+                          cell.num_points, cell.level, ParallaxField(median_parallax_deg), group.name,
                           group.median_conditioning, quantity.name, n, num_covered,
                           static_cast<double>(num_covered) / static_cast<double>(n), interval.lower,
                           interval.upper);
@@ -98,70 +111,115 @@ std::string RowsOf(const Cell& cell, double median_parallax_deg) {
   return text;
 }
 
-// Over all cells of one baseline, which differ in nothing that parallax depends on.
+// Over all cells of one condition, which differ in nothing that parallax depends on. NaN: no cell has a
+// trial.
 double MedianParallaxDeg(std::span<const Cell> cells) {
   std::vector<double> parallaxes_rad;
   for (const Cell& cell : cells) {
     for (const ValidityTrial& trial : cell.trials) parallaxes_rad.push_back(trial.parallax_rad);
   }
+  if (parallaxes_rad.empty()) return std::numeric_limits<double>::quiet_NaN();
   return MeasureQuantile(std::move(parallaxes_rad), 0.5).value * 180.0 / std::numbers::pi;
+}
+
+// The trials of a cell that have a sample, in their order.
+std::vector<ValidityTrial> RunCell(const MapSampler& draw, std::uint32_t cell,
+                                   const ValidityMapOptions& options, Progress* progress) {
+  std::vector<std::optional<ValidityTrial>> all(static_cast<size_t>(options.trials));
+  ForEachIndex(options.trials, options.num_threads, [&](std::int64_t trial) {
+    const std::optional<MapSample> sample = draw({options.seed, cell, static_cast<std::uint32_t>(trial)});
+    if (sample) all[static_cast<size_t>(trial)] = RunValidityTrial(*sample);
+    progress->Advance(1);
+  });
+  std::vector<ValidityTrial> trials;
+  for (const std::optional<ValidityTrial>& trial : all) {
+    if (trial) trials.push_back(*trial);
+  }
+  return trials;
 }
 
 }  // namespace
 
-ValidityTrial RunValidityTrial(const SampleFamily& family, const StreamName& name) {
-  const Scene scene = family.MakeScene(name);
-  const RelativePose& pose_true = scene.cam2_from_cam1_true;
-  RandomStream noise_rng = StreamFor(name, StreamPurpose::kNoise);
-  const ObservedSample sample = family.Observe(scene, name, noise_rng);
+std::vector<MapCondition> AtBaselines(const std::vector<double>& baselines_m) {
+  std::vector<MapCondition> conditions;
+  for (const double baseline_m : baselines_m) {
+    const auto sampler = [baseline_m](int num_points, double sigma_px) -> MapSampler {
+      const auto family = std::make_shared<const SampleFamily>(num_points, baseline_m, sigma_px);
+      return [family](const StreamName& name) -> std::optional<MapSample> {
+        const Scene scene = family->MakeScene(name);
+        RandomStream noise_rng = StreamFor(name, StreamPurpose::kNoise);
+        return MapSample{scene.cam2_from_cam1_true, family->Observe(scene, name, noise_rng),
+                         family->ObserveExactly(scene, name),
+                         ParallaxRad(scene, scene.points_in_cam1.back())};
+      };
+    };
+    conditions.push_back({fmt::format("{}", baseline_m), sampler});
+  }
+  return conditions;
+}
 
+ValidityTrial RunValidityTrial(const MapSample& sample) {
+  const MotionProblem& problem = sample.observed.problem;
   ValidityTrial trial;
-  trial.parallax_rad = ParallaxRad(scene, scene.points_in_cam1.back());
-  if (const auto exact = EstimateLinearMotion(family.ObserveExactly(scene, name).problem)) {
+  trial.parallax_rad = sample.parallax_rad;
+  if (const auto exact = EstimateLinearMotion(sample.exact.problem)) {
     trial.exact_conditioning = exact->fit.conditioning;
   }
-  const std::optional<LinearMotion> motion = EstimateLinearMotion(sample.problem);
+  const std::optional<LinearMotion> motion = EstimateLinearMotion(problem);
   if (!motion) return trial;
   trial.observed_conditioning = motion->fit.conditioning;
 
-  const RelativePose pose = NearestPose(motion->poses, pose_true);
+  const RelativePose pose = NearestPose(motion->poses, sample.pose_true);
   const Matrix5d pose_cov = CovarianceOfMotion(pose, motion->f_cov);
-  trial.f_nees = NormalizedErrorOfF(*motion, pose_true);
-  trial.pose_nees = NormalizedErrorOfPose(pose, pose_cov, pose_true);
-  if (const auto model = UncertainFundamental::From(pose, pose_cov, scene.camera1, scene.camera2)) {
+  trial.f_nees = NormalizedErrorOfF(*motion, sample.pose_true);
+  trial.pose_nees = NormalizedErrorOfPose(pose, pose_cov, sample.pose_true);
+  if (const auto model = UncertainFundamental::From(pose, pose_cov, problem.camera1, problem.camera2)) {
     PointResidual residual;
     trial.fresh_point_d2 =
-        RankAwareTest(*model, sample.problem.sigma_px).Distance(sample.fresh_match, &residual);
+        RankAwareTest(*model, problem.sigma_px).Distance(sample.observed.fresh_match, &residual);
   }
-  const RefinedMotion refined = RefineAllBySampson(sample.problem, pose);
+  const RefinedMotion refined = RefineAllBySampson(problem, pose);
   if (refined.converged) {
-    trial.ml_pose_nees = NormalizedErrorOfPose(refined.cam2_from_cam1, refined.pose_cov, pose_true);
+    trial.ml_pose_nees = NormalizedErrorOfPose(refined.cam2_from_cam1, refined.pose_cov, sample.pose_true);
   }
   return trial;
 }
 
+std::int64_t NumCells(const ValidityMapOptions& options) {
+  return static_cast<std::int64_t>(options.conditions.size() * options.nums_points.size() *
+                                   options.sigmas_px.size());
+}
+
+double SecondsOfWork(const ValidityMapOptions& options) {
+  constexpr std::uint32_t kNumTimed = 4;
+  const auto start = std::chrono::steady_clock::now();
+  for (const MapCondition& condition : options.conditions) {
+    for (const int num_points : options.nums_points) {
+      const MapSampler draw = condition.sampler(num_points, options.sigmas_px.back());
+      for (std::uint32_t trial = 0; trial < kNumTimed; ++trial) {
+        if (const auto sample = draw({options.seed, 0, trial})) RunValidityTrial(*sample);
+      }
+    }
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  return elapsed.count() / kNumTimed * static_cast<double>(options.sigmas_px.size()) * options.trials /
+         NumThreads(options.num_threads);
+}
+
 std::string ValidityMapCsv(const ValidityMapOptions& options) {
-  const std::int64_t cells_per_baseline =
-      static_cast<std::int64_t>(options.nums_points.size() * options.sigmas_px.size());
-  const std::int64_t num_cells = cells_per_baseline * static_cast<std::int64_t>(options.baselines_m.size());
-  Progress progress("trials of the map", num_cells * options.trials);
-  std::string text =
-      "sigma_px,num_points,baseline_m,median_parallax_deg,conditioning,median_conditioning,quantity,n,"
-      "num_covered,coverage,lower,upper\n";
+  Progress progress("trials of the map", NumCells(options) * options.trials);
+  std::string text = fmt::format(
+      "sigma_px,num_points,{},median_parallax_deg,conditioning,median_conditioning,quantity,n,num_covered,"
+      "coverage,lower,upper\n",
+      options.condition_key);
   std::uint32_t cell_index = 0;
-  for (const double baseline_m : options.baselines_m) {
+  for (const MapCondition& condition : options.conditions) {
     std::vector<Cell> cells;
     for (const int num_points : options.nums_points) {
       for (const double sigma_px : options.sigmas_px) {
-        const SampleFamily family(num_points, baseline_m, sigma_px);
-        std::vector<ValidityTrial> trials(static_cast<size_t>(options.trials));
-        ForEachIndex(options.trials, options.num_threads, [&](std::int64_t trial) {
-          const StreamName name{options.seed, cell_index, static_cast<std::uint32_t>(trial)};
-          trials[static_cast<size_t>(trial)] = RunValidityTrial(family, name);
-          progress.Advance(1);
-        });
-        cells.push_back({baseline_m, num_points, sigma_px, std::move(trials)});
-        ++cell_index;
+        const MapSampler draw = condition.sampler(num_points, sigma_px);
+        cells.push_back({CsvField(condition.level), num_points, sigma_px,
+                         RunCell(draw, cell_index++, options, &progress)});
       }
     }
     const double median_parallax_deg = MedianParallaxDeg(cells);

@@ -55,7 +55,7 @@ def caption_of(audit, family, claims, panels):
     """What a reader needs beyond the marks: seed, budget, n, what the intervals promise."""
     rows = [row for claim in claims for row in groups.rows_of(claim)]
     counts = [row.target.n for row in rows]
-    parts = [f"Audit of family {family}", f"seed {audit.seed}", f"budget {audit.budget}"]
+    parts = [f"Audit of family {family}" + (f" on study {audit.study}" if audit.study else ""), f"seed {audit.seed}", f"budget {audit.budget}"]
     if counts:
         low, high = min(counts), max(counts)
         parts.append(f"n = {low} per target" if low == high else f"n = {low}\u2013{high} per target")

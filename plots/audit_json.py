@@ -1,6 +1,6 @@
 """Reads DIR/audit.json, which `rcme audit --out DIR` writes. It checks and names; it computes nothing.
 
-    audit: format, seed, budget, confidence_per_target, claims
+    audit: format, study, seed, budget, confidence_per_target, claims
     claim: id, family, reading, verdict, holds_up_to_sigma_px, figure_x, evidence
     evidence (one combination of conditions): conditions, targets
     target (one measured quantity): quantity, kind, nominal, low, high, threshold, measured, interval, n, verdict
@@ -17,9 +17,9 @@ from json_file import is_finite, read_object
 
 FORMAT = "rcme audit 1"
 HOLDS, HOLDS_AT_SMALL_NOISE, DOES_NOT_HOLD = "holds", "holds in the small-noise limit only", "does not hold"
-UNDECIDED, MEASURED = "undecided", "measured"
+UNDECIDED, MEASURED, NOT_POSSIBLE = "undecided", "measured", "not possible"
 TARGET_VERDICTS = (HOLDS, DOES_NOT_HOLD, UNDECIDED, MEASURED)
-CLAIM_VERDICTS = (HOLDS, HOLDS_AT_SMALL_NOISE, DOES_NOT_HOLD, UNDECIDED, MEASURED)
+CLAIM_VERDICTS = (HOLDS, HOLDS_AT_SMALL_NOISE, DOES_NOT_HOLD, UNDECIDED, MEASURED, NOT_POSSIBLE)
 KINDS = ("rate", "mean")
 
 
@@ -65,6 +65,7 @@ class Claim:
 @dataclass(frozen=True)
 class Audit:
     path: str
+    study: str  # "": the built-in scenes
     seed: int
     budget: str
     confidence_per_target: float
@@ -124,7 +125,7 @@ def read_audit(path):
     """The Audit in the file `path`; a cut-off or foreign file is an error, never a shorter audit."""
     node = read_object(path, "rcme audit --out DIR")
     node.one_of("format", (FORMAT,))
-    audit = Audit(path, seed=node.whole_number("seed"),
+    audit = Audit(path, study=node.text("study"), seed=node.whole_number("seed"),
                   budget=node.text("budget"), confidence_per_target=node.fraction("confidence_per_target"),
                   claims=tuple(map(read_claim, node.nodes("claims", "claim"))))
     if not audit.claims:

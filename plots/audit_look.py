@@ -42,6 +42,7 @@ LOOKS = {
     audit.DOES_NOT_HOLD: VerdictLook("\u2717", style.VERMILLION, "X", 6),
     audit.UNDECIDED: VerdictLook("?", GREY, "o", 4, filled=False),
     audit.MEASURED: VerdictLook("\u25c6", style.BLACK, "D", 3.4),
+    audit.NOT_POSSIBLE: VerdictLook("\u2013", GREY, "_", 4),
 }
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Draws where first-order covariances hold: coverage of the 95 % regions over noise, number of points and baseline.
+"""Draws where first-order covariances hold: coverage of the 95 % regions over noise, number of points and baseline, or a
+study's conditions.
 
-Three figures, each as PNG and PDF, from the two tables of `rcme map`:
+Up to three figures, each as PNG and PDF, from the tables of `rcme map`; of a study there is no reference:
   validity_map           a coloured cell per noise level and number of points, a row of panels per quantity
   validity_conditioning  the same for the least number of points, by thirds of the sample's conditioning
   validity_reference     the same draws of noise covered by first-order, unscented and Monte-Carlo covariances
@@ -20,6 +21,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 import style
 from command_line import Parser, PlotError
 from summary_csv import numbers, read_table
+from text_size import wrap
 
 NOMINAL = 0.95
 QUANTITIES = {  # name in the files: name in words
@@ -47,7 +49,8 @@ COVARIANCES = {  # covariance of the second reference: look
     "unscented_at_truth": style.Look("unscented, at the truth", style.GREEN, "^"),
     "monte_carlo_at_truth": style.Look("Monte Carlo, at the truth", style.BLUE, "D"),
 }
-CELL = ["sigma_px", "num_points", "baseline_m"]
+CELL = ["sigma_px", "num_points"]
+MAX_COLUMNS = 4  # conditions side by side in one figure
 COUNTS = ["n", "num_covered", "coverage", "lower", "upper"]
 MAP_KEYS, REFERENCE_KEYS = ["conditioning", "quantity"], ["covariance", "quantity"]
 
@@ -55,13 +58,21 @@ EXAMPLE = """
 example:
   rcme map --out map
   plots/validity_map.py map --out figures
-draws figures/validity_map.png, .pdf and the other two figures; without --out beside the tables.
+draws figures/validity_map.png, .pdf and the other figures; without --out beside the tables. More than four conditions of a
+study go to validity_map_2 and so on.
 """
 
 
 def read_coverages(path, keys, more=()):
-    """The rows of one table with numbers in place of text; one row per cell and keys."""
+    """The rows of one table with numbers in place of text and the condition in words; one row per cell and keys. Rows
+    of cells without any sample (n = 0, no coverage) are left out."""
     table = read_table(path, [*CELL, *keys, *COUNTS, *more], "rcme map --out DIR")
+    if "condition" not in table.rows:
+        table = read_table(path, ["baseline_m"], "rcme map --out DIR")
+        table.rows["condition"] = [f"baseline {baseline:g} m" for baseline in numbers(table, "baseline_m")]
+    table.rows = table.rows[(table.rows.n != "0") | (table.rows.coverage != "")]
+    if not len(table.rows):
+        raise PlotError(f"{path}: no cell has a sample, so there is nothing to draw.")
     rows = table.rows.assign(**{column: numbers(table, column) for column in [*CELL, *COUNTS, *more]})
     for row in rows.itertuples():
         if not (0 <= row.lower <= row.coverage <= row.upper <= 1 and 0 <= row.num_covered <= row.n and row.n > 0):
@@ -70,7 +81,7 @@ def read_coverages(path, keys, more=()):
         if row.sigma_px <= 0:
             raise PlotError(f"{path}: line {row.line}: sigma_px has no place on a logarithmic axis; "
                             "it must be positive.")
-    repeated = rows[rows.duplicated([*CELL, *keys])]
+    repeated = rows[rows.duplicated([*CELL, "condition", *keys])]
     if len(repeated):
         row = repeated.iloc[0]
         raise PlotError(f"{path}: line {row.line}: this cell's {row.quantity} is there twice.")
@@ -128,14 +139,16 @@ def draw_contour(axes, grid, level, line):
 
 
 def draw_map(path, rows):
-    """Quantities by rows, baselines by columns."""
+    """Quantities by rows, conditions by columns."""
     rows = rows[rows.conditioning == "all"]
-    quantities, baselines = present(path, QUANTITIES, rows.quantity), sorted(set(rows.baseline_m))
-    figure, panels = style.new_figure(len(quantities), len(baselines))
-    figure.set_size_inches(2.6 * len(baselines), 1.0 + 1.45 * len(quantities))
-    for (r, quantity), (c, baseline) in itertools.product(enumerate(quantities), enumerate(baselines)):
-        part = rows[(rows.quantity == quantity) & (rows.baseline_m == baseline)]
-        grid = part.pivot(index="num_points", columns="sigma_px", values="coverage")
+    quantities, conditions = present(path, QUANTITIES, rows.quantity), conditions_of(rows)
+    points, sigmas = sorted(set(rows.num_points)), sorted(set(rows.sigma_px))
+    figure, panels = style.new_figure(len(quantities), len(conditions))
+    width = max(4.6 / len(conditions), 1.0 + 0.2 * len(sigmas))  # of a panel, inches
+    figure.set_size_inches(width * len(conditions), 1.0 + 1.45 * len(quantities))
+    for (r, quantity), (c, condition) in itertools.product(enumerate(quantities), enumerate(conditions)):
+        part = rows[(rows.quantity == quantity) & (rows.condition == condition)]
+        grid = part.pivot(index="num_points", columns="sigma_px", values="coverage").reindex(index=points, columns=sigmas)
         draw_cells(panels[r, c], grid)
         for level, line in CONTOURS.items():
             draw_contour(panels[r, c], grid, level, line)
@@ -145,13 +158,14 @@ def draw_map(path, rows):
         panels[r, c].set_yticklabels([f"{points:g}" for points in grid.index])
         panels[r, c].tick_params(labelsize=7)
         if r == 0:
-            header = f"baseline {baseline:g} m, parallax {part.median_parallax_deg.iloc[0]:.2g}\u00b0"
-            panels[r, c].text(0.5, 1.2, header, transform=panels[r, c].transAxes, ha="center", va="bottom")
+            header = f"{condition}, parallax {part.median_parallax_deg.iloc[0]:.2g}\u00b0"
+            panels[r, c].text(0.5, 1.2, "\n".join(wrap(header, width, 9)),
+                              transform=panels[r, c].transAxes, ha="center", va="bottom")
         if c == 0:
             panels[r, c].set_ylabel("Points m")
         panels[-1, c].set_xlabel("Noise sigma (px)")
     lettered_titles(panels.flat,
-                    [title_of(quantity) if c == 0 else "" for quantity in quantities for c in range(len(baselines))])
+                    [title_of(quantity) if c == 0 else "" for quantity in quantities for c in range(len(conditions))])
     handles = [Patch(facecolor=color, edgecolor="0.6", linewidth=0.4, label=label) for _, color, label in SHADES]
     handles += [Line2D([], [], label=f"border at {100 * level:g}", **line) for level, line in CONTOURS.items()]
     style.add_legend_and_caption(
@@ -159,8 +173,26 @@ def draw_map(path, rows):
         f"Coverage (%) of first-order {100 * NOMINAL:g} % regions, estimates from m matches by linear least squares or "
         f"maximum likelihood; n = {range_of(rows.n)} per cell; exact 95 % (Clopper-Pearson) intervals reach at most "
         f"\u00b1{half_width(rows):.1f} points from what is printed; borders are of the unrounded coverages. A sample "
-        "without a model counts as not covered. Parallax: median angle at a point.")
+        "without a model counts as not covered. Parallax: median angle at a point."
+        + (" No value: too few true matches." if len(rows) < full_size(rows) else ""))
     return figure
+
+
+def conditions_of(rows):
+    """In the order of the file; baselines rising."""
+    names = list(dict.fromkeys(rows.condition))
+    return sorted(names, key=lambda name: float(name.split()[1])) if "baseline_m" in rows else names
+
+
+def pages_of(rows):
+    """The rows in parts of so many conditions as fit side by side."""
+    names = conditions_of(rows)
+    return [rows[rows.condition.isin(names[first:first + MAX_COLUMNS])] for first in range(0, len(names), MAX_COLUMNS)]
+
+
+def full_size(rows):
+    """How many rows there would be if every cell had a sample."""
+    return len(set(rows.num_points)) * len(set(rows.sigma_px)) * len(set(rows.quantity)) * len(set(rows.condition))
 
 
 def half_width(rows):
@@ -174,10 +206,10 @@ def set_coverage_axis(axes):
 
 
 def draw_conditioning(path, rows):
-    """Quantities side by side for the least number of points and the middle baseline; a line per third."""
-    baselines = sorted(set(rows.baseline_m))
-    points, baseline = min(rows.num_points), baselines[len(baselines) // 2]
-    rows = rows[(rows.num_points == points) & (rows.baseline_m == baseline)]
+    """Quantities side by side for the least number of points and the middle condition; a line per third."""
+    conditions = conditions_of(rows)
+    points, condition = min(rows.num_points), conditions[len(conditions) // 2]
+    rows = rows[(rows.num_points == points) & (rows.condition == condition)]
     groups, quantities = present(path, THIRDS, rows.conditioning), present(path, QUANTITIES, rows.quantity)
     rows = rows[rows.conditioning.isin(groups)]
     figure, panels = style.new_figure(1, len(quantities))
@@ -196,7 +228,7 @@ def draw_conditioning(path, rows):
     lettered_titles(panels.flat, [QUANTITIES[quantity] for quantity in quantities])
     style.add_legend_and_caption(
         figure, panels[0, 0].get_legend_handles_labels()[0],
-        f"m = {points:g} points, baseline {baseline:g} m; thirds of each cell's trials in order of the ratio of "
+        f"m = {points:g} points, {condition}; thirds of each cell's trials in order of the ratio of "
         "smallest to largest singular value of M A, of the sample without noise and as observed; "
         f"n = {range_of(rows.n)} per point; bars: exact 95 % (Clopper-Pearson) intervals; horizontal line: nominal.")
     return figure
@@ -225,10 +257,9 @@ def draw_reference(path, rows):
         axes.set_ylim(min(0.9, rows.lower.min() - 0.03), 1)
     panels[0, 0].set_ylabel("Coverage (%)")
     lettered_titles(panels.flat, [title_of(quantity) for quantity in quantities])
-    baselines = ", ".join(f"{baseline:g} m" for baseline in sorted(set(rows.baseline_m)))
     style.add_legend_and_caption(
         figure, panels[0, 0].get_legend_handles_labels()[0],
-        f"Baseline {baselines}; the same fresh draws of noise for all covariances, {range_of(rows.num_samples)} fixed "
+        f"{', '.join(conditions_of(rows)).capitalize()}; the same fresh draws of noise for all covariances, {range_of(rows.num_samples)} fixed "
         f"samples and n = {range_of(rows.n)} draws per cell; bars: exact 95 % (Clopper-Pearson) intervals of the mean "
         "coverage over these samples; horizontal line: nominal.")
     return figure
@@ -253,10 +284,12 @@ def main(arguments=None):
         map_path, reference_path = (os.path.join(options.tables, name)
                                     for name in ("validity_map.csv", "validity_reference.csv"))
         coverages = read_coverages(map_path, MAP_KEYS, ["median_parallax_deg"])
-        reference = read_coverages(reference_path, REFERENCE_KEYS, ["num_samples"])
-        figures = {"validity_map": draw_map(map_path, coverages),
-                   "validity_conditioning": draw_conditioning(map_path, coverages),
-                   "validity_reference": draw_reference(reference_path, reference)}
+        figures = {"validity_map" + (f"_{number}" if number > 1 else ""): draw_map(map_path, page)
+                   for number, page in enumerate(pages_of(coverages), 1)}
+        figures["validity_conditioning"] = draw_conditioning(map_path, coverages)
+        if "baseline_m" in coverages:
+            reference = read_coverages(reference_path, REFERENCE_KEYS, ["num_samples"])
+            figures["validity_reference"] = draw_reference(reference_path, reference)
         written = [path for name, figure in figures.items()
                    for path in style.save(figure, os.path.join(options.out, name), dpi=170)]
     except PlotError as error:

@@ -7,11 +7,12 @@ TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made) {
   return Score(estimator.Estimate(made.problem(), sampling_rng), made.data, 0.0);
 }
 
-Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made) {
+Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made,
+                                    const FailureBounds& bounds) {
   const TrialRecord record = CallEstimator(estimator, made);
   const bool is_returned = record.status == MotionStatus::kOk;
   return {is_returned ? record.nees : std::numeric_limits<double>::quiet_NaN(), is_returned ? 1.0 : 0.0,
-          FailsSilently(record) ? 1.0 : 0.0};
+          HasFailed(record, bounds) ? 1.0 : 0.0};
 }
 
 bool FailsSilently(const TrialRecord& record) { return HasFailed(record, FailureBounds()); }

@@ -11,8 +11,9 @@ namespace rcme {
 TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made);
 
 // What a call says of the covariance it returns: NEES of the motion (NaN if none is returned), whether one is
-// returned, whether it failed.
-Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made);
+// returned, whether it failed by the bounds.
+Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made,
+                                    const FailureBounds& bounds = FailureBounds());
 
 // Whether the call failed where a refusal ("Detect-fail") counts as no failure, and where it counts as one.
 bool FailsSilently(const TrialRecord& record);

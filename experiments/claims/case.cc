@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "experiments/simulated_data.h"
 #include "stats/coverage.h"
 #include "stats/distributions.h"
 
@@ -19,13 +18,16 @@ Settings WithDefaults(const Settings& settings) {
 
 }  // namespace
 
-CaseMaker SimulatedCases(const Settings& settings) {
-  const std::shared_ptr<const SimulatedData> simulated = MakeSimulatedData(WithDefaults(settings));
-  return [simulated](const StreamName& name) {
+CaseMaker CasesFrom(std::shared_ptr<const SimulatedData> simulated) {
+  return [simulated = std::move(simulated)](const StreamName& name) {
     Case made{name, simulated->DrawScene(name), {}, StreamFor(name, StreamPurpose::kCheck)};
     made.data = simulated->MakeFrom(made.scene, name);
     return made;
   };
+}
+
+CaseMaker SimulatedCases(const Settings& settings) {
+  return CasesFrom(MakeSimulatedData(WithDefaults(settings)));
 }
 
 Settings ResolveCaseSettings(const Settings& settings) { return ResolveSettings(WithDefaults(settings)); }

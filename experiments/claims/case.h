@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "experiments/claims/claim.h"
+#include "experiments/simulated_data.h"
 #include "simulator/scene.h"
 
 namespace rcme {
@@ -20,6 +21,9 @@ struct Case {
 
 using CaseMaker = std::function<Case(const StreamName&)>;
 using Statistic = std::function<Outcome(Case&)>;
+
+// The cases of simulated data.
+CaseMaker CasesFrom(std::shared_ptr<const SimulatedData> simulated);
 
 // Simulated cases; `settings` override the defaults of the scene uniform_volume and of noise; no outliers
 // unless outlier_ratio is given.

@@ -74,12 +74,14 @@ struct TrialLimits {
 };
 
 struct Check {
-  Settings conditions;    // for people: key, value
-  double sigma_px = 0.5;  // its rung on the ladder of noise levels
+  Settings conditions;  // for people: key, value
+  std::optional<double> sigma_px =
+      0.5;  // its rung on the ladder of noise levels; nothing: there is no ladder
   std::vector<Target> targets;
   TrialLimits limits;
   std::function<Outcome(const StreamName&)> trial;  // a pure function of the name
-  bool is_timed = false;  // measures time: trials run one after the other, nothing beside them
+  std::string not_possible;  // why there are no trials (and then no targets either); empty: there are
+  bool is_timed = false;     // measures time: trials run one after the other, nothing beside them
 };
 
 struct Claim {

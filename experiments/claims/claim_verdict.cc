@@ -1,5 +1,6 @@
 #include "experiments/claims/claim_verdict.h"
 
+#include <algorithm>
 #include <map>
 
 namespace rcme {
@@ -14,6 +15,8 @@ const char* Name(ClaimVerdict verdict) {
       return "does not hold";
     case ClaimVerdict::kMeasured:
       return "measured";
+    case ClaimVerdict::kNotPossible:
+      return "not possible";
     case ClaimVerdict::kUndecided:
       break;
   }
@@ -30,21 +33,27 @@ std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdi
   return all;
 }
 
+bool IsPossible(const Claim& claim) {
+  return std::ranges::any_of(claim.checks, [](const Check& check) { return check.not_possible.empty(); });
+}
+
 void JudgeClaim(const Claim& claim, ClaimResult* result) {
   std::map<double, std::vector<std::optional<Verdict>>> verdicts_by_sigma;
   for (size_t i = 0; i < claim.checks.size(); ++i) {
-    verdicts_by_sigma[claim.checks[i].sigma_px].push_back(result->checks[i].verdict);
+    verdicts_by_sigma[claim.checks[i].sigma_px.value_or(kAssertedSigmaPx)].push_back(
+        result->checks[i].verdict);
   }
   std::vector<std::pair<double, Verdict>> rungs;  // rising
   for (const auto& [sigma_px, verdicts] : verdicts_by_sigma) {
     if (const std::optional<Verdict> verdict = Together(verdicts)) rungs.emplace_back(sigma_px, *verdict);
   }
   result->holds_up_to_sigma_px.reset();
-  result->verdict = ClaimVerdict::kMeasured;
+  result->verdict = IsPossible(claim) ? ClaimVerdict::kMeasured : ClaimVerdict::kNotPossible;
   if (rungs.empty()) return;
 
+  const bool has_ladder = claim.checks.front().sigma_px.has_value();
   for (const auto& [sigma_px, verdict] : rungs) {
-    if (verdict != Verdict::kHolds) break;
+    if (verdict != Verdict::kHolds || !has_ladder) break;
     result->holds_up_to_sigma_px = sigma_px;
   }
   bool fails = false, is_undecided = false;  // on a rung up to the asserted one

@@ -19,7 +19,7 @@ struct CheckResult {
   std::optional<Verdict> verdict;  // of all targets together; nothing: none is claimed
 };
 
-enum class ClaimVerdict { kHolds, kSmallNoiseOnly, kDoesNotHold, kUndecided, kMeasured };
+enum class ClaimVerdict { kHolds, kSmallNoiseOnly, kDoesNotHold, kUndecided, kMeasured, kNotPossible };
 const char* Name(ClaimVerdict verdict);
 
 struct ClaimResult {
@@ -31,9 +31,13 @@ struct ClaimResult {
 // Does not hold if one of them does not, holds if all do, else undecided; nothing claimed: nothing.
 std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdicts);
 
+// Whether any of the claim's checks has trials.
+bool IsPossible(const Claim& claim);
+
 // The claim's verdict from its checks', by rungs of equal sigma_px: "holds" if it holds on every rung up to
 // kAssertedSigmaPx (higher ones only inform), "small noise only" if it fails by kAssertedSigmaPx but holds on
-// the lowest rungs, "does not hold" if it fails on the lowest rung, else undecided.
+// the lowest rungs, "does not hold" if it fails on the lowest rung, else undecided. Checks without a ladder
+// are one rung: the claim holds if it holds in all of them. "Not possible" if none of them has trials.
 void JudgeClaim(const Claim& claim, ClaimResult* result);
 
 }  // namespace rcme

@@ -79,6 +79,7 @@ std::vector<Outcome> RunTrials(const Check& check, const CheckRun& run, std::int
 }  // namespace
 
 CheckResult DecideCheck(const Check& check, const CheckRun& run) {
+  if (!check.not_possible.empty()) return {};
   constexpr std::int64_t kFirstLook = 64, kMaxBatch = 100'000;
   const std::int64_t max_trials = check.limits.Max(run.budget);
   std::vector<Tally> tallies(check.targets.size());

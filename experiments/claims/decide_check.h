@@ -17,6 +17,7 @@ struct CheckRun {
 // result is a pure function of the check and the run. After each batch the rates are looked at through
 // confidence sequences, so that looking often does not inflate errors; means are looked at once, after the
 // last trial of the budget, and a check that claims a mean runs to there.
+// A check that is not possible has no trials and no results.
 CheckResult DecideCheck(const Check& check, const CheckRun& run);
 
 }  // namespace rcme

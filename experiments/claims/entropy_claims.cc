@@ -2,6 +2,7 @@
 
 #include "estimator/run_pipeline.h"
 #include "estimator/sample_consistency.h"
+#include "experiments/claims/calibration.h"
 #include "experiments/claims/call_estimator.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const Sample kFirstEight = {0, 1, 2, 3, 4, 5, 6, 7};
+const char* const kLabel = "eq::score-inliers";
 
 // The same problem with pixels half as large: every coordinate and sigma twice as large.
 MotionProblem InHalfPixels(MotionProblem problem) {
@@ -173,24 +175,35 @@ std::vector<Target> SelectionTargets() {
 
 }  // namespace
 
+std::vector<CaseClaim> EntropyCalibration() {
+  const auto claim = [](const char* id, const char* reading, const char* measured,
+                        const Statistic& unit) -> CaseClaim {
+    return {{id,
+             kLabel,
+             reading,
+             "psi and the quality test do not depend on the unit of length in the image",
+             measured,
+             "",
+             {}},
+            unit,
+            UnitTargets(),
+            kMicroseconds,
+            {.matches = MatchesOf::kTruth, .true_motion = false}};
+  };
+  return {claim("entropy.unit.as_printed", "as printed",
+                "psi of all-inlier models in pixels and in half pixels, mu = -3.53",
+                UnitStatistic<AsPrintedTest>(Reading::kAsPrinted)),
+          claim("entropy.unit.rank_aware", "rank-aware, excess",
+                "mean excess entropy of all-inlier models in pixels and in half pixels, mu = 6",
+                UnitStatistic<RankAwareTest>(Reading::kRankAware))};
+}
+
 std::vector<Claim> EntropyClaims() {
-  const char* kLabel = "eq::score-inliers";
   const Settings pair = {{"num_matches", "100"}};
+  const std::vector<CaseClaim> units = EntropyCalibration();
   return {
-      {"entropy.unit.as_printed",
-       kLabel,
-       "as printed",
-       "psi and the quality test do not depend on the unit of length in the image",
-       "psi of all-inlier models in pixels and in half pixels, mu = -3.53",
-       "",
-       {MakeCheck(pair, UnitStatistic<AsPrintedTest>(Reading::kAsPrinted), UnitTargets(), kMicroseconds)}},
-      {"entropy.unit.rank_aware",
-       kLabel,
-       "rank-aware, excess",
-       "psi and the quality test do not depend on the unit of length in the image",
-       "mean excess entropy of all-inlier models in pixels and in half pixels, mu = 6",
-       "",
-       {MakeCheck(pair, UnitStatistic<RankAwareTest>(Reading::kRankAware), UnitTargets(), kMicroseconds)}},
+      OnBuiltInScene(units[0], {pair}),
+      OnBuiltInScene(units[1], {pair}),
       {"entropy.residual_share",
        kLabel,
        "as printed",

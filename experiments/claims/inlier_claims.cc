@@ -1,5 +1,6 @@
 #include "estimator/uncertainty/as_printed.h"
 #include "estimator/uncertainty/sampson_covariance.h"
+#include "experiments/claims/calibration.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
@@ -45,47 +46,61 @@ Check UntunedCheck(const PointReading& reading) {
                    {1'000'000, 1'000'000, 1'000'000});
 }
 
-Claim TruePoseClaim(const PointReading& reading) {
-  Claim claim{std::string("inlier.true_pose.") + reading.id,
-              "eq::find-inlier",
-              reading.name,
-              "Of the points seen by a motion that is known exactly, 1 - alpha pass the inlier test",
-              reading.statistic,
-              "sigma_px",
-              SigmaLadder({0.01, 0.1, 0.5, 1.0}, {{"num_matches", "1"}}, TruePoseStatistic(reading.distance),
-                          CoverageTargets(reading.degrees_of_freedom), kMicroseconds)};
-  if (reading.distance == RankAwareDistance) claim.checks.push_back(UntunedCheck(reading));
-  return claim;
+CaseClaim MakeClaim(const std::string& point, const char* label, const PointReading& reading,
+                    const char* sentence, const Statistic& statistic, const CaseNeeds& needs) {
+  return {{"inlier." + point + "." + reading.id,
+           label,
+           reading.name,
+           sentence,
+           reading.statistic,
+           "sigma_px",
+           {}},
+          statistic,
+          CoverageTargets(reading.degrees_of_freedom),
+          kMicroseconds,
+          needs};
 }
 
-Claim FreshPointClaim(const PointReading& reading) {
-  return {std::string("inlier.fresh_point.") + reading.id,
-          "eq::find-inlier",
-          reading.name,
-          "Of the points that did not take part in the 8-point motion, 1 - alpha pass the inlier test",
-          reading.statistic,
-          "sigma_px",
-          SigmaLadder(kNoiseLadderPx, {{"num_matches", "9"}}, FreshPointStatistic(reading.distance),
-                      CoverageTargets(reading.degrees_of_freedom), kMicroseconds)};
+CaseClaim TruePoseClaim(const PointReading& reading) {
+  return MakeClaim("true_pose", "eq::find-inlier", reading,
+                   "Of the points seen by a motion that is known exactly, 1 - alpha pass the inlier test",
+                   TruePoseStatistic(reading.distance), {.num_true_matches = 1});
 }
 
-Claim OwnPointClaim(const PointReading& reading) {
-  return {std::string("inlier.own_point.") + reading.id,
-          "eq::sample-p-test",
-          reading.name,
-          "Of the points of the sample that made the motion, 1 - alpha pass the same test",
-          reading.statistic,
-          "sigma_px",
-          SigmaLadder(kNoiseLadderPx, {{"num_matches", "8"}}, OwnPointStatistic(reading.distance),
-                      CoverageTargets(reading.degrees_of_freedom), kMicroseconds)};
+CaseClaim FreshPointClaim(const PointReading& reading) {
+  return MakeClaim(
+      "fresh_point", "eq::find-inlier", reading,
+      "Of the points that did not take part in the 8-point motion, 1 - alpha pass the inlier test",
+      FreshPointStatistic(reading.distance), {.num_true_matches = 9, .true_motion = false});
+}
+
+CaseClaim OwnPointClaim(const PointReading& reading) {
+  return MakeClaim("own_point", "eq::sample-p-test", reading,
+                   "Of the points of the sample that made the motion, 1 - alpha pass the same test",
+                   OwnPointStatistic(reading.distance), {.num_true_matches = 8, .true_motion = false});
 }
 
 }  // namespace
 
-std::vector<Claim> InlierClaims() {
-  std::vector<Claim> claims;
+std::vector<CaseClaim> InlierCalibration() {
+  std::vector<CaseClaim> claims;
   for (const auto make : {TruePoseClaim, FreshPointClaim, OwnPointClaim}) {
     for (const PointReading& reading : Readings()) claims.push_back(make(reading));
+  }
+  return claims;
+}
+
+std::vector<Claim> InlierClaims() {
+  std::vector<Claim> claims;
+  for (const PointReading& reading : Readings()) {
+    claims.push_back(AtNoiseLevels(TruePoseClaim(reading), {0.01, 0.1, 0.5, 1.0}, {{"num_matches", "1"}}));
+    if (reading.distance == RankAwareDistance) claims.back().checks.push_back(UntunedCheck(reading));
+  }
+  for (const PointReading& reading : Readings()) {
+    claims.push_back(AtNoiseLevels(FreshPointClaim(reading), kNoiseLadderPx, {{"num_matches", "9"}}));
+  }
+  for (const PointReading& reading : Readings()) {
+    claims.push_back(AtNoiseLevels(OwnPointClaim(reading), kNoiseLadderPx, {{"num_matches", "8"}}));
   }
   return claims;
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "estimator/sample_consistency.h"
+#include "experiments/claims/calibration.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSignificanceLevel = 0.05;
+const char* const kLabel = "eq::sample-p-test";
 
 Outcome JointStatistic(Case& made) {
   const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
@@ -49,8 +51,21 @@ std::vector<Check> PowerChecks(const Statistic& is_rejected) {
 
 }  // namespace
 
+std::vector<CaseClaim> SampleTestCalibration() {
+  return {{{"sample_test.size.joint",
+            kLabel,
+            "joint, 3 dof",
+            "A sample without outliers passes with probability 1 - alpha",
+            "T = (N'f)' (N' Sigma_f N)^-1 (N'f), chi2_3",
+            "sigma_px",
+            {}},
+           JointStatistic,
+           CoverageTargets(3),
+           kMicroseconds,
+           {.true_motion = false}}};
+}
+
 std::vector<Claim> SampleTestClaims() {
-  const char* kLabel = "eq::sample-p-test";
   const char* kPower = "At least 90 % of the samples with 1 to 8 mismatches are rejected";
   const Settings sample = {{"num_matches", "8"}};
   return {
@@ -59,10 +74,7 @@ std::vector<Claim> SampleTestClaims() {
        "all eight points pass delta' Sigma_delta^-1 delta <= chi2_3", "sigma_px",
        SigmaLadder(kNoiseLadderPx, sample, PassesPerPointStatistic,
                    {ClaimedRate("share passed", 0.95, Around(0.95, 0.01))}, kMicroseconds)},
-      {"sample_test.size.joint", kLabel, "joint, 3 dof",
-       "A sample without outliers passes with probability 1 - alpha",
-       "T = (N'f)' (N' Sigma_f N)^-1 (N'f), chi2_3", "sigma_px",
-       SigmaLadder(kNoiseLadderPx, sample, JointStatistic, CoverageTargets(3), kMicroseconds)},
+      AtNoiseLevels(SampleTestCalibration().front(), kNoiseLadderPx, sample),
       {"sample_test.power.as_printed", kLabel, "per point", kPower, "a point exceeds chi2_3 at alpha = 0.05",
        "num_outliers", PowerChecks(RejectedPerPointStatistic)},
       {"sample_test.power.joint", kLabel, "joint, 3 dof", kPower, "T exceeds chi2_3 at alpha = 0.05",

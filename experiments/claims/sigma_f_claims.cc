@@ -2,6 +2,7 @@
 
 #include "estimator/solvers/five_point.h"
 #include "estimator/uncertainty/as_printed.h"
+#include "experiments/claims/calibration.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Settings kSample = {{"num_matches", "8"}};
+const char* const kLabel = "Sec. model_instantiate, Sigma_f";
 
 Outcome NeesStatistic(Case& made) {
   const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
@@ -76,13 +78,35 @@ Outcome ExactInverseStatistic(Case& made) {
 
 }  // namespace
 
+std::vector<CaseClaim> SigmaFCalibration() {
+  return {{{"sigma_f.coverage",
+            kLabel,
+            "overdetermined, 8-point",
+            "Sigma_f = A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' is the covariance of f",
+            "NEES of f in the complement of f, chi2_8",
+            "sigma_px",
+            {}},
+           NeesStatistic,
+           CoverageTargets(8),
+           kMicroseconds,
+           {}},
+          {{"sigma_f.exact",
+            kLabel,
+            "exact, 5-point, in the motion's five coordinates",
+            "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T is the covariance of the exact case",
+            "NEES of the motion, chi2_5",
+            "sigma_px",
+            {}},
+           ExactNeesStatistic,
+           CoverageTargets(5),
+           kMicroseconds,
+           {.num_true_matches = 5}}};
+}
+
 std::vector<Claim> SigmaFClaims() {
-  const char* kLabel = "Sec. model_instantiate, Sigma_f";
+  const std::vector<CaseClaim> calibration = SigmaFCalibration();
   return {
-      {"sigma_f.coverage", kLabel, "overdetermined, 8-point",
-       "Sigma_f = A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' is the covariance of f",
-       "NEES of f in the complement of f, chi2_8", "sigma_px",
-       SigmaLadder(kNoiseLadderPx, kSample, NeesStatistic, CoverageTargets(8), kMicroseconds)},
+      AtNoiseLevels(calibration[0], kNoiseLadderPx, kSample),
       {"sigma_f.formula",
        kLabel,
        "overdetermined, 8-point",
@@ -107,11 +131,7 @@ std::vector<Claim> SigmaFClaims() {
        "",
        {MakeCheck(kSample, NormalBasisStatistic(8), {IdentityTarget("share within 1e-12", 1e-12)},
                   kMicroseconds)}},
-      {"sigma_f.exact", kLabel, "exact, 5-point, in the motion's five coordinates",
-       "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T is the covariance of the exact case",
-       "NEES of the motion, chi2_5", "sigma_px",
-       SigmaLadder(kNoiseLadderPx, {{"num_matches", "5"}}, ExactNeesStatistic, CoverageTargets(5),
-                   kMicroseconds)},
+      AtNoiseLevels(calibration[1], kNoiseLadderPx, {{"num_matches", "5"}}),
       {"sigma_f.exact_inverse",
        kLabel,
        "exact, 5-point, in f as printed",

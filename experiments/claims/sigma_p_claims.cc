@@ -2,6 +2,7 @@
 
 #include "estimator/uncertainty/motion_covariance.h"
 #include "estimator/uncertainty/svd_differential.h"
+#include "experiments/claims/calibration.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
@@ -43,15 +44,29 @@ Outcome RankStatistic(Case& made) {
 
 }  // namespace
 
+std::vector<CaseClaim> SigmaPCalibration() {
+  const auto claim = [](const char* id, const char* reading, const Statistic& nees) -> CaseClaim {
+    return {{id,
+             "eq::cov_p",
+             reading,
+             "Sigma_p = J_p Sigma_f J_p' is the covariance of the motion",
+             "NEES of the motion, chi2_5",
+             "sigma_px",
+             {}},
+            nees,
+            CoverageTargets(5),
+            kMicroseconds,
+            {}};
+  };
+  return {claim("sigma_p.theta", "pseudo-inverse of dTheta/dp", NeesStatistic(ThetaJacobian)),
+          claim("sigma_p.svd", "differential of the SVD", NeesStatistic(MotionJacobianBySvd))};
+}
+
 std::vector<Claim> SigmaPClaims() {
+  const std::vector<CaseClaim> calibration = SigmaPCalibration();
   return {
-      {"sigma_p.theta", "eq::cov_p", "pseudo-inverse of dTheta/dp",
-       "Sigma_p = J_p Sigma_f J_p' is the covariance of the motion", "NEES of the motion, chi2_5", "sigma_px",
-       SigmaLadder(kNoiseLadderPx, kSample, NeesStatistic(ThetaJacobian), CoverageTargets(5), kMicroseconds)},
-      {"sigma_p.svd", "eq::cov_p", "differential of the SVD",
-       "Sigma_p = J_p Sigma_f J_p' is the covariance of the motion", "NEES of the motion, chi2_5", "sigma_px",
-       SigmaLadder(kNoiseLadderPx, kSample, NeesStatistic(MotionJacobianBySvd), CoverageTargets(5),
-                   kMicroseconds)},
+      AtNoiseLevels(calibration[0], kNoiseLadderPx, kSample),
+      AtNoiseLevels(calibration[1], kNoiseLadderPx, kSample),
       {"sigma_p.rank",
        "eq::cov_p",
        "7x7, p = (q, t)",

@@ -6,9 +6,14 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/study_source.h"
 #include "experiments/file_output.h"
+#include "experiments/for_each_index.h"
+#include "experiments/progress.h"
+#include "experiments/study_samples.h"
 #include "experiments/validity_map.h"
 #include "experiments/validity_reference.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -16,31 +21,56 @@ namespace {
 constexpr int kDrawsPerSample = 100;
 
 struct MapArguments {
+  std::string study;  // empty: the built-in scene
+  StudyChanges changes;
   std::string out;
   int trials = ValidityMapOptions{}.trials;
-  std::int64_t seed = 1;
   int threads = 0;
 };
 
-void Map(const MapArguments& arguments) {
-  MakeResultFolder(arguments.out);  // minutes before the first table is written
-  const std::string map_path = (std::filesystem::path(arguments.out) / "validity_map.csv").string();
-  const std::string reference_path =
-      (std::filesystem::path(arguments.out) / "validity_reference.csv").string();
+// Puts the study's conditions and noise levels into the map, and the study's seed.
+void UseStudy(const MapArguments& arguments, ValidityMapOptions* map) {
+  const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
+  map->seed = plan.study.seed;
+  map->condition_key = "condition";
+  try {
+    map->conditions = MapConditionsOf(plan);
+    for (const double sigma_px : SigmasOf(plan)) map->sigmas_px.push_back(sigma_px);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", arguments.study, error.what()));
+  }
+  std::ranges::sort(map->sigmas_px);
+  const auto repeated = std::ranges::unique(map->sigmas_px);
+  map->sigmas_px.erase(repeated.begin(), repeated.end());
+}
 
-  ValidityMapOptions map;
-  map.trials = arguments.trials;
-  map.seed = static_cast<std::uint64_t>(arguments.seed);
-  map.num_threads = arguments.threads;
-  WriteFileWhole(map_path, ValidityMapCsv(map));
-
+void WriteReference(const MapArguments& arguments, const std::string& path) {
   ValidityReferenceOptions reference;
   reference.num_draws = kDrawsPerSample;
   reference.num_samples = std::max(1, arguments.trials / kDrawsPerSample);
-  reference.seed = map.seed;
-  reference.num_threads = map.num_threads;
-  WriteFileWhole(reference_path, ValidityReferenceCsv(reference));
-  fmt::print("{}\n{}\n", map_path, reference_path);
+  reference.seed = SeedWithoutStudy(arguments.changes);
+  reference.num_threads = arguments.threads;
+  WriteFileWhole(path, ValidityReferenceCsv(reference));
+  fmt::print("{}\n", path);
+}
+
+void Map(const MapArguments& arguments) {
+  const std::filesystem::path folder(arguments.out);
+  ValidityMapOptions map;
+  map.trials = arguments.trials;
+  map.num_threads = arguments.threads;
+  if (arguments.study.empty()) {
+    map.seed = SeedWithoutStudy(arguments.changes);
+  } else {
+    UseStudy(arguments, &map);
+  }
+  MakeResultFolder(arguments.out);  // minutes before the first table is written
+  fmt::print(stderr, "map: {} conditions, {} cells; about {} on {} threads\n", map.conditions.size(),
+             NumCells(map), DurationInWords(SecondsOfWork(map)), NumThreads(map.num_threads));
+  const std::string map_path = (folder / "validity_map.csv").string();
+  WriteFileWhole(map_path, ValidityMapCsv(map));
+  fmt::print("{}\n", map_path);
+  if (arguments.study.empty()) WriteReference(arguments, (folder / "validity_reference.csv").string());
 }
 
 }  // namespace
@@ -62,21 +92,27 @@ void AddMapCommand(CLI::App& app) {
       "                          covariances, to tell linearisation error from a wrong formula\n"
       "A sample without a model counts as not covered. The defaults take six minutes of one core.\n"
       "\n"
+      "With a STUDY the samples are true matches of its scene, cameras and motion under its noise law, for "
+      "each "
+      "of\n"
+      "its conditions and at its own noise level beside the map's eight; there is no reference table then. A "
+      "cell\n"
+      "for which no trial has enough true matches, or a direction of translation, has n = 0.\n"
+      "\n"
       "Example:\n"
       "  rcme map --out map\n"
+      "  rcme map study.yaml --set outlier_ratio=0 --out map\n"
       "  python3 plots/validity_map.py map");
   auto arguments = std::make_shared<MapArguments>();
-  command->add_option("-o,--out", arguments->out, "folder for the two tables; made if it is missing")
-      ->required();
+  command->add_option("study", arguments->study, "study file (YAML); without one: the built-in scene");
+  command->add_option("-o,--out", arguments->out, "folder for the tables; made if it is missing")->required();
   command
       ->add_option("--trials", arguments->trials,
                    "trials per cell of the map; the reference takes a hundredth as many samples, with 100 "
                    "draws each")
       ->transform(WholeNumberIn(1, 100'000'000))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "seed of all random streams")
-      ->transform(WholeNumberIn(0))
-      ->capture_default_str();
+  AddStudyOptions(command, &arguments->changes);
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")

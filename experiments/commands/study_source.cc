@@ -54,6 +54,14 @@ Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
   return study;
 }
 
+std::uint64_t SeedWithoutStudy(const StudyChanges& changes) {
+  if (!changes.overrides.empty() || !changes.estimators.empty()) {
+    throw InputError(fmt::format("{}: not allowed without a study; give one: rcme COMMAND STUDY ...",
+                                 changes.overrides.empty() ? "--add-estimator" : "--set"));
+  }
+  return changes.seed < 0 ? 1 : static_cast<std::uint64_t>(changes.seed);
+}
+
 const Condition& ChosenCondition(const StudyPlan& plan, std::uint32_t index) {
   if (index < plan.conditions.size()) return plan.conditions[index];
   throw InputError(fmt::format("--condition: {} is not allowed; the study has conditions 0 to {}", index,

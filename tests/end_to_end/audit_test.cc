@@ -52,6 +52,50 @@ TEST(Audit, GivesTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+TEST(Audit, OnAStudySpeaksOfItsConditions) {
+  const TempFolder folder;
+  std::ofstream(folder.Path("study.yaml"))
+      << "name: mine\ndata: {scene: uniform_volume, num_matches: 20, sigma_px: 0.1}\n"
+         "factors: {outlier_ratio: [0, 0.95]}\nestimators: [{name: standard}]\n";
+  const std::string out = folder.Path("out");
+  const ProgramResult result =
+      RunRcme({"audit", folder.Path("study.yaml"), "--only", "inlier.true_pose.rank_aware,sigma_f", "--set",
+               "sigma_px=0.05", "--out", out});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("outlier_ratio = 0.95"));
+  EXPECT_THAT(result.out, HasSubstr("fewer than 8 true matches"));
+  const auto json = nlohmann::json::parse(Contents(out + "/audit.json"));
+  EXPECT_EQ(json["study"], "mine");
+  EXPECT_EQ(json["default_conditions"]["sigma_px"], "0.05");
+  ASSERT_EQ(json["claims"].size(), 3);
+  EXPECT_EQ(json["claims"][0]["evidence"][1]["not_possible"], "fewer than 8 true matches");
+  EXPECT_EQ(json["claims"][2]["id"], "inlier.true_pose.rank_aware");
+  EXPECT_NE(json["claims"][2]["verdict"], "does not hold");
+  EXPECT_THAT(Contents(out + "/audit.md"), HasSubstr("# Claim audit on study mine"));
+  EXPECT_GT(std::filesystem::file_size(out + "/audit_inlier.png"), 10'000);
+}
+
+TEST(Audit, OfRealPairsOrWithStudyOptionsAloneIsRefused) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder.Path("pairs"));
+  std::ofstream(folder.Path("pairs/a.csv")) << "# size1: 640 480\n# size2: 640 480\n"
+                                               "# K1_fx_fy_cx_cy: 700 700 320 240\n"
+                                               "# K2_fx_fy_cx_cy: 700 700 320 240\n"
+                                               "x1,y1,x2,y2\n1,2,3,4\n";
+  std::ofstream(folder.Path("study.yaml"))
+      << "name: real\ndata: {scene: match_files, folder: " << folder.Path("pairs")
+      << "}\nestimators: [{name: standard}]\n";
+  for (const char* command : {"audit", "map"}) {
+    const ProgramResult real = RunRcme({command, folder.Path("study.yaml"), "--out", folder.Path("x")});
+    EXPECT_EQ(real.exit_code, 2) << command;
+    EXPECT_THAT(real.err, HasSubstr("study.yaml: scene: match_files cannot be")) << command;
+    const ProgramResult set = RunRcme({command, "--set", "sigma_px=1", "--out", folder.Path("x")});
+    EXPECT_EQ(set.exit_code, 2) << command;
+    EXPECT_THAT(set.err, HasSubstr("--set")) << command;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("x")));
+}
+
 TEST(Audit, WrongArgumentsAreNamed) {
   const TempFolder folder;
   const ProgramResult unknown = RunRcme({"audit", "--only", "sigma_q", "--out", folder.Path("x")});

@@ -53,7 +53,8 @@ Interval ExactAt9999(const Row& row) {
 }
 
 ValidityMapOptions SmallMap(int trials) {
-  return {.sigmas_px = {1e-4, 0.5}, .nums_points = {8, 20}, .baselines_m = {0.5}, .trials = trials};
+  return {
+      .sigmas_px = {1e-4, 0.5}, .nums_points = {8, 20}, .conditions = AtBaselines({0.5}), .trials = trials};
 }
 
 TEST(ValidityMap, ThreadsChangeNothing) {
@@ -120,7 +121,7 @@ TEST(ValidityMap, ThirdsAddUpToAllAndAreInOrder) {
 
 TEST(ValidityMap, ParallaxGrowsWithTheBaseline) {
   ValidityMapOptions options = SmallMap(200);
-  options.baselines_m = {0.1, 1.5};
+  options.conditions = AtBaselines({0.1, 1.5});
   const std::vector<Row> rows = RowsOf(ValidityMapCsv(options));
   const auto parallax_deg = [&](const std::string& baseline) {
     return std::stod(Find(rows, {{"sigma_px", "0.5"},

@@ -200,7 +200,7 @@ def fake_audit():
     claims = [one for family in families for one in family(noise)]
     claims.append(claim("new_family.alone", [evidence(coverage(0, noise=noise), sigma_px=s) for s in SIGMAS], "holds",
                         figure_x="sigma_px"))
-    return {"format": "rcme audit 1", "seed": 1, "budget": "quick", "confidence_per_target": 0.99992, "num_targets": 600,
+    return {"format": "rcme audit 1", "study": "", "seed": 1, "budget": "quick", "confidence_per_target": 0.99992, "num_targets": 600,
             "claims": claims}
 
 

@@ -104,6 +104,26 @@ class DrawnValues(ValidityMapTest):
         self.assertEqual([label.get_text() for label in axes.get_yticklabels()], ["8", "100"])
         self.assertIn("baseline 0.5 m, parallax 4.3\u00b0", [text.get_text() for text in axes.texts])
 
+    def test_a_study_has_its_conditions_in_words_no_reference_and_blank_cells_where_there_is_no_sample(self):
+        study = MAP.replace("baseline_m", "condition").replace(",0.5,4.26", ',"scene = room, outlier_ratio = 0.2",4.26')
+        none = study.split("\n")[2].split(",4.26")[0] + ",4.26,all,,pose,0,0,,,\n"
+        self.write(coverages=study + none)
+        (self.folder / "validity_reference.csv").unlink()
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            self.assertEqual(validity_map.main([str(self.folder)]), 0)
+        self.assertEqual([pathlib.Path(path).stem for path in out.getvalue().split()[::2]], list(FIGURES[:2]))
+        path, rows = self.read(study + none)
+        axes, = validity_map.draw_map(path, rows).axes  # a quantity without any sample has no panels
+        self.assertIn("scene = room, outlier_ratio = 0.2, parallax 4.3\u00b0",
+                      [text.get_text().replace("\n", " ") for text in axes.texts])
+
+    def test_more_conditions_than_fit_go_to_another_figure(self):
+        more = "".join(f"0.1,8,{baseline},4.26,all,0.001,f,400,1,0.9,0.8,1\n" for baseline in (1, 2, 3, 4))
+        pages = validity_map.pages_of(self.read(MAP + more)[1])
+        self.assertEqual([validity_map.conditions_of(page) for page in pages],
+                         [[f"baseline {b} m" for b in ("0.5", "1", "2", "3")], ["baseline 4 m"]])
+
     def test_borders_run_between_the_cells_on_either_side_of_a_level(self):
         axes, = validity_map.draw_map(*self.read()).axes
         borders = {line.get_linewidth(): [] for line in axes.lines}
@@ -166,6 +186,7 @@ class Refusals(ValidityMapTest):
                             "sigma_px")
         self.assert_refused(self.run_main(coverages=MAP + MAP.split("\n")[1] + "\n"), "line 10", "twice")
         self.assert_refused(self.run_main(coverages=MAP.replace(",f,", ",g,")), "quantity", "f, pose")
+        self.assert_refused(self.run_main(coverages=MAP_HEADER + "\n0.5,8,0.5,,all,,f,0,0,,,\n"), "no cell has a sample")
 
     def test_help_teaches_with_an_example(self):
         out = io.StringIO()

@@ -52,6 +52,27 @@ TEST(JudgeClaim, FailsIfItFailsInTheLimit) {
   EXPECT_FALSE(Judge({{0.5, kNo}}).holds_up_to_sigma_px);
 }
 
+TEST(JudgeClaim, WithoutALadderHoldsIfItHoldsInEveryCondition) {
+  const auto judge = [](const std::vector<std::optional<Verdict>>& verdicts) {
+    Claim claim;
+    ClaimResult result;
+    for (const std::optional<Verdict>& verdict : verdicts) {
+      claim.checks.emplace_back().sigma_px.reset();
+      if (!verdict) claim.checks.back().not_possible = "fewer than 8 true matches";
+      result.checks.emplace_back().verdict = verdict;
+    }
+    JudgeClaim(claim, &result);
+    EXPECT_FALSE(result.holds_up_to_sigma_px);
+    return result.verdict;
+  };
+  EXPECT_EQ(judge({kYes, kYes}), ClaimVerdict::kHolds);
+  EXPECT_EQ(judge({kYes, std::nullopt}), ClaimVerdict::kHolds);
+  EXPECT_EQ(judge({kYes, kNo}), ClaimVerdict::kDoesNotHold);
+  EXPECT_EQ(judge({kNo, kYes}), ClaimVerdict::kDoesNotHold);
+  EXPECT_EQ(judge({kYes, kOpen}), ClaimVerdict::kUndecided);
+  EXPECT_EQ(judge({std::nullopt, std::nullopt}), ClaimVerdict::kNotPossible);
+}
+
 TEST(JudgeClaim, IsUndecidedWithoutEvidence) {
   EXPECT_EQ(Judge({{0.5, kOpen}}).verdict, ClaimVerdict::kUndecided);
   EXPECT_EQ(Judge({{1e-4, kOpen}, {0.5, kNo}}).verdict, ClaimVerdict::kUndecided);  // limit or nowhere?

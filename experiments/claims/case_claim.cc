@@ -1,0 +1,19 @@
+#include "experiments/claims/case_claim.h"
+
+namespace rcme {
+
+Claim OnBuiltInScene(const CaseClaim& claim, const std::vector<Settings>& settings) {
+  Claim on_scene = claim.words;
+  for (const Settings& each : settings) {
+    on_scene.checks.push_back(MakeCheck(each, claim.statistic, claim.targets, claim.limits));
+  }
+  return on_scene;
+}
+
+Claim AtNoiseLevels(const CaseClaim& claim, const std::vector<double>& sigmas_px, const Settings& settings) {
+  Claim on_scene = claim.words;
+  on_scene.checks = SigmaLadder(sigmas_px, settings, claim.statistic, claim.targets, claim.limits);
+  return on_scene;
+}
+
+}  // namespace rcme
