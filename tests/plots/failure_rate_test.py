@@ -142,6 +142,14 @@ class DrawnValues(FailureRateTest):
         self.assertEqual((failure.get_title("left"), no_candidate.get_title("left")),
                          ("(a) Failure rate", "(b) Detect-fail rate"))
 
+    def test_legend_handles_look_like_the_lines_in_the_order_of_the_study(self):
+        figure = self.draw()
+        legend, lines = figure.legends[0], [line for line in figure.axes[0].lines if not line.get_label().startswith("_")]
+        self.assertEqual([text.get_text() for text in legend.get_texts()], ["Standard", "mine"])
+        for handle, line in zip(legend.get_lines(), lines):
+            for look in ("get_color", "get_marker", "get_linestyle"):
+                self.assertEqual(getattr(handle, look)(), getattr(line, look)(), look)
+
     def test_the_caption_says_study_levels_n_and_interval(self):
         caption = self.draw().texts[0].get_text().replace("\n", " ")
         self.assertEqual(caption, "Study demo; sigma = 1 px; n = 0\u2013400 per point; "

@@ -88,6 +88,10 @@ class Drawn(HeatMapTest):
         self.assertEqual([label.get_text() for label in standard.get_yticklabels()], ["1", "0.5"])
         self.assertEqual((standard.get_xlabel(), standard.get_ylabel()), ("Noise", "Sigma (px)"))
 
+    def test_the_colour_bar_is_in_per_cent_and_says_so(self):
+        bar = self.draw().axes[2]
+        self.assertEqual((bar.get_ylabel(), bar.yaxis.get_major_formatter()(0.3)), ("Rate (%)", "30"))
+
     def test_titles_name_quantity_and_estimator(self):
         titles = [axes.get_title("left") for axes in self.draw(quantities=["failure", "no_candidate"]).axes]
         self.assertEqual([title for title in titles if title],

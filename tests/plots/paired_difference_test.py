@@ -92,6 +92,22 @@ class Drawn(PairedDifferenceTest):
         for part in ("Study demo", "minus that of Standard, on the same trials", "n = 0\u2013400 per point", "Tango's 95 %"):
             self.assertIn(part, caption)
 
+    def test_axes_are_named_once_and_legend_handles_look_like_the_marks(self):
+        two_sigmas = TABLE.replace("outlier_ratio,", "outlier_ratio,sigma_px,", 1)
+        two_sigmas = two_sigmas.replace(",mine,", ",1,mine,").replace(",rcme,", ",1,rcme,")
+        two_sigmas += two_sigmas.split("\n", 1)[1].replace(",1,mine,", ",2,mine,").replace(",1,rcme,", ",2,rcme,")
+        figure = self.draw(two_sigmas)
+        above, below = figure.axes
+        self.assertEqual((above.get_xlabel(), below.get_xlabel()), ("", "Outlier ratio"))
+        self.assertEqual({axes.get_ylabel() for axes in (above, below)}, {"Difference (% points)"})
+        handles = dict(zip((text.get_text() for text in figure.legends[0].get_texts()), figure.legends[0].get_lines()))
+        for name in ("mine", "RCME"):
+            drawn = next(line for line in above.lines if line.get_label() == f"_filled {name}")
+            for look in ("get_marker", "get_markeredgecolor", "get_markerfacecolor"):
+                self.assertEqual(getattr(handles[name], look)(), getattr(drawn, look)(), (name, look))
+        self.assertEqual(handles["open: p \u2265 0.05"].get_markerfacecolor(), "white")
+        self.assertNotEqual(handles["filled: Holm-adjusted McNemar p < 0.05"].get_markerfacecolor(), "white")
+
     def test_events_side_by_side_and_words_on_the_axis(self):
         words = TABLE.replace("1,0.4,", "1,student_t,").replace("0,0.0,", "0,gaussian,").replace("2,0.8,", "2,laplace,")
         failure, refusal = self.draw(words, events=["failure", "refusal"]).axes

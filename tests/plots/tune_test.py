@@ -243,6 +243,18 @@ class TheFront(TuneTest):
             tuple((round(refusal["value"], 9), round(failure[end], 9)) for end in ("lower", "upper"))})
         self.assertIn("RCME (as is)", legend_of(figure))
 
+    def test_legend_handles_look_like_the_points(self):
+        value = fake.tune(GRID)
+        for number, one in enumerate(value["settings"]):
+            one.update(is_on_path=number in (0, 3), is_certified=number == 3)
+        figure = draw_front(self.read(value))
+        legend = figure.legends[0] if figure.legends else figure.axes[1].get_legend()
+        handles = dict(zip((text.get_text() for text in legend.get_texts()), legend.get_lines()))
+        for label, name in (("_certified", "tested, certified"), ("_tested", "tested, not certified")):
+            drawn = next(line for line in figure.axes[0].lines if line.get_label() == label)
+            for look in ("get_marker", "get_markerfacecolor", "get_markeredgecolor"):
+                self.assertEqual(getattr(handles[name], look)(), getattr(drawn, look)(), (name, look))
+
     def test_a_long_path_needs_no_more_artists_than_a_short_one(self):
         def count(num_levels):
             value = fake.tune([fake.option("mu", [f"{number}" for number in range(num_levels)])], others=[], tuned=None)
@@ -263,6 +275,7 @@ class TheFront(TuneTest):
     def test_axes_are_in_per_cent_with_room_for_small_rates_and_lines_of_equal_sum(self):
         axes = draw_front(self.read(fake.tune(GRID))).axes[0]
         self.assertEqual((axes.xaxis.get_major_formatter()(0.05), axes.get_xlabel()), ("5", "Refusal rate (%)"))
+        self.assertEqual((axes.yaxis.get_major_formatter()(0.05), axes.get_ylabel()), ("5", "Failure rate (%)"))
         self.assertLess(axes.get_ylim()[0], 0)
         to_paper = axes.transScale.transform
         self.assertAlmostEqual(to_paper((0.04, 0.09))[0], 0.2)
@@ -299,6 +312,7 @@ class TheRocCurves(TuneTest):
         self.assertEqual([text.get_text() for text in axes.texts], ["1", "2", "3", "4", "5", "6"])
         self.assertIn("1: RCME, as printed, samples paper, mu = -3.53", legend_of(figure))
         self.assertEqual(points_of(axes, "_chance"), [(0, 0), (1, 1)])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("Bad models accepted (%)", "Good models accepted (%)"))
 
     def test_numbers_keep_apart_from_each_other_and_from_the_points(self):
         places = [(0.1, 2.0), (0.1, 2.0), (0.15, 2.05), (3.0, 3.0)]

@@ -102,6 +102,7 @@ class DrawnValues(ValidityMapTest):
         self.assertEqual(texts_of(axes), {(0, 0): "90.6", (1, 0): "78.7", (0, 1): "95.1", (1, 1): "94.2"})
         self.assertEqual([label.get_text() for label in axes.get_xticklabels()], ["0.1", "0.5"])
         self.assertEqual([label.get_text() for label in axes.get_yticklabels()], ["8", "100"])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("Noise sigma (px)", "Points m"))
         self.assertIn("baseline 0.5 m, parallax 4.3\u00b0", [text.get_text() for text in axes.texts])
 
     def test_a_study_has_its_conditions_in_words_no_reference_and_blank_cells_where_there_is_no_sample(self):
