@@ -108,6 +108,9 @@ TEST(Quantile, RanksByHand) {
   const Interval ranks = RanksOfQuantile(10, 0.5, 0.95);
   EXPECT_EQ(ranks.lower, 2.0);
   EXPECT_EQ(ranks.upper, 9.0);
+  // At 99 %: the 1st and the 10th, coverage 1 - 2 / 1024 = 0.998; the 2nd would leave out 1.07 %.
+  EXPECT_EQ(RanksOfQuantile(10, 0.5, 0.99).lower, 1.0);
+  EXPECT_EQ(RanksOfQuantile(10, 0.5, 0.99).upper, 10.0);
   EXPECT_EQ(RanksOfQuantile(10, 0.99, 0.95).upper, std::numeric_limits<double>::infinity());
   EXPECT_EQ(RanksOfQuantile(10, 0.01, 0.95).lower, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(MeasureQuantile({5.0, 1.0, 3.0, 4.0, 2.0}, 0.5).value, 3.0);

@@ -95,6 +95,13 @@ TEST(ConfidenceSequence, RatioIsAMartingale) {
   }
 }
 
+TEST(ConfidenceSequence, AnAsymmetricPriorFavoursItsOwnSide) {
+  // One trial: the mixture is the prior's mean, a / (a + b) for a success.
+  const BetaPrior prior{2.0, 0.7};
+  EXPECT_NEAR(std::exp(LogMixtureLikelihoodRatio(1, 1, 0.4, prior)), 2.0 / 2.7 / 0.4, 1e-14);
+  EXPECT_NEAR(std::exp(LogMixtureLikelihoodRatio(0, 1, 0.4, prior)), 0.7 / 2.7 / 0.6, 1e-14);
+}
+
 TEST(ConfidenceSequence, WatchedAfterEveryTrialItExcludesTheTruthAtMostAsOftenAsItSays) {
   // Exact probabilities over 10,000 looks, no random numbers. The exact interval watched like that excludes
   // the truth in about half of the studies.

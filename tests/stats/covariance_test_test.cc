@@ -166,6 +166,7 @@ TEST(CovarianceTest, BadInput) {
   for (int i = 0; i < 100; ++i) errors.Add(Normals(rng, 2), identity);
   EXPECT_GT(errors.Test().p_value, 1e-4);
   errors.Add(Normals(rng, 2), zero);
+  EXPECT_EQ(errors.Test().p_value, 0.0) << "one is enough";
   errors.Add(Eigen::Vector2d(std::nan(""), 0.0), identity);
   EXPECT_EQ(errors.n(), 100);
   EXPECT_EQ(errors.num_not_whitened(), 2);

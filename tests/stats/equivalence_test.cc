@@ -35,6 +35,9 @@ TEST(Equivalence, ByHand) {
   EXPECT_EQ(DecideEquivalence({0.90, 0.92}, Around(0.95, 0.02)), Verdict::kDoesNotHold);
   EXPECT_EQ(DecideEquivalence({0.98, 0.99}, Around(0.95, 0.02)), Verdict::kDoesNotHold);
   EXPECT_EQ(DecideEquivalence({0.75, 0.75}, Around(1.0, 0.25)), Verdict::kHolds);
+  // What touches the border may be on it.
+  EXPECT_EQ(DecideEquivalence({0.25, 0.75}, Around(1.0, 0.25)), Verdict::kUndecided);
+  EXPECT_EQ(DecideEquivalence({1.25, 1.75}, Around(1.0, 0.25)), Verdict::kUndecided);
   EXPECT_EQ(DecideEquivalence({std::nan(""), 0.96}, Around(0.95, 0.02)), Verdict::kUndecided);
   EXPECT_EQ(DecideEquivalence({0.94, std::nan("")}, Around(0.95, 0.02)), Verdict::kUndecided);
   EXPECT_STREQ(Name(Verdict::kHolds), "holds");
