@@ -7,6 +7,7 @@
 #include "experiments/real_data/match_folder.h"
 #include "experiments/simulated_data.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 #include "simulator/scene_registry.h"
 
 namespace rcme {
@@ -49,7 +50,8 @@ Choices ChoicesIn(const Settings& settings) {
 [[noreturn]] void ThrowUnknownScene(const std::string& scene) {
   std::vector<std::string> names = {kMatchFilesScene};
   for (const SceneEntry& entry : SceneRegistry()) names.push_back(entry.name);
-  throw InputError(fmt::format("scene: '{}' is not allowed; give one of: {}", scene, fmt::join(names, ", ")));
+  throw InputError(
+      fmt::format("scene: {} is not allowed; give one of: {}", Quoted(scene), fmt::join(names, ", ")));
 }
 
 [[noreturn]] void ThrowUnknownKey(const std::string& key, const std::string& scene,
@@ -59,7 +61,7 @@ Choices ChoicesIn(const Settings& settings) {
   if (scene == kMatchFilesScene) names.resize(1);
   for (const Parameter& parameter : parameters) names.push_back(parameter.name());
   throw InputError(
-      fmt::format("unknown key '{}' for scene {}; known keys: {}", key, scene, fmt::join(names, ", ")));
+      fmt::format("unknown key {} for scene {}; known keys: {}", Quoted(key), scene, fmt::join(names, ", ")));
 }
 
 // The parameters of the settings' choices: of a folder of match files, or of a simulation.

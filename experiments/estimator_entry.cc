@@ -23,8 +23,8 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
   std::set<std::string> known = {"name", "label", "options", "provenance"};
   known.insert(keys_of_caller.begin(), keys_of_caller.end());
   for (const auto& [key, value] : Entries(place, node, block, known)) {
-    if (key == "name") spec.name = Scalar(place, value, key);
-    if (key == "label") spec.label = Scalar(place, value, key);
+    if (key == "name") spec.name = Name(place, value, key);
+    if (key == "label") spec.label = Name(place, value, key);
     if (key == "options") ReadOptions(place, value, &spec.options);
     if (key != "provenance") continue;
     for (const auto& [what, text] : Entries(place, value, key, {})) Scalar(place, text, what);

@@ -10,8 +10,21 @@
 
 #include "experiments/commands/commands.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
+namespace {
+
+// Names and paths of the command line go into tables, result files and pages, and onto the terminal.
+void CheckArguments(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (FindNotPlain(argv[i]) == std::string::npos) continue;
+    throw InputError(fmt::format("argument {}: {} is not allowed; give UTF-8 without control characters", i,
+                                 Quoted(argv[i])));
+  }
+}
+
+}  // namespace
 
 int RunProgram(int argc, const char* const* argv) {
   std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill
@@ -48,6 +61,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddMatchCommand(app);
   AddListCommand(app);
   try {
+    CheckArguments(argc, argv);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     if (std::fflush(stdout) != 0) throw InputError("standard output cannot be written");
@@ -55,17 +69,17 @@ int RunProgram(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   } catch (const InputError& error) {
-    fmt::print(stderr, "rcme: {}\n", error.what());
+    fmt::print(stderr, "rcme: {}\n", Printable(error.what()));
     return 2;
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "rcme: {}\n", error.what());
+    fmt::print(stderr, "rcme: {}\n", Printable(error.what()));
     return 2;
   } catch (const std::exception& error) {
     if (std::ferror(stdout)) {
       fmt::print(stderr, "rcme: standard output cannot be written ({})\n", error.what());
       return 2;
     }
-    fmt::print(stderr, "rcme: internal error: {}\n", error.what());
+    fmt::print(stderr, "rcme: internal error: {}\n", Printable(error.what()));
     return 1;
   }
 }

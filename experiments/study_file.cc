@@ -10,11 +10,13 @@
 #include "experiments/estimator_entry.h"
 #include "experiments/estimator_file.h"
 #include "experiments/tuning/tuning_file.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
 constexpr int kMaxTrials = 2'000'000'000;
+constexpr size_t kMaxEstimators = 100;
 
 const FileKind& StudyFileKind() {
   static const FileKind kind = {"study file", "a study"};
@@ -26,8 +28,8 @@ long long WholeNumber(const Place& place, const YAML::Node& node, const std::str
   const std::string text = Scalar(place, node, key);
   long long value = 0;
   if (!ParseInteger(text, &value) || value < min || value > max) {
-    place.Fail(node,
-               fmt::format("{}: '{}' is not allowed; give a whole number in [{}, {}]", key, text, min, max));
+    place.Fail(node, fmt::format("{}: {} is not allowed; give a whole number in [{}, {}]", key, Quoted(text),
+                                 min, max));
   }
   return value;
 }
@@ -56,7 +58,7 @@ EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
   std::string label;
   for (const auto& [key, value] : Entries(place, node, "estimators: file", {"file", "label"})) {
     const std::string text = Scalar(place, value, key);
-    if (key == "label") label = text;
+    if (key == "label") label = Name(place, value, key);
     if (key != "file") continue;
     const std::filesystem::path path = std::filesystem::path(place.path()).parent_path() / text;
     place.At(value, [&] { spec = LoadEstimatorFile(path.string()); });
@@ -69,6 +71,9 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
   if (!node.IsSequence() || node.size() == 0) {
     place.Fail(node, "estimators: a list of at least one estimator is needed");
   }
+  if (node.size() > kMaxEstimators)
+    place.Fail(node, fmt::format("estimators: {} are too many; at most {} are allowed", node.size(),
+                                 kMaxEstimators));
   for (const YAML::Node& entry : node) {
     EstimatorSpec spec = ReadEstimator(place, entry);
     for (const EstimatorSpec& other : study->estimators) {
@@ -99,6 +104,7 @@ std::string Canonical(Settings settings, const std::string& key, const std::stri
 // each level of each factor. All become canonical.
 void SettleData(const Place& place, const YAML::Node& root, Study* of) {
   Study& study = *of;
+  place.At(root["factors"] ? root["factors"] : root, [&] { DesignRows(study); });  // before the work per level
   const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
     const YAML::Node map = root[block];
     return map && map.IsMap() && map[key] ? map[key] : root;
@@ -131,7 +137,6 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
         place.Fail(line, fmt::format("factors: {}: level '{}' stands twice", factor.key, given));
     }
   }
-  place.At(root["factors"] ? root["factors"] : root, [&] { DesignRows(study); });
 }
 
 Ademp ReadAdemp(const Place& place, const YAML::Node& node) {
@@ -172,7 +177,7 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
   for (const auto& [key, node] : Entries(place, root, "study",
                                          {"name", "description", "ademp", "seed", "trials", "data", "design",
                                           "factors", "estimators", "failure", "tune"})) {
-    if (key == "name") study.name = Scalar(place, node, key);
+    if (key == "name") study.name = Name(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
       study.seed =

@@ -8,20 +8,17 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/regular_file.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
-
-// What the messages call a file: "no such `name`", "is a folder, not `article_name`".
-struct FileKind {
-  std::string name, article_name;
-};
 
 // Where a message points to: "file:line: key".
 class Place {
  public:
   explicit Place(std::string path) : path_(std::move(path)) {}
   const std::string& path() const { return path_; }
+  [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& what) const;
   [[noreturn]] void Fail(const YAML::Node& node, const std::string& what) const;
   // Runs `action`; an InputError from it gets file and line.
   template <typename Action>
@@ -37,18 +34,22 @@ class Place {
   std::string path_;
 };
 
-// The text of a node that is one value.
+// The text of a node that is one value, without control characters.
 std::string Scalar(const Place& place, const YAML::Node& node, const std::string& key);
+
+// A text of at most 200 bytes: tables, figures and pages show it.
+std::string Name(const Place& place, const YAML::Node& node, const std::string& key);
 
 // The entries of a map; unknown keys (if `known` is not empty) and repeated ones are errors.
 std::vector<std::pair<std::string, YAML::Node>> Entries(const Place& place, const YAML::Node& map,
                                                         const std::string& name,
                                                         const std::set<std::string>& known);
 
-// The bytes of a file, or one more than ParseYaml accepts: the path may be endless.
+// The bytes of a regular file, or one more than ParseYaml accepts. Throws InputError as RegularFile does.
 std::string ReadInputText(const std::string& path, const FileKind& kind);
 
-// The one document of a text of at most 1 MiB; `path` is what the messages call it.
+// The one document of a text of at most 1 MiB, 20 levels and 20,000 values; `path` is what the messages call
+// it.
 YAML::Node ParseYaml(const std::string& yaml, const std::string& path, const FileKind& kind);
 
 }  // namespace rcme

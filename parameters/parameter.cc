@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -110,7 +111,8 @@ Parameter Parameter::Together(const std::vector<Parameter>& same) {
 }
 
 void Parameter::SetFromText(const std::string& text) const {
-  if (!set_(text)) throw InputError(fmt::format("{}: '{}' is not allowed; give {}", name_, text, allowed_));
+  if (!set_(text))
+    throw InputError(fmt::format("{}: {} is not allowed; give {}", name_, Quoted(text), allowed_));
 }
 
 std::string Parameter::ListWords(const std::vector<std::string>& words) {
@@ -123,7 +125,7 @@ const Parameter& FindParameter(const std::vector<Parameter>& parameters, const s
     if (parameter.name() == name) return parameter;
     names.push_back(parameter.name());
   }
-  throw InputError(fmt::format("unknown key '{}'; known keys: {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown key {}; known keys: {}", Quoted(name), fmt::join(names, ", ")));
 }
 
 }  // namespace rcme

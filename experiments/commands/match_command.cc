@@ -15,7 +15,10 @@ void AddMatchCommand(CLI::App& app) {
       app.add_subcommand("match", "Match two undistorted images (SIFT) into a file for `rcme estimate`");
   auto arguments = std::make_shared<MatchImagesOptions>();
   auto out = std::make_shared<std::string>();
-  command->add_option("image1", arguments->image1, "first image")->required();
+  command
+      ->add_option("image1", arguments->image1,
+                   "first image: PNG, JPEG, TIFF, BMP or PNM, at most 4096 x 4096 px")
+      ->required();
   command->add_option("image2", arguments->image2, "second image")->required();
   command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, px")
       ->transform(NumberIn())

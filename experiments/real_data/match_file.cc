@@ -1,52 +1,30 @@
 #include "experiments/real_data/match_file.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
-#include <memory>
-#include <ranges>
 #include <string_view>
 
 #include "estimator/problem_check.h"
 #include "experiments/file_output.h"
+#include "experiments/real_data/gzip_lines.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
-constexpr size_t kMaxBytes = size_t{1} << 30;  // of text, unpacked
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
-
-// The whole file as text, unpacked if it is gzip.
-std::string ReadText(const std::string& path) {
-  if (!std::filesystem::exists(path)) throw InputError(fmt::format("{}: no such file", path));
-  if (std::filesystem::is_directory(path))
-    throw InputError(fmt::format("{}: is a folder, not a match file", path));
-  std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose_r);
-  if (!file) throw InputError(fmt::format("{}: cannot be read", path));
-  std::string text;
-  std::array<char, 1 << 16> buffer{};
-  int num_read = 0;
-  while ((num_read = gzread(file.get(), buffer.data(), buffer.size())) > 0) {
-    text.append(buffer.data(), static_cast<size_t>(num_read));
-    if (text.size() > kMaxBytes)
-      throw InputError(fmt::format("{}: more than {} bytes of text", path, kMaxBytes));
-  }
-  int error = Z_OK;
-  const char* reason = gzerror(file.get(), &error);
-  if (num_read < 0 || (error != Z_OK && error != Z_STREAM_END)) {
-    throw InputError(fmt::format("{}: damaged or truncated gzip file ({})", path, reason));
-  }
-  return text;
-}
+constexpr size_t kMaxColumns = 1000;
+constexpr size_t kMaxSceneBytes = 200;
+constexpr std::array<std::string_view, 7> kHeaderKeys = {
+    "size1", "size2", "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit", "scene"};
 
 std::string_view Trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r");
@@ -65,18 +43,18 @@ std::vector<std::string> Split(std::string_view text, char separator) {
   }
 }
 
-// Header values with the lines they stand on.
+// The values of the known header keys with the lines they stand on.
 class Header {
  public:
   explicit Header(std::string path) : path_(std::move(path)) {}
 
-  void AddLine(std::string_view line, int line_number) {
+  void AddLine(std::string_view line, const GzipLines& lines) {
     const size_t colon = line.find(':');
     if (colon == std::string_view::npos) return;  // a comment
     const std::string key(Trim(line.substr(1, colon - 1)));
-    if (!entries_.emplace(key, Entry{std::string(Trim(line.substr(colon + 1))), line_number}).second) {
-      throw InputError(fmt::format("{}:{}: key '{}' stands twice", path_, line_number, key));
-    }
+    if (std::ranges::find(kHeaderKeys, key) == kHeaderKeys.end()) return;
+    const Entry entry{std::string(Trim(line.substr(colon + 1))), lines.line_number()};
+    if (!entries_.emplace(key, entry).second) lines.Fail(fmt::format("key '{}' stands twice", key));
   }
 
   bool Has(const std::string& key) const { return entries_.count(key) > 0; }
@@ -88,7 +66,7 @@ class Header {
     std::vector<double> numbers;
     for (const std::string& word : Split(entries_.at(key).text, ' ')) {
       double number = 0.0;
-      if (!ParseReal(word, &number)) Fail(key, fmt::format("'{}' is not a finite number", word));
+      if (!ParseReal(word, &number)) Fail(key, fmt::format("{} is not a finite number", Quoted(word)));
       numbers.push_back(number);
     }
     if (numbers.size() != count)
@@ -139,51 +117,71 @@ bool AreColumnNames(const std::vector<std::string>& fields) {
   return std::ranges::find_first_of(fields, kColumns) != fields.end();
 }
 
-Correspondence MatchFrom(const std::vector<std::string>& fields, const std::string& path, int line_number) {
-  if (fields.size() < kColumns.size()) {
-    throw InputError(
-        fmt::format("{}:{}: {} columns; x1,y1,x2,y2 are needed", path, line_number, fields.size()));
-  }
+bool HasColumnsFirst(const std::vector<std::string>& fields) {
+  return fields.size() >= kColumns.size() && std::equal(kColumns.begin(), kColumns.end(), fields.begin());
+}
+
+// A name that tables, pages and JSON show.
+std::string SceneFrom(const Header& header) {
+  if (!header.Has("scene")) return MatchFile().scene;
+  const std::string scene = header.Text("scene");
+  if (FindNotPlain(scene) != std::string::npos)
+    header.Fail("scene",
+                fmt::format("{} is not allowed; give UTF-8 without control characters", Quoted(scene)));
+  if (scene.size() > kMaxSceneBytes)
+    header.Fail("scene", fmt::format("the name is too long; at most {} bytes are allowed", kMaxSceneBytes));
+  return scene;
+}
+
+Correspondence MatchFrom(const std::vector<std::string>& fields, const GzipLines& lines) {
+  if (fields.size() < kColumns.size())
+    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", fields.size()));
   std::array<double, 4> x{};
   for (size_t i = 0; i < x.size(); ++i) {
     if (ParseReal(fields[i], &x[i]) && std::abs(x[i]) <= kMaxCoordinatePx) continue;
-    throw InputError(fmt::format("{}:{}: {}: '{}' is not a finite number in [{}, {}] px", path, line_number,
-                                 kColumns[i], fields[i], -kMaxCoordinatePx, kMaxCoordinatePx));
+    lines.Fail(fmt::format("{}: {} is not a finite number in [{}, {}] px", kColumns[i], Quoted(fields[i]),
+                           -kMaxCoordinatePx, kMaxCoordinatePx));
   }
   return {{x[0], x[1]}, {x[2], x[3]}};
+}
+
+// A match, or the names of the columns, which stand before the first match.
+void AddRow(std::string_view line, const GzipLines& lines, std::vector<Correspondence>* matches) {
+  if (std::ranges::count(line, ',') >= static_cast<std::ptrdiff_t>(kMaxColumns))
+    lines.Fail(fmt::format("too many columns; at most {} are allowed", kMaxColumns));
+  const std::vector<std::string> fields = Split(line, ',');
+  if (!AreColumnNames(fields)) {
+    if (matches->size() == kMaxMatchesPerFile)
+      lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
+    matches->push_back(MatchFrom(fields, lines));
+  } else if (!matches->empty() || !HasColumnsFirst(fields)) {
+    lines.Fail(fmt::format("column names {} are not allowed; give {}[,...], before the first match, or none",
+                           Quoted(line), fmt::join(kColumns, ",")));
+  }
 }
 
 }  // namespace
 
 MatchFile ReadMatchFile(const std::string& path) {
-  const std::string text = ReadText(path);
   MatchFile file;
   file.path = path;
   Header header(path);
-  std::string_view rest = text;
-  if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
-  for (int line_number = 1; !rest.empty(); ++line_number) {
-    const size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = Trim(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+  GzipLines lines(path, {"match file", "a match file"});
+  for (std::string_view line; lines.Next(&line);) {
+    if (lines.line_number() == 1 && line.starts_with(kByteOrderMark))
+      line.remove_prefix(kByteOrderMark.size());
+    line = Trim(line);
     if (line.empty()) continue;
     if (line.front() == '#') {
-      header.AddLine(line, line_number);
-      continue;
-    }
-    const std::vector<std::string> fields = Split(line, ',');
-    if (!AreColumnNames(fields)) {
-      file.matches.push_back(MatchFrom(fields, path, line_number));
-    } else if (!file.matches.empty() || !std::ranges::equal(kColumns, fields | std::views::take(4))) {
-      throw InputError(fmt::format(
-          "{}:{}: column names '{}' are not allowed; give {}[,...], before the first match, or none", path,
-          line_number, line, fmt::join(kColumns, ",")));
+      header.AddLine(line, lines);
+    } else {
+      AddRow(line, lines, &file.matches);
     }
   }
   file.camera1 = CameraFrom(header, "size1", "K1_fx_fy_cx_cy");
   file.camera2 = CameraFrom(header, "size2", "K2_fx_fy_cx_cy");
   file.cam2_from_cam1_true = TruePoseFrom(header);
-  if (header.Has("scene")) file.scene = header.Text("scene");
+  file.scene = SceneFrom(header);
   return file;
 }
 

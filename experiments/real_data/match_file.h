@@ -28,8 +28,12 @@ struct MatchFile {
   std::optional<RelativePose> cam2_from_cam1_true;
 };
 
-// Throws InputError that names the file, the line and what is wrong: missing or truncated file, missing key,
-// a K that is not invertible, a rotation that is none, columns in another order, a coordinate that is none.
+inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
+
+// Reads line by line; memory is that of the matches. Throws InputError that names the file, the line, what is
+// wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible, a rotation
+// that is none, columns in another order, a coordinate that is none, more than kMaxMatchesPerFile matches,
+// 1,000 columns or what GzipLines allows.
 MatchFile ReadMatchFile(const std::string& path);
 
 // Writes the same format, plain. Throws InputError if the path cannot be written; never leaves half a file.

@@ -5,18 +5,23 @@
 #include <algorithm>
 #include <bit>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <set>
 #include <sstream>
 
+#include "experiments/real_data/gzip_lines.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
 namespace fs = std::filesystem;
+
+// All pairs of a folder are held in memory.
+constexpr size_t kMaxPairs = 100'000;
+constexpr size_t kMaxMatches = 10'000'000;
 
 std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   if (!fs::is_directory(folder)) {
@@ -27,8 +32,17 @@ std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   std::vector<fs::path> paths;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (name != "INDEX.csv" && (name.ends_with(".csv") || name.ends_with(".csv.gz")))
-      paths.push_back(entry.path());
+    if (name == "INDEX.csv" || !(name.ends_with(".csv") || name.ends_with(".csv.gz"))) continue;
+    if (FindNotPlain(name) != std::string::npos) {
+      throw InputError(
+          fmt::format("folder: '{}' holds {}; give the file a name of UTF-8 without control characters",
+                      folder, Quoted(name)));
+    }
+    if (paths.size() == kMaxPairs) {
+      throw InputError(
+          fmt::format("folder: '{}' holds too many pairs; at most {} are allowed", folder, kMaxPairs));
+    }
+    paths.push_back(entry.path());
   }
   if (paths.empty())
     throw InputError(fmt::format("folder: '{}' holds no *.csv or *.csv.gz match files", folder));
@@ -36,26 +50,43 @@ std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   return paths;
 }
 
-// File names (without .csv, .csv.gz) whose true direction the index calls weak.
-std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder) {
+// The name of a pair in the index.
+std::string PairId(const fs::path& match_file) {
+  const std::string name = match_file.filename().string();
+  return name.substr(0, name.find(".csv"));
+}
+
+std::vector<std::string> Fields(std::string_view line) {
+  std::vector<std::string> fields;
+  std::string field;
+  for (std::istringstream row{std::string(line)}; std::getline(row, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+// Adds the pairs of `ids` whose true direction the index calls weak.
+void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<std::string>* weak) {
+  GzipLines lines(index.string(), {"index", "an index of pairs"});
+  std::string_view line;
+  if (!lines.Next(&line)) return;
+  const std::vector<std::string> names = Fields(line);
+  const auto id = static_cast<size_t>(std::ranges::find(names, "pair_id") - names.begin());
+  const auto is_weak = static_cast<size_t>(std::ranges::find(names, "t_gt_weak") - names.begin());
+  if (id == names.size() || is_weak == names.size()) return;
+  while (lines.Next(&line)) {
+    const std::vector<std::string> fields = Fields(line);
+    if (fields.size() > std::max(id, is_weak) && fields[is_weak] == "1" && ids.count(fields[id]) > 0)
+      weak->insert(fields[id]);
+  }
+}
+
+std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
+                                             const std::vector<fs::path>& files) {
   // Without a slash at the end, so that 'x/' too has its parent above it.
   const fs::path folder = (fs::absolute(given_folder) / "").lexically_normal().parent_path();
-  std::set<std::string> weak;
+  std::set<std::string> ids, weak;
+  for (const fs::path& file : files) ids.insert(PairId(file));
   for (const fs::path& index : {folder / "INDEX.csv", folder.parent_path() / "INDEX.csv"}) {
-    std::ifstream file(index);
-    std::string line, field;
-    std::map<std::string, size_t> column_of;
-    for (bool is_first = true; std::getline(file, line); is_first = false) {
-      std::vector<std::string> fields;
-      for (std::istringstream row(line); std::getline(row, field, ',');) fields.push_back(field);
-      if (is_first) {
-        for (size_t c = 0; c < fields.size(); ++c) column_of.emplace(fields[c], c);
-        if (!column_of.count("pair_id") || !column_of.count("t_gt_weak")) break;
-      } else if (fields.size() > std::max(column_of["pair_id"], column_of["t_gt_weak"]) &&
-                 fields[column_of["t_gt_weak"]] == "1") {
-        weak.insert(fields[column_of["pair_id"]]);
-      }
-    }
+    if (fs::exists(index)) AddWeak(index, ids, &weak);
   }
   return weak;
 }
@@ -92,16 +123,22 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     std::vector<TrialData> pairs;
     std::uint64_t digest = 0xcbf29ce484222325ULL;
   };
-  const std::set<std::string> weak = PairsWithWeakDirection(settings.folder);
+  const std::vector<fs::path> paths = MatchFilesIn(settings.folder);
+  const std::set<std::string> weak = PairsWithWeakDirection(settings.folder, paths);
   std::map<std::string, Group> groups;
-  for (const fs::path& path : MatchFilesIn(settings.folder)) {
+  size_t num_matches = 0;
+  for (const fs::path& path : paths) {
     MatchFile file = ReadMatchFile(path.string());
+    num_matches += file.matches.size();
+    if (num_matches > kMaxMatches) {
+      throw InputError(fmt::format("folder: '{}' holds too many matches; at most {} are allowed",
+                                   settings.folder, kMaxMatches));
+    }
     Group& group = groups[file.scene];
     TrialData data;
-    const std::string name = path.filename().string();
-    data.origin = name;
+    data.origin = path.filename().string();
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
-    data.truth.is_direction_known = weak.count(name.substr(0, name.find(".csv"))) == 0;
+    data.truth.is_direction_known = weak.count(PairId(path)) == 0;
     group.digest = Digest(file, data.truth.is_direction_known, group.digest);
     data.problem = {std::move(file.matches), file.camera1, file.camera2, settings.sigma_px};
     group.pairs.push_back(std::move(data));

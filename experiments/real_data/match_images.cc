@@ -5,14 +5,45 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "experiments/real_data/image_header.h"
+#include "experiments/regular_file.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
 
+constexpr size_t kMaxBytes = size_t{256} << 20;
+// SIFT takes some 230 bytes per pixel: 3.9 GB for the largest image.
+constexpr std::int64_t kMaxPixels = std::int64_t{4096} * 4096;
+
+// The size that is to be unpacked is known before anything is: a small file may hold a huge image.
+void CheckHeader(const std::string& bytes, const std::string& path) {
+  const ImageHeader header = ReadImageHeader(bytes);
+  if (header.format.empty())
+    throw InputError(fmt::format("{}: is not a PNG, JPEG, TIFF, BMP or PNM image; convert it", path));
+  if (header.width < 1 || header.height < 1)
+    throw InputError(fmt::format("{}: the header of the {} image is damaged", path, header.format));
+  if (header.width > kMaxPixels / header.height) {
+    throw InputError(
+        fmt::format("{}: {} x {} px are too many; at most {} are allowed (such as 4096 x 4096): scale "
+                    "the image down, and its K",
+                    path, header.width, header.height, kMaxPixels));
+  }
+}
+
 cv::Mat ReadGrey(const std::string& path) {
-  const cv::Mat image = cv::imread(path, cv::IMREAD_GRAYSCALE);
-  if (image.empty()) throw InputError(fmt::format("{}: no such image, or not readable", path));
+  std::string bytes = RegularFile(path, {"image", "an image"}).Read(kMaxBytes + 1);
+  if (bytes.size() > kMaxBytes)
+    throw InputError(fmt::format("{}: larger than an image can be ({} MiB)", path, kMaxBytes >> 20));
+  CheckHeader(bytes, path);
+  cv::Mat image;
+  try {
+    image =
+        cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()), cv::IMREAD_GRAYSCALE);
+  } catch (const cv::Exception& error) {
+    throw InputError(fmt::format("{}: the image is damaged ({})", path, error.err));
+  }
+  if (image.empty()) throw InputError(fmt::format("{}: the image is damaged", path));
   return image;
 }
 

@@ -13,8 +13,8 @@ struct MatchImagesOptions {
   double max_ratio = 0.8;      // Lowe's ratio test
 };
 
-// Putative SIFT matches of two images, outliers kept. Throws InputError if an image cannot be read or a K is
-// singular.
+// Putative SIFT matches of two images (PNG, JPEG, TIFF, BMP, PNM; at most 4096 x 4096 px), outliers kept.
+// Throws InputError if an image cannot be read, is of another format or too large, or a K is singular.
 MatchFile MatchImages(const MatchImagesOptions& options);
 
 }  // namespace rcme

@@ -46,7 +46,7 @@ class BadInput : public testing::Test {
 };
 
 TEST_F(BadInput, MissingFiles) {
-  EXPECT_TRUE(IsRefused(RunRcme({"estimate", folder_.Path("none.csv")}), {"none.csv", "no such file"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", folder_.Path("none.csv")}), {"none.csv", "no such match file"}));
   EXPECT_TRUE(
       IsRefused(RunRcme({"summarize", folder_.Path("none.sqlite")}), {"none.sqlite", "no such result file"}));
   EXPECT_TRUE(IsRefused(RunRcme({"replay", folder_.Path("none.sqlite"), "--condition", "0", "--trial", "0"}),
@@ -127,7 +127,8 @@ TEST_F(BadInput, StudiesThatCannotBePlannedNameTheirFile) {
                                     "}\nestimators: [{name: rcme}]\n");
   EXPECT_TRUE(IsRefused(RunRcme({"run", bad, "--out", out_}), {"bad.yaml", "folder", "is not a folder"}));
   EXPECT_TRUE(IsRefused(RunRcme({"run", folder_.path(), "--out", out_}), {folder_.path(), "is a folder"}));
-  EXPECT_TRUE(IsRefused(RunRcme({"run", "/dev/zero", "--out", out_}), {"/dev/zero", "larger than a study"}));
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"run", "/dev/zero", "--out", out_}), {"/dev/zero: is a device, not a study"}));
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
@@ -239,6 +240,21 @@ TEST_F(BadInput, NumbersOnTheCommandLine) {
   EXPECT_TRUE(IsRefused(Run({"--out", out_, "--seed", "8"}), {"'seed: 10' there, 'seed: 8' here"}));
 }
 
+// Escape sequences and bytes that are not UTF-8 neither reach the terminal nor a result file.
+TEST_F(BadInput, ForeignText) {
+  for (const std::string text : {"\x1B[31m.csv", "caf\xE9.csv", "\xC2\x9B"}) {
+    const ProgramResult result = RunRcme({"estimate", text});
+    EXPECT_TRUE(IsRefused(result, {"argument 2: '\\x", "give UTF-8 without control characters"}) ||
+                IsRefused(result, {"argument 2: 'caf\\xE9.csv'"}));
+    EXPECT_EQ(result.err.find_first_of("\x1B\xE9\x9B"), std::string::npos) << result.err;
+  }
+  const ProgramResult scene = Estimate("m.csv", "# scene: a\x1B]0;b\n" + MatchHeader());
+  EXPECT_TRUE(IsRefused(scene, {"m.csv:1: scene: 'a\\x1B]0;b' is not allowed"}));
+  const ProgramResult word = Estimate("m.csv", MatchHeader() + std::string(50'000, '\a') + "\n");
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", MatchHeader() + "1,2,\x1B[31m,4\n"), {"m.csv:5: x2: '\\x1B[31m'"}));
+  EXPECT_LT(word.err.size(), 5000u);
+}
+
 TEST_F(BadInput, ImagesWithoutMatches) {
   const std::string grey = "P5 64 64 255\n" + std::string(64 * 64, '\x80');
   const std::string image = folder_.Write("grey.pgm", grey), out = folder_.Path("m.csv");
@@ -319,7 +335,7 @@ TEST_F(BadInput, EstimatorFiles) {
   EXPECT_TRUE(refuses(folder_.Path("none.yaml"), {"none.yaml", "no such estimator file"}));
   EXPECT_TRUE(refuses(folder_.path(), {folder_.path(), "is a folder"}));
   EXPECT_TRUE(refuses("", {"''", "the path of an estimator file"}));
-  EXPECT_TRUE(refuses("/dev/zero", {"/dev/zero", "larger than an estimator file can be"}));
+  EXPECT_TRUE(refuses("/dev/zero", {"/dev/zero: is a device, not an estimator file"}));
   const std::string huge = "name: rcme\n#" + std::string(5'000'000, 'x');
   EXPECT_TRUE(
       refuses(folder_.Write("huge.yaml", huge), {"huge.yaml", "larger than an estimator file can be"}));

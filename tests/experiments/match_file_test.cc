@@ -149,7 +149,7 @@ TEST_F(MatchFileTest, DamagedGzip) {
 
 TEST_F(MatchFileTest, PathsThatAreNoFile) {
   EXPECT_TRUE(
-      ThrowsInputError([&] { ReadMatchFile(folder_.Path("none.csv")); }, {"none.csv", "no such file"}));
+      ThrowsInputError([&] { ReadMatchFile(folder_.Path("none.csv")); }, {"none.csv", "no such match file"}));
   EXPECT_TRUE(ThrowsInputError([&] { ReadMatchFile(folder_.path()); }, {folder_.path(), "is a folder"}));
 }
 

@@ -1,0 +1,174 @@
+// Thousands of damaged studies, estimator files and match files: each is read or refused with an InputError
+// whose message is plain text on one line. Anything else (another exception, a crash, a sanitizer's
+// complaint, minutes) fails. The harnesses in tests/fuzz/harness go on where this ends.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "experiments/estimator_file.h"
+#include "experiments/real_data/match_file.h"
+#include "experiments/study_file.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+#include "tests/test_support/gzip.h"
+#include "tests/test_support/match_text.h"
+#include "tests/test_support/mutated.h"
+#include "tests/test_support/paths.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+constexpr std::uint64_t kSeed = 1;
+
+// The inputs of a folder of this project.
+std::vector<std::string> Corpus(const std::string& folder) {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/" + folder)) {
+    if (entry.is_regular_file()) paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  std::vector<std::string> inputs;
+  for (const std::filesystem::path& path : paths) inputs.push_back(ReadBytes(path.string()));
+  return inputs;
+}
+
+struct Outcomes {
+  int num_read = 0, num_refused = 0;
+};
+
+template <typename Action>
+void Count(Action action, const std::string& input, Outcomes* outcomes) {
+  try {
+    action();
+    ++outcomes->num_read;
+  } catch (const InputError& error) {
+    ++outcomes->num_refused;
+    EXPECT_FALSE(std::string(error.what()).empty());
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << "not an InputError: " << error.what() << "\n of " << Printable(input, 10'000);
+  }
+}
+
+// Reads every input as it is and `num_mutants` damaged ones.
+template <typename Read>
+Outcomes ReadDamaged(const std::vector<std::string>& corpus, const std::vector<std::string>& words,
+                     int num_mutants, Read read) {
+  Outcomes outcomes;
+  for (const std::string& input : corpus) Count([&] { read(input); }, input, &outcomes);
+  RandomStream rng({.seed = kSeed, .purpose = 78});
+  for (int i = 0; i < num_mutants; ++i) {
+    const std::string input = Mutated(corpus[static_cast<size_t>(i) % corpus.size()], words, rng);
+    Count([&] { read(input); }, input, &outcomes);
+  }
+  return outcomes;
+}
+
+const std::vector<std::string>& YamlWords() {
+  static const std::vector<std::string> words = {
+      "[",
+      "]",
+      "{",
+      "}",
+      ": ",
+      "- ",
+      "? ",
+      "&a ",
+      "*a",
+      "<<: *a",
+      "---",
+      "...",
+      "%YAML 9",
+      "!!str ",
+      "|\n",
+      ">-\n",
+      "~",
+      "null",
+      ".nan",
+      "-.inf",
+      "#",
+      "\n",
+      "  ",
+      "\t",
+      "\"\\0",
+      "\"\\x1b\"",
+      "'",
+      "0x1",
+      "1e999",
+      "-1",
+      "99999999999999999999",
+      "\xEF\xBB\xBF",
+      "\xFF",
+      "\xC2\x9B",
+      "match_files",
+      "folder: /dev",
+      "file: /dev/zero",
+      "[[[[[[[[[[[[[[[[[[[[[[[[[[",
+      "{a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {a: {"};
+  return words;
+}
+
+TEST(MutatedInput, Studies) {
+  std::vector<std::string> corpus = Corpus("tests/fuzz/corpus/study");
+  corpus.push_back(SmallStudyYaml());
+  for (const std::string& study : Corpus("experiments/studies")) corpus.push_back(study);
+  const Outcomes outcomes = ReadDamaged(corpus, YamlWords(), 3000, [](const std::string& input) {
+    const Study study = ParseStudy(input, "study.yaml");
+    EXPECT_EQ(FindNotPlain(study.name), std::string::npos);
+    ToYaml(study);
+  });
+  EXPECT_GT(outcomes.num_read, 100);  // else the mutants are too far from studies to reach the code behind
+  EXPECT_GT(outcomes.num_refused, 1000);
+}
+
+TEST(MutatedInput, EstimatorFiles) {
+  std::vector<std::string> corpus = Corpus("tests/fuzz/corpus/estimator_file");
+  for (const std::string& file : Corpus("experiments/estimators")) corpus.push_back(file);
+  const Outcomes outcomes = ReadDamaged(corpus, YamlWords(), 5000, [](const std::string& input) {
+    EstimatorFileText(ParseEstimatorFile(input, "estimator.yaml"), {});
+  });
+  EXPECT_GT(outcomes.num_read, 100);
+  EXPECT_GT(outcomes.num_refused, 1000);
+}
+
+TEST(MutatedInput, MatchFiles) {
+  std::vector<std::string> corpus = Corpus("tests/fuzz/corpus/match_file");
+  corpus.push_back("# scene: a\n" + MatchHeader() + TruePoseHeader() + "x1,y1,x2,y2\n" + MatchRows(8));
+  const std::vector<std::string> words = {",",
+                                          ",,,,",
+                                          "\n",
+                                          "\r\n",
+                                          "#",
+                                          "# size1: 1 1\n",
+                                          ":",
+                                          " ",
+                                          "nan",
+                                          "-inf",
+                                          "1e999",
+                                          "0x1p",
+                                          "\t",
+                                          "x1,y1,x2,y2\n",
+                                          "\x1F\x8B",
+                                          "1e6",
+                                          "-1e6",
+                                          "1e-320",
+                                          "-0",
+                                          "\xFF",
+                                          "\xEF\xBB\xBF",
+                                          "# scene: \x1B\n"};
+  const TempFolder folder;
+  const auto read = [&](const std::string& input) { ReadMatchFile(folder.Write("m.csv", input)); };
+  const Outcomes plain = ReadDamaged(corpus, words, 5000, read);
+  EXPECT_GT(plain.num_read, 100);
+  EXPECT_GT(plain.num_refused, 1000);
+  const auto read_packed = [&](const std::string& input) { read(Gzip(input)); };
+  EXPECT_GT(ReadDamaged(corpus, words, 1000, read_packed).num_read, 20);
+  std::vector<std::string> packed;
+  for (const std::string& input : corpus) packed.push_back(Gzip(input));
+  EXPECT_GT(ReadDamaged(packed, words, 3000, read).num_refused, 1000);
+}
+
+}  // namespace
+}  // namespace rcme
