@@ -57,6 +57,7 @@ std::string PairId(const fs::path& match_file) {
 }
 
 std::vector<std::string> Fields(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
   std::vector<std::string> fields;
   std::string field;
   for (std::istringstream row{std::string(line)}; std::getline(row, field, ',');) fields.push_back(field);

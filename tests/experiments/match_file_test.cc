@@ -296,6 +296,10 @@ TEST_F(MatchFolderTest, WeakDirectionsOfTheIndex) {
   EXPECT_FALSE(plan.conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
   EXPECT_TRUE(plan.conditions[0].source->Make({1, 0, 1, 0}).truth.is_direction_known);
   EXPECT_TRUE(plan.conditions[1].source->Make({1, 1, 0, 0}).truth.is_direction_known);
+  folder_.Write("INDEX.csv", "pair_id,t_gt_weak\r\na_000,0\r\na_001,1\r\n");  // Windows line ends
+  const StudyPlan again = MakePlan(FolderStudy());
+  EXPECT_TRUE(again.conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
+  EXPECT_FALSE(again.conditions[0].source->Make({1, 0, 1, 0}).truth.is_direction_known);
 }
 
 TEST_F(MatchFolderTest, TheIndexMayStandAboveTheFolder) {

@@ -1,12 +1,13 @@
-// Thousands of damaged studies, estimator files and match files: each is read or refused with an InputError
-// whose message is plain text on one line. Anything else (another exception, a crash, a sanitizer's
-// complaint, minutes) fails. The harnesses in tests/fuzz/harness go on where this ends.
+// Thousands of damaged studies, estimator files, match files and images: each is read or refused with an
+// InputError whose message is plain text on one line. Anything else (another exception, a crash, a
+// sanitizer's complaint, minutes) fails. The harnesses in tests/fuzz/harness go on where this ends.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "experiments/estimator_file.h"
+#include "experiments/real_data/image_header.h"
 #include "experiments/real_data/match_file.h"
 #include "experiments/study_file.h"
 #include "parameters/input_error.h"
@@ -168,6 +169,19 @@ TEST(MutatedInput, MatchFiles) {
   std::vector<std::string> packed;
   for (const std::string& input : corpus) packed.push_back(Gzip(input));
   EXPECT_GT(ReadDamaged(packed, words, 3000, read).num_refused, 1000);
+}
+
+TEST(MutatedInput, ImageHeaders) {
+  const std::vector<std::string> corpus = Corpus("tests/fuzz/corpus/image_header");
+  const std::vector<std::string> words = {
+      "\xFF\xC0", "\xFF\xD9", "\xFF\xFF\xFF\xFF", std::string(4, '\0'), "#", "\x7F\xFF", "IHDR",
+      "II*",      "BM",       "9999999999"};
+  int num_known = 0;
+  ReadDamaged(corpus, words, 20'000, [&](const std::string& input) {
+    const ImageHeader header = ReadImageHeader(input);
+    num_known += !header.format.empty() && header.width > 0 && header.height > 0;
+  });
+  EXPECT_GT(num_known, 5000);
 }
 
 }  // namespace
