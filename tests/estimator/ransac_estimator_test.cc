@@ -190,6 +190,35 @@ TEST(RansacEstimator, AShareThatIsMetExactlyIsEnough) {
   }
 }
 
+// Of refined candidates that explain as many matches the better one of the loop stays, whose turn is first.
+TEST(RansacEstimator, OfEqualMotionsTheFirstStays) {
+  LoopResult loop;
+  loop.winner = Candidate{{0}, {}, 0.0};
+  loop.runners_up = {Candidate{{1}, {}, 0.0}, Candidate{{2}, {}, 0.0}, Candidate{{3}, {}, 0.0}};
+  const auto chosen = [&](const std::vector<int>& num_explained) {
+    return FinishLoop({}, 100, loop,
+                      [&](const Candidate& candidate) {
+                        MotionEstimate estimate;
+                        estimate.status = MotionStatus::kOk;
+                        estimate.num_explained = num_explained[static_cast<size_t>(candidate.sample[0])];
+                        estimate.num_support = candidate.sample[0];
+                        return estimate;
+                      })
+        .num_support;
+  };
+  EXPECT_EQ(chosen({50, 50, 50, 50}), 0);
+  EXPECT_EQ(chosen({50, 60, 60, 50}), 1);
+  EXPECT_EQ(chosen({50, 49, 51, 50}), 2);
+}
+
+TEST(RansacEstimator, AnEmptyLoopIsDegenerateOnlyIfEverySampleIs) {
+  LoopCounts counts{.num_hypotheses = 20, .num_degenerate_samples = 20};
+  EXPECT_EQ(RefusalFromLoop(counts).status, MotionStatus::kDegenerateMatches);
+  counts.num_degenerate_samples = 19;
+  counts.num_poor_inlier_sets = 1;
+  EXPECT_EQ(RefusalFromLoop(counts).status, MotionStatus::kNoCandidate);
+}
+
 // Without entropies there is nothing to stop at: psi is zero for every hypothesis.
 TEST(RansacEstimator, StandardDoesNotStopEarly) {
   const MotionProblem problem = MakeProblem(0.4, 120, 0);

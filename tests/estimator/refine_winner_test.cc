@@ -88,5 +88,34 @@ TEST(RefineWinner, CountsWhatItSaysItCounts) {
     EXPECT_NEAR(threshold, 5.991464547, 1e-9);  // chi2_2, 95 %
 }
 
+// Lets so many matches agree with every motion, the first of the problem.
+class AgreeingMatches : public ReferenceMatches {
+ public:
+  AgreeingMatches(const MotionProblem& problem, int num_agreeing)
+      : ReferenceMatches(problem, RefinementError::kSampson), agreeing_(static_cast<size_t>(num_agreeing)) {
+    std::iota(agreeing_.begin(), agreeing_.end(), 0);
+  }
+  Set SelectFitSet(const RefinedMotion&, const Set&) const { return agreeing_; }
+
+ private:
+  Set agreeing_;
+};
+
+// Five matches have no residuals that could speak for a motion; six have.
+TEST(RefineWinner, AFitToFiveMatchesHasNotConverged) {
+  const Case made = MakeCase();
+  RandomStream rng({.seed = 1, .purpose = 930});
+  const RelativePose start = MakeRandomProblem(rng, {.num_matches = 30}).pose_true;
+  const auto fit = [&](int num_agreeing) {
+    return FitRobustly(AgreeingMatches(made.problem, num_agreeing), made.support, start);
+  };
+  EXPECT_FALSE(fit(5).motion.converged);
+  EXPECT_EQ(fit(5).fitted.size(), 5u);
+  EXPECT_TRUE(fit(6).motion.converged);
+  EXPECT_EQ(fit(6).fitted.size(), 6u);
+  const std::vector<int> five(made.support.begin(), made.support.begin() + 5);
+  EXPECT_FALSE(FitRobustly(AgreeingMatches(made.problem, 20), five, start).motion.converged);
+}
+
 }  // namespace
 }  // namespace rcme

@@ -103,6 +103,32 @@ TEST(Orbit, LooksAtTheSamePointFromTheSameDistance) {
   }
 }
 
+TEST(Orbit, RunsToEitherSide) {
+  int num_left = 0;
+  for (std::uint32_t trial = 0; trial < kNumMotions; ++trial)
+    num_left += Centre2(Draw(*MakeOrbit(), trial)).x() < 0.0;
+  EXPECT_NEAR(num_left, kNumMotions / 2, 4.0 * std::sqrt(kNumMotions / 4.0));  // 6e-5
+}
+
+// The yaw has the given standard deviation, pitch and roll half of it (Kolmogorov-Smirnov at 1e-4; one that
+// is 20 % off is seen).
+TEST(HandHeld, YawsTwiceAsMuchAsItPitchesAndRolls) {
+  const std::unique_ptr<MotionModel> model = MakeHandHeld();
+  FindParameter(model->Parameters(), "rotation_sd_deg").SetFromText("4");
+  std::array<std::vector<double>, 3> turns;  // pitch, yaw, roll over their standard deviations
+  for (std::uint32_t trial = 0; trial < kNumMotions; ++trial) {
+    const Eigen::Vector3d turn_deg = kDegPerRad * VectorFromRotation(Draw(*model, trial).cam2_from_cam1.R);
+    turns[0].push_back(turn_deg.x() / 2.0);
+    turns[1].push_back(turn_deg.y() / 4.0);
+    turns[2].push_back(turn_deg.z() / 2.0);
+  }
+  for (std::vector<double>& turn : turns) {
+    EXPECT_GT(TestKolmogorovSmirnov(turn, NormalCdf).p_value, 1e-4);
+    for (double& z : turn) z *= 1.2;
+    EXPECT_LT(TestKolmogorovSmirnov(turn, NormalCdf).p_value, 1e-4) << "no power";
+  }
+}
+
 // Planar, and the chord makes half the yaw with the heading.
 TEST(Ackermann, IsACircularArc) {
   const std::unique_ptr<MotionModel> model = MakeAckermann();

@@ -56,6 +56,25 @@ TEST(EpipolarOutliers, SatisfyTheTrueConstraintAwayFromTheTruePoint) {
   }
 }
 
+// The lines end at the border of image 2, half a pixel outside its outermost pixel centres: of an image of
+// 16 px about one wrong point in sixteen lies in the half pixel where the lines leave, on either side.
+TEST(EpipolarOutliers, ReachTheBordersOfTheImage) {
+  const auto law = WithSettings(MakeEpipolarOutliers(), {{"outlier_min_shift_px", "0"}});
+  int num_left = 0, num_right = 0;
+  for (std::uint32_t trial = 0; trial < 8; ++trial) {
+    const Scene scene = SceneForOutliers(
+        300, trial, "sideways",
+        {{"image2_width", "16"}, {"image2_height", "16"}, {"focal2_px", "17.5"}, {"max_rotation_deg", "0"}});
+    for (const Correspondence& match : MakeWrong(*law, scene, 300, 0.0, trial).matches) {
+      EXPECT_TRUE(scene.camera2.IsInImage(match.x2_px));
+      num_left += match.x2_px.x() < 0.0;
+      num_right += match.x2_px.x() > 15.0;
+    }
+  }
+  EXPECT_GT(num_left, 20);
+  EXPECT_GT(num_right, 20);
+}
+
 // A step to the right without rotation: image 2 shows the ray from where it is infinitely far, at the same
 // place of image 2 as in image 1 for equal cameras, along the row to the border on the left. The wrong point
 // is uniform there but for 2 x 30 px around the true one, and so is its inverse depth: Kolmogorov-Smirnov at

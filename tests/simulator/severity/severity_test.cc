@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/refinement/sampson_mle.h"
+#include "simulator/severity/point_information.h"
 #include "stats/moments.h"
 #include "stats/spatial_pattern.h"
 #include "tests/test_support/two_camera_scene.h"
@@ -114,6 +116,31 @@ TEST(Severity, EveryNumberIsOfItsOwnImage) {
   ASSERT_EQ(parallax_deg.size(), 180u);
   EXPECT_NEAR(made.severity.parallax_median_deg, parallax_deg[89], 1e-9);
   EXPECT_NEAR(made.severity.parallax_p10_deg, parallax_deg[17], 1e-9);
+}
+
+// Sideways without turning the epipolar lines are rows: fy1 and fy2 apart in scale, so that |J| is
+// sqrt(1 + (fy2 / fy1)^2) times its part of image 2, and a band of 1.96 sigma to either side of a row takes
+// that over the height of image 2.
+TEST(Severity, TheChanceShareOfARowByHand) {
+  Trial made = MakeTrial(0, 0.0);
+  made.scene.cam2_from_cam1_true = {Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitX()};
+  RandomStream rng({1, 0, 0, 7});
+  const double ratio = made.scene.camera2.fy / made.scene.camera1.fy;
+  EXPECT_NEAR(MeasureSeverity(made.scene, made.observation, 0.7, rng).chance_inlier_share,
+              2.0 * 1.96 * 0.7 * std::sqrt(1.0 + ratio * ratio) / made.scene.camera2.height, 1e-12);
+}
+
+TEST(Severity, TheConditionIsThatOfTheInformation) {
+  const Trial made = MakeTrial(0, 0.0);
+  Matrix5d information = Matrix5d::Zero();
+  for (const Eigen::Vector3d& point : made.scene.points_in_cam1) {
+    const PointConstraint constraint = ConstraintOf(made.scene, point);
+    information += constraint.gradient_motion.transpose() * constraint.gradient_motion /
+                   constraint.gradient_px.squaredNorm();
+  }
+  const Vector5d eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix5d>(information).eigenvalues();
+  EXPECT_NEAR(made.severity.log10_condition, std::log10(eigenvalues(4) / eigenvalues(0)), 1e-6);
+  EXPECT_GT(MakeTrial(0, 0.0, 0.5, 0.0).severity.log10_condition, 0.0);
 }
 
 TEST(Severity, CountsTheWrongMatchesThatNoTestCanTell) {

@@ -1,0 +1,33 @@
+#include "simulator/calibration_error.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/test_support/random_problem.h"
+
+namespace rcme {
+namespace {
+
+TEST(CalibrationError, NothingIsToldWrongUnlessAskedFor) {
+  const CalibrationError none;
+  EXPECT_EQ(none.SigmaTold(0.7), 0.7);
+  EXPECT_EQ(none.CameraTold(TestCamera2()).K(), TestCamera2().K());
+}
+
+TEST(CalibrationError, ByHand) {
+  CalibrationError error;
+  for (const auto& [key, value] :
+       {std::pair{"sigma_told_px", "0.3"}, {"focal_error", "0.1"}, {"principal_point_error_px", "-4"}}) {
+    FindParameter(Parameters(error), key).SetFromText(value);
+  }
+  EXPECT_EQ(error.SigmaTold(0.7), 0.3);
+  const Camera told = error.CameraTold({700.0, 650.0, 330.0, 235.0, 640, 480});
+  EXPECT_DOUBLE_EQ(told.fx, 770.0);
+  EXPECT_DOUBLE_EQ(told.fy, 715.0);
+  EXPECT_EQ(told.cx, 326.0);
+  EXPECT_EQ(told.cy, 231.0);
+  EXPECT_EQ(told.width, 640);
+  EXPECT_EQ(told.height, 480);
+}
+
+}  // namespace
+}  // namespace rcme
