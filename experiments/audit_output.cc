@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <ranges>
 
 #include "experiments/summary_output.h"
 
@@ -205,9 +204,10 @@ std::vector<std::vector<std::string>> RowsPerCondition(const Audit& audit) {
 // The verdicts: of the claims, and beside them those of a study's conditions where they fit on a page.
 std::string VerdictTableAsMarkdown(const Audit& audit) {
   constexpr size_t kMostColumns = 8;
-  const auto num_conditions = [](const Claim& claim) { return claim.checks.size(); };
-  const size_t num_columns =
-      IsOnStudy(audit) ? std::ranges::max(audit.claims | std::views::transform(num_conditions)) : 0;
+  size_t num_columns = 0;
+  for (const Claim& claim : audit.claims) {
+    if (IsOnStudy(audit)) num_columns = std::max(num_columns, claim.checks.size());
+  }
   const bool has_columns = num_columns > 1 && num_columns <= kMostColumns;
   std::string header = "| claim | reading | verdict |", rule = "|---|---|---|", rows;
   for (size_t c = 0; has_columns && c < num_columns; ++c) {
