@@ -86,6 +86,7 @@ MapSampler SamplerOf(const Settings& settings, int num_points) {
 }  // namespace
 
 std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
+  RequireCases(plan.study);
   std::vector<MapCondition> conditions;
   std::set<Settings> seen;
   for (const Condition& condition : plan.conditions) {

@@ -18,9 +18,23 @@ constexpr const char* kNoMatchFiles =
 
 }  // namespace
 
+void RequireCases(const Study& study) {
+  const std::vector<std::vector<std::string>> rows = DesignRows(study);
+  if (rows.size() > kMaxCaseConditions) {
+    throw InputError(
+        fmt::format("{} conditions are not allowed; at most {} are: choose levels with --set FACTOR=LEVEL",
+                    rows.size(), kMaxCaseConditions));
+  }
+  for (const std::vector<std::string>& levels : rows) {
+    std::string scene;
+    for (const auto& [key, value] : SettingsOf(study, levels)) {
+      if (key == "scene") scene = value;
+    }
+    if (scene == kMatchFilesScene) throw InputError(kNoMatchFiles);
+  }
+}
+
 Settings SimulatedSettings(const StudyPlan& plan, const Condition& condition) {
-  // A folder of match files has one level more, the scene of its pairs.
-  if (condition.levels.size() > plan.study.factors.size()) throw InputError(kNoMatchFiles);
   return ResolveSettings(SettingsOf(plan.study, condition.levels));
 }
 

@@ -8,10 +8,17 @@
 
 namespace rcme {
 
-// All settings of a condition's simulation. Throws InputError for pairs from match files.
+// The conditions that an audit or a map takes: each costs seconds to minutes.
+inline constexpr size_t kMaxCaseConditions = 1'000;
+
+// Throws InputError for a study that cannot give cases: of pairs from match files nobody knows which matches
+// are true; and for more conditions than that.
+void RequireCases(const Study& study);
+
+// All settings of a condition's simulation; of a study that can give cases.
 Settings SimulatedSettings(const StudyPlan& plan, const Condition& condition);
 
-// Cases of a condition; their severity is not measured. Throws as SimulatedSettings.
+// Cases of a condition; their severity is not measured.
 CaseMaker StudyCases(const StudyPlan& plan, const Condition& condition);
 
 // What a case lacks for a statistic with these needs, in words; empty: nothing.

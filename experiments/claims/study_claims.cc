@@ -1,12 +1,10 @@
 #include "experiments/claims/study_claims.h"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <limits>
 
 #include "experiments/claims/calibration.h"
 #include "experiments/claims/study_cases.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -85,11 +83,7 @@ Check CheckOn(const ConditionCases& cases, const CaseClaim& claim) {
 }  // namespace
 
 std::vector<Claim> StudyClaims(const StudyPlan& plan) {
-  if (plan.conditions.size() > kMaxAuditedConditions) {
-    throw InputError(fmt::format(
-        "{} conditions are not allowed; an audit takes at most {}: choose levels with --set FACTOR=LEVEL",
-        plan.conditions.size(), kMaxAuditedConditions));
-  }
+  RequireCases(plan.study);
   std::vector<CaseClaim> calibration = CalibrationOf(plan);
   std::vector<Claim> claims;
   for (const CaseClaim& claim : calibration) {

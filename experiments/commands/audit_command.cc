@@ -12,7 +12,6 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -32,15 +31,11 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
     options->conditions = ResolveCaseSettings({});
     return AllClaims(EstimatorRegistry());
   }
-  const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
+  const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
   options->seed = plan.study.seed;
   options->study = plan.study.name;
   options->conditions = plan.study.data;
-  try {
-    return StudyClaims(plan);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", arguments.study, error.what()));
-  }
+  return StudyClaims(plan);
 }
 
 void RunAuditCommand(const AuditArguments& arguments) {

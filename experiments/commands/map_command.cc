@@ -13,7 +13,6 @@
 #include "experiments/study_samples.h"
 #include "experiments/validity_map.h"
 #include "experiments/validity_reference.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -30,15 +29,11 @@ struct MapArguments {
 
 // Puts the study's conditions and noise levels into the map, and the study's seed.
 void UseStudy(const MapArguments& arguments, ValidityMapOptions* map) {
-  const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
+  const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
   map->seed = plan.study.seed;
   map->condition_key = "condition";
-  try {
-    map->conditions = MapConditionsOf(plan);
-    for (const double sigma_px : SigmasOf(plan)) map->sigmas_px.push_back(sigma_px);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", arguments.study, error.what()));
-  }
+  map->conditions = MapConditionsOf(plan);
+  for (const double sigma_px : SigmasOf(plan)) map->sigmas_px.push_back(sigma_px);
   std::ranges::sort(map->sigmas_px);
   const auto repeated = std::ranges::unique(map->sigmas_px);
   map->sigmas_px.erase(repeated.begin(), repeated.end());

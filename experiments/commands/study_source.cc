@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/claims/study_cases.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/estimator_file.h"
 #include "experiments/study_file.h"
@@ -52,6 +53,16 @@ Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
   }
   if (changes.seed >= 0) study.seed = static_cast<std::uint64_t>(changes.seed);
   return study;
+}
+
+StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes) {
+  const Study study = LoadChangedStudy(path, changes);
+  try {
+    RequireCases(study);  // before a folder of pairs is read
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", path, error.what()));
+  }
+  return PlanOf(study, path);
 }
 
 std::uint64_t SeedWithoutStudy(const StudyChanges& changes) {

@@ -25,6 +25,10 @@ void AddStudyOptions(CLI::App* command, StudyChanges* changes);
 // InputError (study_file.h, estimator_file.h), also for a label that the study has already.
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
 
+// The plan of the study of a YAML file, changed, that can give cases (claims/study_cases.h). Throws
+// InputError as LoadChangedStudy and RequireCases.
+StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes);
+
 // The seed of a command that may go without a study: --seed, or 1. Throws InputError for options that change
 // a study.
 std::uint64_t SeedWithoutStudy(const StudyChanges& changes);

@@ -76,12 +76,7 @@ TEST(Audit, OnAStudySpeaksOfItsConditions) {
 }
 
 TEST(Audit, OfRealPairsOrWithStudyOptionsAloneIsRefused) {
-  const TempFolder folder;
-  std::filesystem::create_directory(folder.Path("pairs"));
-  std::ofstream(folder.Path("pairs/a.csv")) << "# size1: 640 480\n# size2: 640 480\n"
-                                               "# K1_fx_fy_cx_cy: 700 700 320 240\n"
-                                               "# K2_fx_fy_cx_cy: 700 700 320 240\n"
-                                               "x1,y1,x2,y2\n1,2,3,4\n";
+  const TempFolder folder;  // without pairs: refused before they are looked for
   std::ofstream(folder.Path("study.yaml"))
       << "name: real\ndata: {scene: match_files, folder: " << folder.Path("pairs")
       << "}\nestimators: [{name: standard}]\n";

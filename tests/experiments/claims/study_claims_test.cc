@@ -156,6 +156,7 @@ TEST(StudyClaims, RefuseMoreConditionsThanAnAuditCanTake) {
   for (int i = 0; i < 1'001; ++i) levels += fmt::format("{}{}", i > 0 ? ", " : "", 1 + i);
   const StudyPlan plan = PlanWith("num_matches: 8", "{focal_px: [" + levels + "]}");
   EXPECT_TRUE(ThrowsInputError([&] { StudyClaims(plan); }, {"1001", "1000", "--set"}));
+  EXPECT_TRUE(ThrowsInputError([&] { MapConditionsOf(plan); }, {"1001", "1000", "--set"}));
 }
 
 // Samples of the map.
