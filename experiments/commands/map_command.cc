@@ -35,8 +35,7 @@ void UseStudy(const MapArguments& arguments, ValidityMapOptions* map) {
   map->conditions = MapConditionsOf(plan);
   for (const double sigma_px : SigmasOf(plan)) map->sigmas_px.push_back(sigma_px);
   std::ranges::sort(map->sigmas_px);
-  const auto repeated = std::ranges::unique(map->sigmas_px);
-  map->sigmas_px.erase(repeated.begin(), repeated.end());
+  map->sigmas_px.erase(std::unique(map->sigmas_px.begin(), map->sigmas_px.end()), map->sigmas_px.end());
 }
 
 void WriteReference(const MapArguments& arguments, const std::string& path) {
