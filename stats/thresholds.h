@@ -1,9 +1,8 @@
-// How well a score separates two kinds, over all thresholds at once.
+// How well a score separates two kinds, threshold by threshold (the area under the curve:
+// area_under_curve.h).
 #pragma once
 
 #include <vector>
-
-#include "stats/intervals.h"
 
 namespace rcme {
 
@@ -14,21 +13,10 @@ struct RocPoint {
   double false_positive_rate = 0.0, true_positive_rate = 0.0;
 };
 
-// From (0, 0) at threshold +infinity to (1, 1), one point per different score: equal scores are one step,
-// whatever their kinds. Throws std::invalid_argument if a sample is empty or holds a NaN.
+// From (0, 0), where nothing is called positive (written as threshold +infinity), to (1, 1), one point per
+// different score: equal scores, infinite ones too, are one step, whatever their kinds. Throws
+// std::invalid_argument if a sample is empty or holds a NaN.
 std::vector<RocPoint> RocCurve(const std::vector<double>& negatives, const std::vector<double>& positives);
-
-struct AreaUnderCurve {
-  double value = 0.0;  // P(positive > negative) + P(equal) / 2 (Mann-Whitney); 1/2 is chance
-  double standard_error = 0.0;
-  // value +- z standard_error (DeLong, DeLong & Clarke-Pearson 1988), kept to [0, 1]. A perfect separation
-  // has no standard error: then min(m, n) disjoint pairs were all in order, which has probability at most
-  // AUC^min(m, n), and the interval ends at (alpha / 2)^(1 / min(m, n)); likewise at 0.
-  Interval interval;
-};
-// Throws as RocCurve.
-AreaUnderCurve MeasureAreaUnderCurve(const std::vector<double>& negatives,
-                                     const std::vector<double>& positives, double confidence = 0.95);
 
 // What is risked by answering only where one is sure: of the `coverage` share of the trials with the highest
 // confidence scores, the share `risk` that failed. One point per different score, most confident first; a

@@ -4,6 +4,7 @@
 #include "experiments/claims/families.h"
 #include "experiments/claims/limits.h"
 #include "experiments/claims/model_entropy.h"
+#include "stats/area_under_curve.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -41,7 +42,7 @@ Check SeparationCheck(Reading reading) {
       return PassesQualityTest(ZStatistic(score, options.MuOrDefault()),
                                NormalQuantile(1.0 - options.significance_level), options.quality_test);
     };
-    return {MeanEntropyOrInfinity(good) < MeanEntropyOrInfinity(contaminated) ? 1.0 : 0.0,
+    return {IsBelow(MeanEntropyOrInfinity(good), MeanEntropyOrInfinity(contaminated), first.rng) ? 1.0 : 0.0,
             passes(good) ? 1.0 : 0.0, passes(contaminated) ? 1.0 : 0.0};
   };
   return check;

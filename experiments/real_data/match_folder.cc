@@ -147,7 +147,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;
   for (auto& [scene, group] : groups) {
     const std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
-    sources.emplace_back(scene, std::make_shared<MatchFolderData>(std::move(group.pairs), identity));
+    sources.emplace_back(scene, std::make_shared<MatchFolderData>(scene, std::move(group.pairs), identity));
   }
   return sources;
 }

@@ -19,16 +19,18 @@ struct MatchFolderSettings {
 // its own random samples. Pairs of one scene share images: they are not independent.
 class MatchFolderData : public DataSource {
  public:
-  MatchFolderData(std::vector<TrialData> pairs, std::string identity)
-      : pairs_(std::move(pairs)), identity_(std::move(identity)) {}
+  MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::string identity)
+      : scene_(std::move(scene)), pairs_(std::move(pairs)), identity_(std::move(identity)) {}
 
   int NumTrials(int trials) const override;
   TrialData Make(const StreamName& trial_name) const override {
     return pairs_[trial_name.trial % pairs_.size()];
   }
   std::string Identity() const override { return identity_; }
+  const std::string& scene() const { return scene_; }
 
  private:
+  std::string scene_;
   std::vector<TrialData> pairs_;
   std::string identity_;
 };

@@ -1,11 +1,13 @@
 #include "experiments/tuning/entropy_roc.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "estimator/estimator_registry.h"
 #include "estimator/ransac_estimator.h"
 #include "experiments/for_each_index.h"
+#include "experiments/real_data/match_folder.h"
 #include "experiments/trial.h"
 #include "experiments/tuning/tuning.h"
 
@@ -65,16 +67,41 @@ bool AreDifferent(const std::vector<double>& good, const std::vector<double>& ba
   return std::ranges::any_of(good, differs) || std::ranges::any_of(bad, differs);
 }
 
+// For each trial of all conditions the number of its scene: pairs of one real scene share images, a simulated
+// trial draws a scene of its own.
+std::vector<size_t> ScenesOf(const StudyPlan& plan, std::int64_t trials_per_condition) {
+  std::vector<size_t> scenes;
+  std::map<std::string, size_t> common;
+  size_t num_scenes = 0;
+  for (const Condition& condition : plan.conditions) {
+    const auto* const folder = dynamic_cast<const MatchFolderData*>(condition.source.get());
+    for (std::int64_t trial = 0; trial < trials_per_condition; ++trial) {
+      const size_t scene =
+          folder ? common.try_emplace(folder->scene(), num_scenes).first->second : num_scenes;
+      scenes.push_back(scene);
+      num_scenes += scene == num_scenes;
+    }
+  }
+  return scenes;
+}
+
 void AddRoc(size_t estimator, const std::string& of, const std::vector<Entropies>& trials,
-            std::optional<double> Entropies::*good, std::optional<double> Entropies::*bad,
-            std::vector<EntropyRoc>* rocs) {
+            const std::vector<size_t>& scenes, std::optional<double> Entropies::*good,
+            std::optional<double> Entropies::*bad, std::vector<EntropyRoc>* rocs) {
   EntropyRoc roc{estimator, of, {}, {}, {}};
-  for (const Entropies& trial : trials) {
-    if (trial.*good) roc.good.push_back(*(trial.*good));
-    if (trial.*bad) roc.bad.push_back(*(trial.*bad));
+  std::vector<ScoreCluster> clusters(scenes.empty() ? 0 : 1 + std::ranges::max(scenes));
+  for (size_t t = 0; t < trials.size(); ++t) {
+    if (const auto& psi = trials[t].*good) {
+      roc.good.push_back(*psi);
+      clusters[scenes[t]].negatives.push_back(*psi);
+    }
+    if (const auto& psi = trials[t].*bad) {  // positive: the higher psi
+      roc.bad.push_back(*psi);
+      clusters[scenes[t]].positives.push_back(*psi);
+    }
   }
   if (roc.good.empty() || roc.bad.empty() || !AreDifferent(roc.good, roc.bad)) return;
-  roc.area = MeasureAreaUnderCurve(roc.good, roc.bad);  // a bad one is positive: the higher psi
+  roc.area = MeasureClusteredAreaUnderCurve(clusters);
   rocs->push_back(std::move(roc));
 }
 
@@ -99,10 +126,11 @@ std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange tri
     }
     progress->Advance(1);
   });
+  const std::vector<size_t> scenes = ScenesOf(plan, per_condition);
   std::vector<EntropyRoc> rocs;
   for (size_t e = 0; e < estimators.size(); ++e) {
-    AddRoc(e, "samples", entropies[e], &Entropies::good_sample, &Entropies::bad_sample, &rocs);
-    AddRoc(e, "winners", entropies[e], &Entropies::good_winner, &Entropies::bad_winner, &rocs);
+    AddRoc(e, "samples", entropies[e], scenes, &Entropies::good_sample, &Entropies::bad_sample, &rocs);
+    AddRoc(e, "winners", entropies[e], scenes, &Entropies::good_winner, &Entropies::bad_winner, &rocs);
   }
   return rocs;
 }

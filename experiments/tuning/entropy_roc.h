@@ -8,7 +8,7 @@
 #include "experiments/progress.h"
 #include "experiments/result_store.h"
 #include "experiments/study_plan.h"
-#include "stats/thresholds.h"
+#include "stats/area_under_curve.h"
 
 namespace rcme {
 
@@ -19,7 +19,9 @@ struct EntropyRoc {
   // test, good where the estimate is within the bounds.
   std::string of;
   std::vector<double> good, bad;  // psi; at most one of each per trial
-  AreaUnderCurve area;            // P(psi of a good one < psi of a bad one)
+  // P(psi of a good one < psi of a bad one); clustered by scene, which is a trial's own where it is
+  // simulated.
+  AreaUnderCurve area;
 };
 
 // For every estimator of the plan that has entropies; without those where no good or no bad one was seen.
