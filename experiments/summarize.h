@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/coverage_verdict.h"
 #include "experiments/result_store.h"
 #include "stats/intervals.h"
 
@@ -15,12 +17,10 @@ enum class IntervalKind {
   kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
   kWeighted,      // of weighted trials, with the cautious upper end (stats/weighted_rate.h)
 };
-std::string IntervalKindName(IntervalKind kind);     // one word
-std::string IntervalKindInWords(IntervalKind kind);  // for people
 
 // One number of one estimator in one condition, never without what says how far to trust it.
 struct SummaryRow {
-  enum class Kind { kRate, kMean };
+  enum class Kind { kRate, kMean, kMedian };
 
   std::uint32_t condition = 0;
   std::vector<std::string> levels;  // one per factor
@@ -29,10 +29,13 @@ struct SummaryRow {
   Kind kind = Kind::kRate;
   double value = 0.0;  // NaN where n is 0
   IntervalKind interval_kind = IntervalKind::kExact;
-  Interval interval;            // rates: 95 %
+  Interval interval;            // rates and medians: 95 %; NaN where a median's would not hold
   double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of
+  std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
 };
+
+std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median"
 
 // Stands in the place of an estimator in rows about the problems themselves.
 inline constexpr const char* kSceneLabel = "scene";
@@ -54,7 +57,7 @@ const std::vector<QuantityHelp>& SummaryQuantities();
 // trials they would be ratios of estimates.
 //
 // Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
-// one pass and constant memory. Times (which no two runs share) only if asked for.
+// one pass, in memory that does not grow with the trials. Times (which no two runs share) only if asked for.
 Summary Summarize(const ResultStore& store, bool with_times);
 
 }  // namespace rcme

@@ -12,7 +12,8 @@
 namespace rcme {
 namespace {
 
-// "12.34 % [10.10, 14.80]" or "1.23 +- 0.04"; with its n where that is not all of the trials.
+// "12.34 % [10.10, 14.80]", "1.23 +- 0.04" or "1.23 [1.20, 1.31]"; with its n where that is not all of the
+// trials, and a coverage with its verdict.
 std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
   if (row.n == 0) return "-";
   const std::string of = row.n == num_trials ? "" : fmt::format(" (n {})", row.n);
@@ -21,12 +22,46 @@ std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
                        100.0 * row.interval.lower, 100.0 * row.interval.upper, of);
   }
   if (row.kind == SummaryRow::Kind::kRate) {
-    return fmt::format("{:.2f} % [{:.2f}, {:.2f}]{}", 100.0 * row.value, 100.0 * row.interval.lower,
-                       100.0 * row.interval.upper, of);
+    const std::string verdict =
+        row.coverage_verdict ? ": " + CoverageVerdictInWords(*row.coverage_verdict) : "";
+    return fmt::format("{:.2f} % [{:.2f}, {:.2f}]{}{}", 100.0 * row.value, 100.0 * row.interval.lower,
+                       100.0 * row.interval.upper, of, verdict);
+  }
+  if (row.kind == SummaryRow::Kind::kMedian) {
+    const bool is_bounded = std::isfinite(row.interval.lower) && std::isfinite(row.interval.upper);
+    return is_bounded ? fmt::format("{:.3g} [{:.3g}, {:.3g}]{}", row.value, row.interval.lower,
+                                    row.interval.upper, of)
+                      : fmt::format("{:.3g}{}", row.value, of);
   }
   if (std::isnan(row.standard_error))
     return fmt::format("{:.3g}{}", row.value, of);  // of one trial, or infinite
   return fmt::format("{:.3g} +- {:.2g}{}", row.value, row.standard_error, of);
+}
+
+// One word.
+std::string IntervalKindName(IntervalKind kind) {
+  switch (kind) {
+    case IntervalKind::kExact:
+      return "exact";
+    case IntervalKind::kAnytimeValid:
+      return "anytime_valid";
+    case IntervalKind::kWeighted:
+      return "weighted";
+  }
+  return "";
+}
+
+// For people.
+std::string IntervalKindInWords(IntervalKind kind) {
+  switch (kind) {
+    case IntervalKind::kExact:
+      return "exact 95 % (Clopper-Pearson)";
+    case IntervalKind::kAnytimeValid:
+      return "anytime-valid 95 % (confidence sequence)";
+    case IntervalKind::kWeighted:
+      return "weighted 95 % (Fay-Feuer, cautious upper end)";
+  }
+  return "";
 }
 
 // "exact 95 % (Clopper-Pearson)", or several kinds.
@@ -36,6 +71,17 @@ std::string IntervalKindsIn(const Summary& summary) {
     if (row.kind == SummaryRow::Kind::kRate) kinds.insert(IntervalKindInWords(row.interval_kind));
   }
   return fmt::format("{}", fmt::join(kinds, " and "));
+}
+
+// Empty where the end is unknown or infinite.
+std::string CsvFinite(double x) { return std::isfinite(x) ? CsvNumber(x) : ""; }
+
+// The last two columns: the verdict of a coverage, and how many trials would decide it.
+std::string VerdictFields(const SummaryRow& row) {
+  if (!row.coverage_verdict) return ",";
+  const bool is_undecided = row.coverage_verdict->verdict == Verdict::kUndecided;
+  return CoverageVerdictName(row.coverage_verdict->verdict) + "," +
+         (is_undecided ? CsvFinite(row.coverage_verdict->trials_to_decide) : "");
 }
 
 // How hard the problems were: one row per condition. Empty where nothing was measured.
@@ -82,8 +128,8 @@ std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
 
 std::string SummaryAsTable(const Summary& summary) {
   const std::vector<std::string> shown = {
-      "failure",       "no_candidate",       "other_refusal",       "kappa_flag",
-      "nees_coverage", "rotation_error_deg", "direction_error_deg", "time_ms"};
+      "failure",     "no_candidate",       "other_refusal",       "kappa_flag", "nees_coverage",
+      "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"};
   std::vector<std::vector<std::string>> rows = {summary.factor_names};
   rows[0].insert(rows[0].end(), {"estimator", "n"});
   const auto is_present = [&](const std::string& quantity) {
@@ -106,31 +152,37 @@ std::string SummaryAsTable(const Summary& summary) {
   std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study,
                                  summary.num_trials_done, summary.num_trials_planned, FormatColumns(rows));
   text += SeverityAsTable(summary);
-  text += fmt::format("Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n",
-                      IntervalKindsIn(summary));
+  text += fmt::format(
+      "Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n"
+      "medians with distribution-free 95 % intervals\n",
+      IntervalKindsIn(summary));
   text +=
       "(n ...) where a number is not of all trials: without a known truth a motion neither fails nor "
       "succeeds.\n"
       "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
       "flag.\n"
-      "nees_coverage: truth inside the reported 95 % region. All quantities: --format csv or json.\n";
+      "nees_coverage: truth inside the reported 95 % region; covers: the whole interval within 95 +- 1 %, "
+      "does\n"
+      "not cover: wholly outside. nees_median: 4.35 expected. All quantities: --format csv or json.\n";
   return text;
 }
 
 std::string SummaryAsCsv(const Summary& summary) {
   std::string text = "study,condition,";
   for (const std::string& factor : summary.factor_names) text += CsvField(factor) + ",";
-  text += "estimator,quantity,kind,value,lower,upper,standard_error,n,interval\n";
+  text += "estimator,quantity,kind,value,lower,upper,standard_error,n,interval,verdict,trials_to_decide\n";
   for (const SummaryRow& row : summary.rows) {
     text += fmt::format("{},{},", CsvField(summary.study), row.condition);
     for (const std::string& level : row.levels) text += CsvField(level) + ",";
     const bool is_rate = row.kind == SummaryRow::Kind::kRate;
-    text += fmt::format(
-        "{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity, is_rate ? "rate" : "mean",
-        CsvNumber(row.value), is_rate ? CsvNumber(row.interval.lower) : "",
-        is_rate ? CsvNumber(row.interval.upper) : "",
-        is_rate && row.interval_kind != IntervalKind::kWeighted ? "" : CsvNumber(row.standard_error), row.n,
-        is_rate ? IntervalKindName(row.interval_kind) : "");
+    const bool has_interval = row.kind != SummaryRow::Kind::kMean;
+    const bool has_standard_error = is_rate ? row.interval_kind == IntervalKind::kWeighted : !has_interval;
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity,
+                        KindName(row.kind), CsvNumber(row.value),
+                        has_interval ? CsvFinite(row.interval.lower) : "",
+                        has_interval ? CsvFinite(row.interval.upper) : "",
+                        has_standard_error ? CsvNumber(row.standard_error) : "", row.n,
+                        is_rate ? IntervalKindName(row.interval_kind) : "", VerdictFields(row));
   }
   return text;
 }
@@ -146,15 +198,20 @@ std::string SummaryAsJson(const Summary& summary) {
     entry["estimator"] = row.estimator;
     entry["quantity"] = row.quantity;
     entry["value"] = JsonNumber(row.value);
-    if (row.kind == SummaryRow::Kind::kRate) {
-      entry["kind"] = "rate";
-      entry["interval"] = {row.interval.lower, row.interval.upper};
-      entry["interval_kind"] = IntervalKindName(row.interval_kind);
-    } else {
-      entry["kind"] = "mean";
+    entry["kind"] = KindName(row.kind);
+    if (row.kind == SummaryRow::Kind::kMean) {
       entry["standard_error"] = JsonNumber(row.standard_error);
+    } else {
+      entry["interval"] = {JsonNumber(row.interval.lower), JsonNumber(row.interval.upper)};
     }
+    if (row.kind == SummaryRow::Kind::kRate) entry["interval_kind"] = IntervalKindName(row.interval_kind);
     entry["n"] = row.n;
+    if (row.coverage_verdict) {
+      entry["verdict"] = CoverageVerdictName(row.coverage_verdict->verdict);
+      entry["trials_to_decide"] = row.coverage_verdict->verdict == Verdict::kUndecided
+                                      ? JsonNumber(row.coverage_verdict->trials_to_decide)
+                                      : nlohmann::ordered_json();
+    }
     json["rows"].push_back(std::move(entry));
   }
   return json.dump(2) + "\n";

@@ -10,8 +10,8 @@ namespace rcme {
 std::string SummaryAsTable(const Summary& summary);
 
 // For programs: every quantity in a row of its own (tidy), the columns study, condition, one per factor,
-// estimator, quantity, kind, value, lower, upper, standard_error, n, interval (its kind). Empty cells:
-// unknown.
+// estimator, quantity, kind, value, lower, upper, standard_error, n, interval (its kind), verdict and
+// trials_to_decide (of nees_coverage: coverage_verdict.h). Empty cells: unknown.
 std::string SummaryAsCsv(const Summary& summary);
 
 // The same rows as an object {study, trials_done, trials_planned, rows: [...]}; unknown and infinite

@@ -7,8 +7,8 @@ import style
 from rates import interval_in_words, title_of
 from report_html import Html, code, definitions, details, element, joined, table
 
-SHOWN = ("failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "rotation_error_deg",
-         "direction_error_deg")  # of the results; all others stand in the table of every number
+SHOWN = ("failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
+         "rotation_error_deg", "direction_error_deg")  # of the results; all others stand in the table of every number
 SIGNIFICANCE_LEVEL = 0.05
 DASH = "\u2013"
 
@@ -22,8 +22,10 @@ def in_per_cent(text):
 
 
 def rate_cell(row):
+    """With the verdict of a coverage."""
+    verdict = [Html("<br>"), small(row["verdict"])] if row.get("verdict") else []
     return joined([f"{in_per_cent(row['value'])} %", Html("<br>"),
-                   small(f"[{in_per_cent(row['lower'])}, {in_per_cent(row['upper'])}]")])
+                   small(f"[{in_per_cent(row['lower'])}, {in_per_cent(row['upper'])}]"), *verdict])
 
 
 def mean_cell(row):
@@ -32,11 +34,16 @@ def mean_cell(row):
     return joined([f"{float(row['value']):.3g}", Html("<br>"), small(f"\u00b1 {float(row['standard_error']):.2g}")])
 
 
+def median_cell(row):
+    interval = [Html("<br>"), small(f"[{float(row['lower']):.3g}, {float(row['upper']):.3g}]")]
+    return joined([f"{float(row['value']):.3g}", *(interval if row["lower"] and row["upper"] else [])])
+
+
 def cell(row, num_trials):
     """One number with its interval or standard error, and its n where that is not the row's."""
     if row is None or row["n"] == "0":
         return DASH
-    whole = rate_cell(row) if row["kind"] == "rate" else mean_cell(row)
+    whole = {"rate": rate_cell, "mean": mean_cell, "median": median_cell}[row["kind"]](row)
     return whole if row["n"] == num_trials else joined([whole, Html("<br>"), small(f"n = {row['n']}")])
 
 

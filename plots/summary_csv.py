@@ -2,7 +2,7 @@
 it computes nothing.
 
 One row per (condition, estimator, quantity):
-    study,condition,<one column per factor>,estimator,quantity,kind,value,lower,upper,standard_error,n
+    study,condition,<one column per factor>,estimator,quantity,kind,value,lower,upper,standard_error,n,...
 """
 
 import csv
@@ -116,8 +116,8 @@ def rows_where(path, rows, allowed_keys, conditions):
 
 
 def numbers(table, column, may_be_empty=False):
-    """One column of a table's rows as floats; NaN where the file has nothing and may. Only the value of a mean may be
-    infinite: some trials' were."""
+    """One column of a table's rows as floats; NaN where the file has nothing and may. Only the value of a mean or
+    median may be infinite: some trials' were."""
     def number(text, kind, line):
         if may_be_empty and text == "":
             return math.nan
@@ -125,7 +125,7 @@ def numbers(table, column, may_be_empty=False):
             value = float(text)
         except ValueError:
             value = math.nan
-        if math.isnan(value) or math.isinf(value) and (column, kind) != ("value", "mean"):
+        if math.isnan(value) or math.isinf(value) and (column, kind) not in (("value", "mean"), ("value", "median")):
             raise PlotError(f"{table.path}: line {line}: column {column} must be a number, not '{text}'.")
         return value
     kinds = table.rows.get("kind", [""] * len(table.rows))

@@ -22,6 +22,18 @@ Measured Accuracy::root_mean_squared_error() const {
   return {root, root == 0.0 ? 0.0 : squares_.standard_error() / (2.0 * root)};
 }
 
+RankInterval QuantileRanks(std::int64_t n, double p, double confidence) {
+  // The number of values <= the quantile is B ~ Binomial(n, p). The r-th smallest lies above it if B < r:
+  // lower is the largest r with P(B < r) <= tail, upper the least with P(B >= r) <= tail.
+  using boost::math::policies::discrete_quantile;
+  using boost::math::policies::integer_round_up;
+  using Policy = boost::math::policies::policy<discrete_quantile<integer_round_up>>;
+  const boost::math::binomial_distribution<double, Policy> law(static_cast<double>(n), p);
+  const double tail = 0.5 * (1.0 - confidence);
+  return {static_cast<std::int64_t>(quantile(law, tail)),
+          static_cast<std::int64_t>(quantile(complement(law, tail))) + 1};
+}
+
 MeasuredQuantile MeasureQuantile(std::vector<double> values, double p, double confidence) {
   if (values.empty()) throw std::invalid_argument("quantile: no values");
   if (!(p > 0.0 && p < 1.0)) throw std::invalid_argument("quantile: p must be in (0, 1)");
@@ -34,21 +46,15 @@ MeasuredQuantile MeasureQuantile(std::vector<double> values, double p, double co
   const double n = static_cast<double>(values.size());
   const auto ranked = [&](double rank) { return values[static_cast<size_t>(std::clamp(rank, 1.0, n)) - 1]; };
 
-  // The number of values <= the quantile is B ~ Binomial(n, p). The r-th smallest lies above it if B < r:
-  // lower is the largest r with P(B < r) <= tail, upper the least with P(B >= r) <= tail.
-  using boost::math::policies::discrete_quantile;
-  using boost::math::policies::integer_round_up;
-  using Policy = boost::math::policies::policy<discrete_quantile<integer_round_up>>;
-  const boost::math::binomial_distribution<double, Policy> law(n, p);
-  const double tail = 0.5 * (1.0 - confidence);
-  const double lower = quantile(law, tail), upper = quantile(complement(law, tail)) + 1.0;
-
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double spread = std::sqrt(n * p * (1.0 - p));
   MeasuredQuantile measured;
   measured.value = ranked(std::ceil(n * p));
   measured.standard_error = 0.5 * (ranked(std::ceil(n * p + spread)) - ranked(std::floor(n * p - spread)));
-  measured.interval = {lower < 1.0 ? -kInfinity : ranked(lower), upper > n ? kInfinity : ranked(upper)};
+  const auto [lower, upper] = QuantileRanks(static_cast<std::int64_t>(values.size()), p, confidence);
+  measured.interval = {
+      lower < 1 ? -kInfinity : ranked(static_cast<double>(lower)),
+      upper > static_cast<std::int64_t>(values.size()) ? kInfinity : ranked(static_cast<double>(upper))};
   return measured;
 }
 

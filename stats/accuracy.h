@@ -36,6 +36,14 @@ class Accuracy {
   Moments errors_, squares_;
 };
 
+// Which of n values in rising order, counted from 1, enclose the p-quantile of their law with at least
+// `confidence`, each end missed with at most half of the rest, whatever the law. `lower` is 0 and `upper`
+// n + 1 where no value is far enough out.
+struct RankInterval {
+  std::int64_t lower = 0, upper = 0;
+};
+RankInterval QuantileRanks(std::int64_t n, double p, double confidence = 0.95);
+
 // The p-quantile of a law from n independent values: the ceil(n p)-th smallest (the left-continuous inverse
 // of the empirical distribution function).
 struct MeasuredQuantile {

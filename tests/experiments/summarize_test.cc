@@ -143,7 +143,82 @@ TEST_F(SummarizeTest, MeansByHand) {
   ExpectMean("num_support", {10, 11, 12, 13, 14, 15});
   ExpectMean("mean_entropy", {-4, -4, -4, -4, -4, -4});
   ExpectMean("num_candidates", {3, 3, 3, 3, 3, 3, 0, 0, 0, 0});
-  ExpectMean("time_ms", {2, 2, 2, 2, 2, 2, 4, 4, 4, 4});
+}
+
+// Every returned motion counts, failures too: their NEES are 4, 6, 20, 2, 30, 3.
+TEST_F(SummarizeTest, MediansByHand) {
+  const SummaryRow nees = Row("nees_median"), time = Row("time_ms");
+  EXPECT_EQ(nees.kind, SummaryRow::Kind::kMedian);
+  EXPECT_EQ(nees.n, 6);
+  EXPECT_EQ(nees.value, 4.0);
+  EXPECT_EQ(nees.interval.lower, 2.0);  // the least and the greatest: 1 - 2 / 2^6 = 0.969
+  EXPECT_EQ(nees.interval.upper, 30.0);
+  EXPECT_EQ(time.n, 10);
+  EXPECT_EQ(time.value, 2.0);
+  EXPECT_EQ(time.interval.lower, 2.0);  // the second and the ninth of ten: 0.979
+  EXPECT_EQ(time.interval.upper, 4.0);
+}
+
+// A covariance that is not positive definite has an infinite NEES, which a median survives and a mean does
+// not.
+TEST_F(SummarizeTest, AnInfiniteNeesCountsInTheMedian) {
+  std::vector<TrialRecord> records;
+  for (std::uint32_t t = 0; t < 9; ++t) {
+    records.push_back(Motion(t, 1.0, 1.0, t < 3 ? std::numeric_limits<double>::infinity() : 1.0 * t));
+    records.back().condition = 1;
+  }
+  Write("run", records);
+  EXPECT_EQ(Row("nees_median", 1).n, 9);
+  EXPECT_EQ(Row("nees_median", 1).value, 7.0);  // of 3 .. 8 and three infinite ones
+  EXPECT_NE(SummaryAsCsv(SummaryOf("run")).find(",nees_median,median,7,4,,,9,,,\n"), std::string::npos)
+      << "an infinite end is empty";
+}
+
+// So many motions of which so many are within the region.
+std::vector<TrialRecord> Covered(int num_covered, int n) {
+  std::vector<TrialRecord> records;
+  for (int t = 0; t < n; ++t) {
+    records.push_back(Motion(static_cast<std::uint32_t>(t), 1.0, 1.0, t < num_covered ? 1.0 : 20.0));
+    records.back().condition = 1;
+  }
+  return records;
+}
+
+// Exact 95 % intervals against 0.95 +- 0.01. Catches a verdict by the point alone, or by "contains 0.95".
+TEST_F(SummarizeTest, CoverageHasAVerdictAndWhatWouldDecide) {
+  const auto verdict_of = [&](const std::string& name, int num_covered, int n) {
+    Write(name, Covered(num_covered, n));
+    for (const SummaryRow& row : SummaryOf(name).rows) {
+      if (row.condition == 1 && row.quantity == "nees_coverage") return row.coverage_verdict.value();
+    }
+    return CoverageVerdict();
+  };
+  EXPECT_EQ(verdict_of("covers", 4760, 5000).verdict, Verdict::kHolds);          // [.9457, .9577]
+  EXPECT_EQ(verdict_of("undecided", 95, 100).verdict, Verdict::kUndecided);      // [.887, .984]
+  EXPECT_EQ(verdict_of("near", 4700, 5000).verdict, Verdict::kUndecided);        // .940 [.933, .946]
+  EXPECT_EQ(verdict_of("too few", 180, 200).verdict, Verdict::kDoesNotHold);     // [.850, .938]
+  EXPECT_EQ(verdict_of("too many", 1990, 2000).verdict, Verdict::kDoesNotHold);  // [.991, .998]
+  EXPECT_NEAR(verdict_of("undecided", 0, 0).trials_to_decide, TrialsToDecide(0.95, {0.94, 0.96}), 1e-9);
+  EXPECT_NE(SummaryAsTable(SummaryOf("covers")).find(": covers"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummaryOf("too few")).find(": does not cover"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummaryOf("undecided")).find(": undecided, about 6200 trials would do"),
+            std::string::npos)
+      << SummaryAsTable(SummaryOf("undecided"));
+  EXPECT_NE(SummaryAsCsv(SummaryOf("too few")).find(",200,exact,does not cover,\n"), std::string::npos);
+  EXPECT_FALSE(Row("success").coverage_verdict) << "a rate that nothing is claimed of";
+  EXPECT_FALSE(Row("nees_coverage", 1).coverage_verdict) << "no trials";
+}
+
+// Half of the trials return a motion: twice as many trials are needed as motions.
+TEST_F(SummarizeTest, TrialsThatDecideCountRefusalsToo) {
+  std::vector<TrialRecord> records = Covered(95, 100);
+  for (std::uint32_t t = 100; t < 200; ++t) {
+    records.push_back(NoMotion(t, MotionStatus::kNoCandidate));
+    records.back().condition = 1;
+  }
+  Write("run", records);
+  EXPECT_NEAR(Row("nees_coverage", 1).coverage_verdict.value().trials_to_decide,
+              2.0 * TrialsToDecide(0.95, {0.94, 0.96}), 1e-9);
 }
 
 TEST_F(SummarizeTest, EveryTrialHasExactlyOneOutcome) {
@@ -226,17 +301,18 @@ std::vector<std::string> Lines(const std::string& text) {
 TEST_F(SummarizeTest, Csv) {
   const std::vector<std::string> lines = Lines(SummaryAsCsv(SummaryOf("run")));
   ASSERT_EQ(lines.size(), 1 + SummaryOf("run").rows.size());
-  EXPECT_EQ(
-      lines[0],
-      "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n,interval");
-  EXPECT_EQ(lines[2], "small,0,0,standard,success,rate,0.4,0.12155226,0.73762192,,10,exact");
+  EXPECT_EQ(lines[0],
+            "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n,"
+            "interval,verdict,"
+            "trials_to_decide");
+  EXPECT_EQ(lines[2], "small,0,0,standard,success,rate,0.4,0.12155226,0.73762192,,10,exact,,");
   const auto has_line = [&](const std::string& line) {
     return std::count(lines.begin(), lines.end(), line) == 1;
   };
-  EXPECT_TRUE(has_line("small,0,0,standard,rotation_error_deg,mean,2,,,0.40824829,4,"));  // sqrt(2 / 3 / 4)
-  EXPECT_TRUE(has_line("small,1,0.3,standard,success,rate,,0,1,,0,exact"));
-  EXPECT_TRUE(has_line("small,1,0.3,standard,nees,mean,,,,,0,"));
-  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 11) << line;
+  EXPECT_TRUE(has_line("small,0,0,standard,rotation_error_deg,mean,2,,,0.40824829,4,,,"));  // sqrt(2 / 3 / 4)
+  EXPECT_TRUE(has_line("small,1,0.3,standard,success,rate,,0,1,,0,exact,,"));
+  EXPECT_TRUE(has_line("small,1,0.3,standard,nees,mean,,,,,0,,,"));
+  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 13) << line;
 }
 
 TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
@@ -244,7 +320,7 @@ TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
   study_.estimators[0].label = "line\nbreak";
   Write("quoted", {});
   const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
-  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"line\nbreak\",success,rate,,0,1,,0,exact\n"),
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"line\nbreak\",success,rate,,0,1,,0,exact,,\n"),
             std::string::npos)
       << csv;
 }
@@ -268,11 +344,11 @@ TEST_F(SummarizeTest, JsonHoldsTheSameRows) {
     if (row.n > 0) {
       EXPECT_EQ(entry["value"], row.value);
     }
+    EXPECT_EQ(entry["kind"], KindName(row.kind));
+    EXPECT_EQ(entry.contains("verdict"), row.coverage_verdict.has_value());
     if (row.kind == SummaryRow::Kind::kRate) {
-      EXPECT_EQ(entry["kind"], "rate");
       EXPECT_EQ(entry["interval"], nlohmann::json({row.interval.lower, row.interval.upper}));
-    } else {
-      EXPECT_EQ(entry["kind"], "mean");
+    } else if (row.kind == SummaryRow::Kind::kMean) {
       EXPECT_EQ(entry["standard_error"].is_null(), std::isnan(row.standard_error));
     }
   }
@@ -343,7 +419,7 @@ TEST_F(SummarizeTest, AMeanWithInfiniteNumbersIsInfiniteEverywhere) {
   EXPECT_EQ(row->value, std::numeric_limits<double>::infinity());
   EXPECT_EQ(row->n, 3);
   EXPECT_TRUE(std::isnan(row->standard_error));
-  EXPECT_NE(SummaryAsCsv(summary).find("small,0,0,scene,crb_rotation_deg,mean,inf,,,,3,\n"),
+  EXPECT_NE(SummaryAsCsv(summary).find("small,0,0,scene,crb_rotation_deg,mean,inf,,,,3,,,\n"),
             std::string::npos);
   const std::string table = SummaryAsTable(summary);
   EXPECT_NE(table.find("  inf"), std::string::npos) << table;

@@ -1,0 +1,50 @@
+#include "stats/stream_median.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "stats/accuracy.h"
+
+namespace rcme {
+namespace {
+
+// Towards zero, to the first eight of the 52 binary digits after the leading one.
+double CutOff(double x) {
+  constexpr std::uint64_t kDroppedBits = (std::uint64_t{1} << (52 - 8)) - 1;
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & ~kDroppedBits);
+}
+
+}  // namespace
+
+void StreamMedian::Add(double x) {
+  if (std::isnan(x)) throw std::invalid_argument("median: a value is NaN");
+  const auto [at, is_new] = cells_.try_emplace(CutOff(x), Cell{0, x, x});
+  Cell& cell = at->second;
+  ++cell.count;
+  cell.least = std::min(cell.least, x);
+  cell.greatest = std::max(cell.greatest, x);
+  ++n_;
+}
+
+const StreamMedian::Cell& StreamMedian::CellOf(std::int64_t rank) const {
+  auto at = cells_.begin();
+  for (std::int64_t below = at->second.count; below < rank; below += at->second.count) ++at;
+  return at->second;
+}
+
+double StreamMedian::median() const {
+  return n_ > 0 ? CellOf((n_ + 1) / 2).least : std::numeric_limits<double>::quiet_NaN();
+}
+
+Interval StreamMedian::interval(double confidence) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (n_ == 0) return {-kInfinity, kInfinity};
+  const RankInterval ranks = QuantileRanks(n_, 0.5, confidence);
+  return {ranks.lower < 1 ? -kInfinity : CellOf(ranks.lower).least,
+          ranks.upper > n_ ? kInfinity : CellOf(ranks.upper).greatest};
+}
+
+}  // namespace rcme

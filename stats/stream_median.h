@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "stats/intervals.h"
+
+namespace rcme {
+
+// The median of a stream of numbers with its distribution-free interval (stats/accuracy.h), in memory that
+// depends on their range and not on how many there are: numbers of one sign that agree in their exponent and
+// their first eight binary digits share a cell, which keeps its count, its least and its greatest.
+class StreamMedian {
+ public:
+  // May be infinite. Throws std::invalid_argument on NaN.
+  void Add(double x);
+
+  std::int64_t n() const { return n_; }
+  // The ceil(n / 2)-th smallest, or the least number of its cell: at most 0.4 % nearer to zero. NaN at n = 0.
+  double median() const;
+  // At least `confidence`, for independent numbers of one law, their number fixed beforehand: the ends are
+  // those of the cells of the order statistics, so rounding only widens it. An end is infinite where no order
+  // statistic is far enough out.
+  Interval interval(double confidence = 0.95) const;
+
+ private:
+  struct Cell {
+    std::int64_t count = 0;
+    double least = 0.0, greatest = 0.0;
+  };
+  const Cell& CellOf(std::int64_t rank) const;  // of the rank-th smallest, from 1
+
+  std::map<double, Cell> cells_;  // by the number that is cut off after eight digits
+  std::int64_t n_ = 0;
+};
+
+}  // namespace rcme
