@@ -8,6 +8,7 @@
 
 #include "experiments/claims/decide_check.h"
 #include "experiments/for_each_index.h"
+#include "experiments/message.h"
 #include "experiments/progress.h"
 #include "parameters/input_error.h"
 
@@ -89,9 +90,9 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   const std::vector<double> work = WorkPerCheck(audit.claims, options);
   double total_work = 0.0;
   for (const double seconds : work) total_work += seconds;
-  fmt::print(stderr,
-             "audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
-             audit.claims.size(), work.size(), DurationInWords(total_work), NumThreads(options.num_threads));
+  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
+               audit.claims.size(), work.size(), DurationInWords(total_work),
+               NumThreads(options.num_threads));
   Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
   double done_work = 0.0;
   size_t next = 0;

@@ -8,6 +8,7 @@
 
 #include <filesystem>
 
+#include "experiments/message.h"
 #include "parameters/input_error.h"
 
 extern char** environ;
@@ -72,8 +73,8 @@ void DrawFigures(const std::string& script, const std::vector<std::string>& argu
   const ScriptEnd end = RunPlotScript(script, arguments);
   if (end == ScriptEnd::kDone) return;
   const char* way = end == ScriptEnd::kNoPython ? "with matplotlib and pandas installed" : "see above; again";
-  fmt::print(stderr, "the figures were not drawn; {}: python3 {} {}\n", way, ScriptPath(script),
-             fmt::join(arguments, " "));
+  PrintMessage("the figures were not drawn; {}: python3 {} {}\n", way, ScriptPath(script),
+               fmt::join(arguments, " "));
 }
 
 }  // namespace rcme

@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "experiments/stop_request.h"
+
 namespace rcme {
 
 int NumThreads(int num_threads) {
@@ -17,11 +19,18 @@ void ForEachIndex(std::int64_t n, int num_threads, const std::function<void(std:
   // Each thread takes one index at a time: that costs some ten nanoseconds, so larger portions would gain
   // nothing and leave threads idle at the end.
   std::atomic<std::int64_t> next = 0;
+  std::atomic<bool> is_stopped = false;
   std::exception_ptr error;
   std::mutex error_mutex;
   const auto run = [&] {
     try {
-      for (std::int64_t i = next++; i < n; i = next++) work(i);
+      for (std::int64_t i = next++; i < n; i = next++) {
+        if (IsStopRequested()) {
+          is_stopped = true;
+          return;
+        }
+        work(i);
+      }
     } catch (...) {
       next = n;
       const std::lock_guard lock(error_mutex);
@@ -35,6 +44,7 @@ void ForEachIndex(std::int64_t n, int num_threads, const std::function<void(std:
     run();
   }
   if (error) std::rethrow_exception(error);
+  if (is_stopped) throw Stopped("stopped; nothing was written");
 }
 
 }  // namespace rcme

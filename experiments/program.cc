@@ -7,8 +7,12 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 
 #include "experiments/commands/commands.h"
+#include "experiments/message.h"
+#include "experiments/scratch_folder.h"
+#include "experiments/stop_request.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -27,6 +31,8 @@ void CheckArguments(int argc, const char* const* argv) {
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv) {
+  HoldStandardStreams();
+  RemoveAbandonedScratchFolders();
   std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
   CLI::App app{
@@ -57,6 +63,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddTransferCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);
+  AddCheckEstimatorCommand(app);
   AddEstimateCommand(app);
   AddMatchCommand(app);
   AddListCommand(app);
@@ -67,19 +74,27 @@ int RunProgram(int argc, const char* const* argv) {
     if (std::fflush(stdout) != 0) throw InputError("standard output cannot be written");
     return 0;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (app.exit(error) != 0) return 2;
+    if (std::cout.flush()) return 0;
+    PrintMessage("rcme: standard output cannot be written\n");
+    return 2;
+  } catch (const EndWith& end) {
+    return end.exit_code;
+  } catch (const Stopped& stopped) {
+    PrintMessage("{}\n", stopped.what());
+    return StopExitCode();
   } catch (const InputError& error) {
-    fmt::print(stderr, "rcme: {}\n", Printable(error.what()));
+    PrintMessage("rcme: {}\n", Printable(error.what()));
     return 2;
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "rcme: {}\n", Printable(error.what()));
+    PrintMessage("rcme: {}\n", Printable(error.what()));
     return 2;
   } catch (const std::exception& error) {
     if (std::ferror(stdout)) {
-      fmt::print(stderr, "rcme: standard output cannot be written ({})\n", error.what());
+      PrintMessage("rcme: standard output cannot be written ({})\n", error.what());
       return 2;
     }
-    fmt::print(stderr, "rcme: internal error: {}\n", Printable(error.what()));
+    PrintMessage("rcme: internal error: {}\n", Printable(error.what()));
     return 1;
   }
 }

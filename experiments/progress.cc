@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "experiments/message.h"
+
 namespace rcme {
 
 Progress::Progress(std::string unit, std::int64_t total, std::int64_t num_done_before)
@@ -23,7 +25,7 @@ Progress::~Progress() {
   if (!has_printed_) return;
   if (is_terminal_) {
     Print(Clock::now());
-    std::fputc('\n', stderr);
+    WriteMessage("\n");
   }
 }
 
@@ -47,11 +49,10 @@ void Progress::Print(Clock::time_point now) {
                                        unit_, 100.0 * static_cast<double>(done) / static_cast<double>(total_),
                                        rate, DurationInWords(seconds_left));
   if (is_terminal_) {
-    fmt::print(stderr, "\r{:<79}", line);
+    PrintMessage("\r{:<79}", line);
   } else {
-    fmt::print(stderr, "{}\n", line);
+    PrintMessage("{}\n", line);
   }
-  std::fflush(stderr);
 }
 
 std::string DurationInWords(double seconds) {

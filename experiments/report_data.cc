@@ -37,7 +37,7 @@ std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const StudyP
     condition.trials_end = record.trial + 1;
     FirstTrials& first = condition.first.at(record.estimator);
     if (HasFailed(record, plan.study.failure) && !first.failure) first.failure = record.trial;
-    if (record.status != MotionStatus::kOk && !first.refusal) first.refusal = record.trial;
+    if (HasRefused(record) && !first.refusal) first.refusal = record.trial;
   });
   return progress;
 }

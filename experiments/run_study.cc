@@ -1,11 +1,15 @@
 #include "experiments/run_study.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <mutex>
 
 #include "experiments/for_each_index.h"
 #include "experiments/progress.h"
+#include "experiments/stop_request.h"
 
 namespace rcme {
 namespace {
@@ -106,13 +110,18 @@ RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
   const TrialsToRun trials(plan, store);
   Progress progress("trials", plan.NumTrials(), plan.NumTrials() - trials.size());
   RecordBuffer buffer(store);
+  std::atomic<std::int64_t> num_done = plan.NumTrials() - trials.size();
   try {
     ForEachIndex(trials.size(), num_threads, [&](std::int64_t index) {
       const auto [condition, trial] = trials[index];
       const TrialResult result = RunTrial(plan, *condition, trial);
       buffer.Add(result.problem, result.records);
+      ++num_done;
       progress.Advance(1);
     });
+  } catch (const Stopped&) {
+    buffer.Flush();
+    throw Stopped(fmt::format("stopped, {} trials kept; the same command resumes", num_done.load()));
   } catch (...) {
     buffer.Flush();  // the trials before the error are good
     throw;

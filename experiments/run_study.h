@@ -13,7 +13,7 @@ struct RunReport {
 
 // Runs every trial of the plan that the store does not hold yet, on `num_threads` threads (0: one per core),
 // and shows progress. The records do not depend on the number of threads or on the order in which trials end.
-// Memory does not grow with the number of trials. An error ends the run; the trials before it are kept.
+// Memory does not grow with the number of trials. An error or Stopped ends it; the trials before are kept.
 RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store);
 
 }  // namespace rcme

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/message.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "stats/confidence_sequence.h"
@@ -90,7 +91,7 @@ std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& o
   for (std::int64_t look = kFirstLook; !open.empty(); look = NextLook(look)) {
     const std::int64_t num_trials = std::min(look, options.max_trials);
     for (const std::uint32_t c : open) growing.conditions[c].num_trials = static_cast<int>(num_trials);
-    fmt::print(stderr, "{} of {} conditions to {} trials each\n", open.size(), cells.size(), num_trials);
+    PrintMessage("{} of {} conditions to {} trials each\n", open.size(), cells.size(), num_trials);
     RunStudy(growing, options.num_threads, store);
     for (const std::uint32_t c : open)
       cells[c] = Look(growing, growing.conditions[c], num_trials, options, *store);

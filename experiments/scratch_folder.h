@@ -4,7 +4,8 @@
 
 namespace rcme {
 
-// A folder in the system's place for temporary files, gone with everything in it when this object is.
+// A folder in the system's place for temporary files, gone with everything in it when this object is. Its
+// process holds a lock on it, which ends with the process however that ends.
 class ScratchFolder {
  public:
   ScratchFolder();  // throws InputError that names the path if it cannot be made
@@ -15,6 +16,10 @@ class ScratchFolder {
 
  private:
   std::string path_;
+  int lock_ = -1;  // file descriptor of the folder
 };
+
+// Removes what killed processes of this user left behind: scratch folders that nobody holds a lock on.
+void RemoveAbandonedScratchFolders();
 
 }  // namespace rcme

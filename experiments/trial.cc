@@ -6,22 +6,42 @@
 #include <limits>
 #include <numbers>
 
+#include "experiments/answer_check.h"
 #include "stats/consistency.h"
 
 namespace rcme {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
-void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
-  if (estimate.status != MotionStatus::kOk || !truth.cam2_from_cam1_true) return;
-  const RelativePose& pose_true = *truth.cam2_from_cam1_true;
-  record->rotation_error_deg = kDegPerRad * RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R);
-  if (!truth.is_direction_known) return;
-  record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  record->nees =
+// Whether the status comes with a rotation, or a whole motion, that is known to be one.
+bool HasMotion(MotionStatus status) {
+  return status == MotionStatus::kOk || status == MotionStatus::kInvalidCovariance;
+}
+bool HasRotation(MotionStatus status) {
+  return HasMotion(status) || status == MotionStatus::kDirectionNotObservable;
+}
+
+// An answer that is not valid covers nothing.
+double NeesOf(const MotionEstimate& estimate, const RelativePose& pose_true) {
+  if (estimate.status != MotionStatus::kOk) return kInfinity;
+  const double nees =
       NormalizedErrorSquared(LocalCoordinates(estimate.cam2_from_cam1, pose_true), estimate.pose_cov);
+  return std::isnan(nees) ? kInfinity : nees;  // beyond the range of numbers: Sigma as good as zero
+}
+
+void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
+  if (!truth.cam2_from_cam1_true) return;
+  const RelativePose& pose_true = *truth.cam2_from_cam1_true;
+  if (HasRotation(estimate.status)) {
+    record->rotation_error_deg = kDegPerRad * RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R);
+  }
+  if (!truth.is_direction_known) return;
+  if (HasMotion(estimate.status))
+    record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
+  if (!HasRefused(*record)) record->nees = NeesOf(estimate, pose_true);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
@@ -70,23 +90,24 @@ bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds) {
 }
 
 TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double seconds) {
+  const MotionEstimate judged = Judged(estimate, data.problem.matches.size());
   TrialRecord record;
-  record.status = estimate.status;
+  record.status = judged.status;
   record.rotation_error_deg = record.direction_error_deg = record.nees = kNaN;
   record.inlier_precision = record.inlier_recall = kNaN;
   record.num_matches = static_cast<int>(data.problem.matches.size());
-  record.num_inliers = static_cast<int>(estimate.inliers.size());
-  record.num_support = estimate.num_support;
-  record.mean_entropy = estimate.num_support > 0 ? estimate.mean_entropy : kNaN;
-  record.z_statistic = estimate.num_support > 0 ? estimate.z_statistic : kNaN;
-  record.num_consistent_before = estimate.num_consistent_before;
-  record.num_consistent_after = estimate.num_consistent_after;
-  record.failed_by_kappa = estimate.failed_by_kappa;
-  record.num_explained = estimate.num_explained;
-  record.counts = estimate.counts;
+  record.num_inliers = static_cast<int>(judged.inliers.size());
+  record.num_support = judged.num_support;
+  record.mean_entropy = judged.num_support > 0 ? judged.mean_entropy : kNaN;
+  record.z_statistic = judged.num_support > 0 ? judged.z_statistic : kNaN;
+  record.num_consistent_before = judged.num_consistent_before;
+  record.num_consistent_after = judged.num_consistent_after;
+  record.failed_by_kappa = judged.failed_by_kappa;
+  record.num_explained = judged.num_explained;
+  record.counts = judged.counts;
   record.seconds = seconds;
-  ScoreMotion(estimate, data.truth, &record);
-  ScoreInliers(estimate, data.truth, &record);
+  ScoreMotion(judged, data.truth, &record);
+  ScoreInliers(judged, data.truth, &record);
   return record;
 }
 
@@ -100,8 +121,9 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   for (size_t e = 0; e < plan.estimators.size(); ++e) {
     RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
     const auto start = std::chrono::steady_clock::now();
-    result.estimates.push_back(plan.estimators[e]->Estimate(result.data.problem, sampling_rng));
+    MotionEstimate estimate = plan.estimators[e]->Estimate(result.data.problem, sampling_rng);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    result.estimates.push_back(Judged(std::move(estimate), result.data.problem.matches.size()));
     TrialRecord record = Score(result.estimates.back(), result.data, elapsed.count());
     record.condition = condition.index;
     record.trial = trial;

@@ -13,9 +13,9 @@ namespace rcme {
 struct TrialRecord {
   std::uint32_t condition = 0, trial = 0, estimator = 0;
   MotionStatus status = MotionStatus::kInvalidInput;
-  double rotation_error_deg = 0.0;
+  double rotation_error_deg = 0.0;  // also where the rotation alone is given
   double direction_error_deg = 0.0;
-  double nees = 0.0;  // of the refined motion, 5 degrees of freedom; NaN where the direction is not known
+  double nees = 0.0;  // 5 degrees of freedom; NaN: the direction is not known; infinite: nothing is covered
   int num_matches = 0;
   int num_inliers = 0;            // final inliers
   double inlier_precision = 0.0;  // true ones among the final inliers, wrong ones that no test can tell aside
@@ -38,7 +38,7 @@ struct ProblemRecord {
   Severity severity;
 };
 
-// An answer that is no motion or comes with no covariance: a failure, whatever the truth is.
+// An answer that is no motion or comes with no covariance (answer_check.h): a failure, whatever the truth is.
 bool IsInvalid(const TrialRecord& record);
 // No motion: neither a success nor a failure.
 bool HasRefused(const TrialRecord& record);
@@ -50,13 +50,13 @@ bool HasFailed(const TrialRecord& record, const FailureBounds& bounds);
 // A returned motion within the bounds.
 bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds);
 
-// The only place where truth meets estimate.
+// The only place where truth meets estimate. The answer is judged first (answer_check.h).
 TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double seconds);
 
 struct TrialResult {
   TrialData data;
   ProblemRecord problem;
-  std::vector<MotionEstimate> estimates;  // one per estimator of the plan
+  std::vector<MotionEstimate> estimates;  // one per estimator of the plan, judged
   std::vector<TrialRecord> records;
 };
 

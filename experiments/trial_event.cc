@@ -13,7 +13,7 @@ bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) 
 
 const std::vector<TrialEvent>& TrialEvents() {
   static const std::vector<TrialEvent> events = {
-      {"failure", "a motion beyond a failure bound", HasFailed, true},
+      {"failure", "a motion beyond a failure bound, or an answer that is not valid", HasFailed, true},
       {"refusal", "no motion, for whatever reason", Refused, false},
       {"failure_or_refusal", "one of the two", HasFailedOrRefused, true}};
   return events;

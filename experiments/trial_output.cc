@@ -149,7 +149,7 @@ std::vector<int> SpreadOver(const std::vector<Correspondence>& matches, const st
 }
 
 const char* OutcomeOf(const TrialRecord& record, const FailureBounds& bounds) {
-  if (record.status != MotionStatus::kOk) return "refused";
+  if (HasRefused(record)) return "refused";
   if (HasFailed(record, bounds)) return "failed";
   return HasSucceeded(record, bounds) ? "success" : "not_scored";
 }
@@ -232,7 +232,7 @@ std::string MatchesInWords(const TrialData& data) {
 
 size_t MostTelling(const StudyPlan& plan, const TrialResult& result) {
   const auto is_telling = [&](const TrialRecord& record) {
-    return record.status != MotionStatus::kOk || HasFailed(record, plan.study.failure);
+    return HasRefused(record) || HasFailed(record, plan.study.failure);
   };
   const auto found = std::ranges::find_if(result.records, is_telling);
   return found == result.records.end() ? 0 : static_cast<size_t>(found - result.records.begin());

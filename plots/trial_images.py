@@ -46,7 +46,7 @@ def groups_of(trial, estimate):
     kinds = np.full(len(trial.matches), "unknown") if trial.kinds is None else trial.kinds
     accepted = np.zeros(len(trial.matches), dtype=bool)
     accepted[estimate.inliers] = True
-    has_motion = estimate.outcome != "refused"
+    has_motion = estimate.status == "ok"
     groups = {}
     for kind, is_accepted in LOOKS:
         if (is_accepted is not None) == has_motion:

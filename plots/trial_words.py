@@ -26,9 +26,9 @@ def title_of(trial):
 
 def outcome_of(trial, estimate):
     """One line over an estimator's images."""
-    if estimate.outcome == "refused":
-        return f"refused ({estimate.status}): {estimate.message}"
     words = OUTCOMES[estimate.outcome]
+    if estimate.status != "ok":
+        return f"{words} ({estimate.status}): {estimate.message}"
     if estimate.rotation_error_deg is not None:
         words += f"; rotation {degrees(estimate.rotation_error_deg)} off"
         if estimate.direction_error_deg is not None:
@@ -64,7 +64,7 @@ def facts_of(trial):
 
 def table_of(trial, looks):
     """(names of the columns, rows of cells); no precision and recall where nobody knows what is true."""
-    rows = [[looks[e.label].label, OUTCOMES[e.outcome] if e.outcome != "refused" else e.status.replace("_", " "),
+    rows = [[looks[e.label].label, OUTCOMES[e.outcome] if e.status == "ok" else e.status.replace("_", " "),
              degrees(e.rotation_error_deg), degrees(e.direction_error_deg), f"{len(e.inliers)}", per_cent(e.precision),
              per_cent(e.recall)] for e in trial.estimates]
     names = ["Estimator", "Outcome", "Rotation error", "Direction error", "Accepted", "Precision", "Recall"]

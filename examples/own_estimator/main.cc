@@ -4,6 +4,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "estimator/estimator_registry.h"
+#include "estimator/problem_check.h"
 #include "estimator/uncertainty/motion_covariance.h"
 #include "experiments/program.h"
 
@@ -12,11 +13,9 @@ namespace {
 class OpenCvEstimator : public rcme::MotionEstimator {
  public:
   rcme::MotionEstimate Estimate(const rcme::MotionProblem& problem, rcme::RandomStream&) const override {
+    // NaN, too few matches, a camera without an inverse, ...: a status and a message.
+    if (const auto refusal = rcme::RefuseUnsolvable(problem, 5)) return *refusal;
     rcme::MotionEstimate estimate;
-    if (problem.matches.size() < 5) {
-      estimate.status = rcme::MotionStatus::kTooFewMatches;
-      return estimate;
-    }
     // Rays, so that both cameras may differ; the threshold in units of the mean focal length.
     std::vector<cv::Point2d> rays1, rays2;
     for (const rcme::Correspondence& match : problem.matches) {
@@ -31,6 +30,7 @@ class OpenCvEstimator : public rcme::MotionEstimator {
     const cv::Mat E = cv::findEssentialMat(rays1, rays2, K, cv::RANSAC, 0.999, threshold, mask);
     if (E.rows != 3 || cv::recoverPose(E, rays1, rays2, K, R, t, mask) < 5) {
       estimate.status = rcme::MotionStatus::kNoCandidate;
+      estimate.message = "no essential matrix has five matches in front of both cameras";
       return estimate;
     }
     std::vector<rcme::Correspondence> inliers;
@@ -47,6 +47,7 @@ class OpenCvEstimator : public rcme::MotionEstimator {
                                                              problem.camera2, inliers, problem.sigma_px);
     estimate.status = covariance ? rcme::MotionStatus::kOk : rcme::MotionStatus::kDegenerateMatches;
     if (covariance) estimate.pose_cov = *covariance;
+    estimate.message = covariance ? "found" : "the inliers do not determine a motion";
     return estimate;
   }
 };

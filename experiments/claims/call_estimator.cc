@@ -10,7 +10,7 @@ TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made) {
 Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made,
                                     const FailureBounds& bounds) {
   const TrialRecord record = CallEstimator(estimator, made);
-  const bool is_returned = record.status == MotionStatus::kOk;
+  const bool is_returned = !HasRefused(record);  // an answer that is not valid is one: its NEES is infinite
   return {is_returned ? record.nees : std::numeric_limits<double>::quiet_NaN(), is_returned ? 1.0 : 0.0,
           HasFailed(record, bounds) ? 1.0 : 0.0};
 }

@@ -10,8 +10,8 @@ namespace rcme {
 // of samples.
 TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made);
 
-// What a call says of the covariance it returns: NEES of the motion (NaN if none is returned), whether one is
-// returned, whether it failed by the bounds.
+// What a call says of the covariance it returns: NEES of the motion (NaN if none is returned,
+// infinite if what is returned is not valid), whether one is returned, whether it failed by the bounds.
 Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made,
                                     const FailureBounds& bounds = FailureBounds());
 

@@ -31,7 +31,7 @@ Outcome OrderStatistic(const Rivals& rivals, const FailureRule& rule, const Case
                      OnlyFirst(standard_fails, rcme_fails)};
   for (const TrialRecord* record : {&standard, &prcme, &rcme}) {
     outcome.push_back(FailsSilently(*record) ? 1.0 : 0.0);
-    outcome.push_back(record->status != MotionStatus::kOk ? 1.0 : 0.0);
+    outcome.push_back(HasRefused(*record) ? 1.0 : 0.0);
   }
   return outcome;
 }

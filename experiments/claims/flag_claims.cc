@@ -7,10 +7,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Of a returned motion: flagged, if it failed; not flagged, if it did not.
+// Of an answer, valid or not: flagged, if it failed; not flagged, if it did not.
 Outcome FlagStatistic(const MotionEstimator& estimator, const Case& made) {
   const TrialRecord record = CallEstimator(estimator, made);
-  if (record.status != MotionStatus::kOk) return {kNaN, kNaN, kNaN};
+  if (HasRefused(record)) return {kNaN, kNaN, kNaN};
   const bool has_failed = FailsSilently(record);
   return {has_failed ? 1.0 * record.failed_by_kappa : kNaN, has_failed ? kNaN : 1.0 * !record.failed_by_kappa,
           1.0 * has_failed};

@@ -12,6 +12,8 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
+#include "experiments/message.h"
+#include "experiments/stop_request.h"
 
 namespace rcme {
 namespace {
@@ -39,6 +41,7 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
 }
 
 void RunAuditCommand(const AuditArguments& arguments) {
+  const StopOnSignals stop;
   AuditOptions options;
   options.only = arguments.only;
   options.budget = arguments.budget == "full" ? Budget::kFull : Budget::kQuick;
@@ -51,7 +54,7 @@ void RunAuditCommand(const AuditArguments& arguments) {
   WriteFileWhole(arguments.out + "/audit.json", AuditAsJson(audit));
   WriteFileWhole(arguments.out + "/audit.md", AuditAsMarkdown(audit));
   DrawFigures("audit.py", {arguments.out});
-  fmt::print(stderr, "done: {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", arguments.out);
+  PrintMessage("done: {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", arguments.out);
 }
 
 }  // namespace

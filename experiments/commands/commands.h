@@ -6,6 +6,11 @@
 
 namespace rcme {
 
+// Thrown by a command that has said all there is to say and ends with an exit code of its own.
+struct EndWith {
+  int exit_code;
+};
+
 void AddRunCommand(CLI::App& app);
 void AddAuditCommand(CLI::App& app);
 void AddSummarizeCommand(CLI::App& app);
@@ -18,6 +23,7 @@ void AddMatchCommand(CLI::App& app);
 void AddTuneCommand(CLI::App& app);
 void AddTransferCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
+void AddCheckEstimatorCommand(CLI::App& app);
 void AddListCommand(CLI::App& app);
 
 }  // namespace rcme

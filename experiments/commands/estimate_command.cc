@@ -5,9 +5,10 @@
 #include <numbers>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/answer_check.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/estimator_file.h"
 #include "experiments/real_data/match_file.h"
 #include "experiments/trial.h"
 #include "parameters/input_error.h"
@@ -16,11 +17,10 @@ namespace rcme {
 namespace {
 
 struct EstimateArguments {
-  std::string matches, estimator = "rcme";
-  std::optional<std::string> estimator_file;
+  std::string matches;
+  EstimatorChoice estimator;
   double sigma_px = 0.5;
   std::int64_t seed = 1;
-  std::vector<std::string> overrides;
   bool as_json = false;
 };
 
@@ -75,20 +75,8 @@ void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, c
   }
 }
 
-// By name or from a file, with what --set changes in it.
-EstimatorSpec ChosenEstimator(const EstimateArguments& arguments) {
-  EstimatorSpec spec = arguments.estimator_file ? LoadEstimatorFile(*arguments.estimator_file)
-                                                : EstimatorSpec{arguments.estimator, arguments.estimator, {}};
-  for (const std::string& text : arguments.overrides) {
-    const size_t equals = std::min(text.find('='), text.size());
-    const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
-    FindParameter(Parameters(spec.options), text.substr(0, equals)).SetFromText(value);
-  }
-  return spec;
-}
-
 void RunEstimate(const EstimateArguments& arguments) {
-  const EstimatorSpec spec = ChosenEstimator(arguments);
+  const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   const std::unique_ptr<MotionEstimator> estimator = FindEstimator(spec.name).make(spec.options);
   MatchFile file = ReadMatchFile(arguments.matches);
   TrialData data;
@@ -96,10 +84,13 @@ void RunEstimate(const EstimateArguments& arguments) {
   data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
   RandomStream rng =
       StreamFor({static_cast<std::uint64_t>(arguments.seed), 0, 0, 0}, StreamPurpose::kSampling);
-  const MotionEstimate estimate = estimator->Estimate(data.problem, rng);
+  const MotionEstimate estimate = Judged(estimator->Estimate(data.problem, rng), data.problem.matches.size());
   const TrialRecord record = Score(estimate, data, 0.0);
   if (arguments.as_json) {
-    fmt::print("{}\n", AsJson(estimate, record, spec.label).dump(2));
+    // An estimator's message is whatever bytes it holds: what is no UTF-8 is replaced.
+    fmt::print(
+        "{}\n",
+        AsJson(estimate, record, spec.label).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
     PrintForPeople(estimate, record, spec.label);
   }
@@ -137,22 +128,15 @@ void AddEstimateCommand(CLI::App& app) {
                    "x1,y1,x2,y2")
       ->required();
   CLI::Option* estimator =
-      command->add_option("--estimator", arguments->estimator, "see `rcme list estimators`")
+      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
           ->capture_default_str();
-  command
-      ->add_option("--estimator-file", arguments->estimator_file,
-                   "estimator file: name and options from there, in place of --estimator")
-      ->excludes(estimator);
+  AddEstimatorOptions(command, estimator, &arguments->estimator);
   command->add_option("--sigma", arguments->sigma_px, "noise standard deviation per coordinate, px")
       ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
-  command
-      ->add_option("--set", arguments->overrides,
-                   "option=value, repeatable, after those of --estimator-file; see `rcme list options`")
-      ->allow_extra_args(false);
   command->add_flag("--json", arguments->as_json,
                     "one JSON object; R row-major (9), pose_cov row-major (25), rad^2");
   command->callback([arguments] { RunEstimate(*arguments); });

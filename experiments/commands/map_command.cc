@@ -9,7 +9,9 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/file_output.h"
 #include "experiments/for_each_index.h"
+#include "experiments/message.h"
 #include "experiments/progress.h"
+#include "experiments/stop_request.h"
 #include "experiments/study_samples.h"
 #include "experiments/validity_map.h"
 #include "experiments/validity_reference.h"
@@ -49,6 +51,7 @@ void WriteReference(const MapArguments& arguments, const std::string& path) {
 }
 
 void Map(const MapArguments& arguments) {
+  const StopOnSignals stop;
   const std::filesystem::path folder(arguments.out);
   ValidityMapOptions map;
   map.trials = arguments.trials;
@@ -59,8 +62,8 @@ void Map(const MapArguments& arguments) {
     UseStudy(arguments, &map);
   }
   MakeResultFolder(arguments.out);  // minutes before the first table is written
-  fmt::print(stderr, "map: {} conditions, {} cells; about {} on {} threads\n", map.conditions.size(),
-             NumCells(map), DurationInWords(SecondsOfWork(map)), NumThreads(map.num_threads));
+  PrintMessage("map: {} conditions, {} cells; about {} on {} threads\n", map.conditions.size(), NumCells(map),
+               DurationInWords(SecondsOfWork(map)), NumThreads(map.num_threads));
   const std::string map_path = (folder / "validity_map.csv").string();
   WriteFileWhole(map_path, ValidityMapCsv(map));
   fmt::print("{}\n", map_path);

@@ -5,6 +5,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/file_output.h"
+#include "experiments/message.h"
 #include "experiments/real_data/match_file.h"
 #include "experiments/real_data/match_images.h"
 
@@ -37,9 +38,9 @@ void AddMatchCommand(CLI::App& app) {
     const MatchFile file = MatchImages(*arguments);
     WriteMatchFile(file, *out);
     if (file.matches.empty()) {
-      fmt::print(stderr, "no match was kept -> {}\n", *out);
+      PrintMessage("no match was kept -> {}\n", *out);
     } else {
-      fmt::print(stderr, "{} matches -> {}; next: rcme estimate {}\n", file.matches.size(), *out, *out);
+      PrintMessage("{} matches -> {}; next: rcme estimate {}\n", file.matches.size(), *out, *out);
     }
   });
 }

@@ -50,7 +50,7 @@ void PrintEstimate(const std::string& label, const MotionEstimate& estimate, con
                         : HasSucceeded(record, bounds) ? "success"
                                                        : "no motion scored";
   fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status), verdict, estimate.message);
-  if (estimate.status == MotionStatus::kOk) {
+  if (!HasRefused(record)) {
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
                MatrixText(57.29577951308232 * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
   }

@@ -8,6 +8,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
+#include "experiments/message.h"
 #include "experiments/report_data.h"
 #include "experiments/scratch_folder.h"
 #include "parameters/input_error.h"
@@ -47,7 +48,7 @@ void RunReport(const ReportArguments& arguments) {
     WriteReportData(arguments.runs[i], arguments.against, run_folder);
   }
   WriteFileWhole(arguments.out, PageFrom(folder.path()));
-  fmt::print(stderr, "done: {}\n", arguments.out);
+  PrintMessage("done: {}\n", arguments.out);
 }
 
 }  // namespace

@@ -6,8 +6,10 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/message.h"
 #include "experiments/progress.h"
 #include "experiments/run_until.h"
+#include "experiments/stop_request.h"
 #include "experiments/summary_output.h"
 #include "parameters/input_error.h"
 
@@ -74,15 +76,15 @@ void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, Result
 }
 
 void Run(const RunArguments& arguments) {
+  const StopOnSignals stop;
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
   ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
-  fmt::print(stderr, "{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name,
-             plan.conditions.size(), plan.NumTrials(), plan.estimators.size(), arguments.out);
+  PrintMessage("{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name, plan.conditions.size(),
+               plan.NumTrials(), plan.estimators.size(), arguments.out);
   if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &store);
   const RunReport report = RunStudy(plan, arguments.threads, &store);
-  fmt::print(stderr, "done: {} trials ({} were there already) in {}; next: rcme summarize {}\n",
-             report.num_trials, report.num_trials - report.num_run_now, DurationInWords(report.seconds),
-             arguments.out);
+  PrintMessage("done: {} trials ({} were there already) in {}; next: rcme summarize {}\n", report.num_trials,
+               report.num_trials - report.num_run_now, DurationInWords(report.seconds), arguments.out);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
+#include "experiments/message.h"
 #include "experiments/result_store.h"
 #include "experiments/scratch_folder.h"
 #include "experiments/trial_output.h"
@@ -106,7 +107,7 @@ void Show(const ShowArguments& arguments, bool has_out) {
   const ScratchFolder folder;
   WriteFileWhole(folder.path() + "/trial.json", json);
   DrawOrThrow("show", "show_trial.py", {folder.path() + "/trial.json", "--out=" + out});
-  fmt::print(stderr, "done: {0}.png, {0}.pdf\n", out);
+  PrintMessage("done: {0}.png, {0}.pdf\n", out);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "experiments/commands/tuning_source.h"
 #include "experiments/draw_figures.h"
 #include "experiments/file_output.h"
+#include "experiments/stop_request.h"
 #include "experiments/tuning/transfer_output.h"
 
 namespace rcme {
@@ -17,6 +18,7 @@ struct TransferArguments : TuningArguments {
 };
 
 void RunTransfer(const TransferArguments& arguments) {
+  const StopOnSignals stop;
   const StudyPlan plan = TuningPlanOf(arguments);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   MakeResultFolder(arguments.out);

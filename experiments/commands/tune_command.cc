@@ -9,6 +9,8 @@
 #include "experiments/draw_figures.h"
 #include "experiments/estimator_file.h"
 #include "experiments/file_output.h"
+#include "experiments/message.h"
+#include "experiments/stop_request.h"
 #include "experiments/tuning/tune_output.h"
 #include "parameters/input_error.h"
 
@@ -30,7 +32,7 @@ std::vector<EntropyRoc> MeasureRocs(const StudyPlan& plan, int num_threads) {
 void WriteFigures(const std::string& folder, const std::string& json) {
   const std::string path = (std::filesystem::path(folder) / "tune.json").string();
   WriteFileWhole(path, json);
-  fmt::print(stderr, "drawing the figures in {}\n", folder);
+  PrintMessage("drawing the figures in {}\n", folder);
   DrawFigures("tune.py", {path, "--out", (std::filesystem::path(folder) / "tune").string()});
 }
 
@@ -45,11 +47,12 @@ void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const
   }
   WriteFileWhole(path, EstimatorFileText(spec, provenance));
   // With its own seed the study would run the trials that the estimator was tuned on.
-  fmt::print(stderr, "{}: estimator {}; next: rcme run STUDY --seed {} --add-estimator {} --out run.sqlite\n",
-             path, spec.label, plan.study.seed + 1, path);
+  PrintMessage("{}: estimator {}; next: rcme run STUDY --seed {} --add-estimator {} --out run.sqlite\n", path,
+               spec.label, plan.study.seed + 1, path);
 }
 
 void RunTune(const TuneArguments& arguments) {
+  const StopOnSignals stop;
   const StudyPlan plan = TuningPlanOf(arguments);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   if (arguments.repeat > 0) {

@@ -1,6 +1,7 @@
 #include "experiments/tuning/entropy_roc.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -44,7 +45,7 @@ Entropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, S
   if (!loop.winner) return entropies;
   Refinements refinements;
   const TrialRecord record = Score(estimator.Finish(data.problem, loop, &refinements), data, 0.0);
-  if (record.status != MotionStatus::kOk) return entropies;
+  if (HasRefused(record) || std::isnan(record.mean_entropy)) return entropies;
   (HasFailed(record, bounds) ? entropies.bad_winner : entropies.good_winner) = record.mean_entropy;
   return entropies;
 }

@@ -65,7 +65,7 @@ class TrialDecisions {
 
   Ending EndingOf(const MotionEstimate& estimate) const {
     const TrialRecord record = Score(estimate, data_, 0.0);
-    if (record.status != MotionStatus::kOk) return Ending::kRefused;
+    if (HasRefused(record)) return Ending::kRefused;
     return HasFailed(record, bounds_) ? Ending::kFailed : Ending::kGood;
   }
 

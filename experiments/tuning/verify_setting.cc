@@ -9,14 +9,12 @@ namespace {
 
 void AddTrial(const std::vector<TrialRecord>& records, const FailureBounds& bounds,
               std::vector<VerifiedEstimator>* verified) {
-  const auto is_bad = [&](const TrialRecord& r) {
-    return r.status != MotionStatus::kOk || HasFailed(r, bounds);
-  };
+  const auto is_bad = [&](const TrialRecord& r) { return HasRefused(r) || HasFailed(r, bounds); };
   for (size_t e = 0; e < records.size(); ++e) {
     VerifiedEstimator& of = (*verified)[e];
     for (ErrorCount* count : {&of.failure, &of.refusal, &of.failure_or_refusal}) ++count->n;
     of.failure.errors += HasFailed(records[e], bounds);
-    of.refusal.errors += records[e].status != MotionStatus::kOk;
+    of.refusal.errors += HasRefused(records[e]);
     of.failure_or_refusal.errors += is_bad(records[e]);
     of.against_first.Add(is_bad(records[0]), is_bad(records[e]));
   }

@@ -165,6 +165,22 @@ TEST_F(BadInput, FullOutput) {
   }
 }
 
+// Messages that cannot be written are lost, and nothing else is: neither the work nor its exit code.
+TEST_F(BadInput, MessagesThatCannotBeWritten) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  const std::string run = "\"$RCME\" run '" + folder_.Write("small.yaml", SmallStudyYaml()) + "' --out '";
+  for (const std::string& stream : {std::string("2>/dev/full"), std::string("2>&-")}) {
+    const std::string out = folder_.Path("messages.sqlite");
+    std::filesystem::remove(out);
+    EXPECT_EQ(RunShell(run + out + "' " + stream).exit_code, 0) << stream;
+    EXPECT_EQ(RunRcme({"summarize", out}).exit_code, 0) << stream;
+    EXPECT_EQ(RunShell("\"$RCME\" summarize no_such_file " + stream).exit_code, 2) << stream;
+    EXPECT_EQ(RunShell("\"$RCME\" list scenes > /dev/full " + stream).exit_code, 2) << stream;
+    EXPECT_EQ(RunShell("\"$RCME\" list scenes >&- " + stream).exit_code, 2) << stream;
+    EXPECT_EQ(RunShell("\"$RCME\" --help > /dev/full " + stream).exit_code, 2) << stream;
+  }
+}
+
 TEST_F(BadInput, ADiskThatFillsUpLosesNothingThatWasThere) {
   // A file-size limit (1 block: 512 bytes) stands for the full disk; the signal that comes with it is
   // ignored.
@@ -383,6 +399,7 @@ TEST(Help, IsThereForEveryCommand) {
                                                   {"show"},
                                                   {"estimate"},
                                                   {"match"},
+                                                  {"check-estimator"},
                                                   {"list"}}) {
     std::vector<std::string> arguments = command;
     arguments.push_back("--help");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -30,57 +31,74 @@ std::string Csv(const std::string& run) {
   return result.out;
 }
 
-// Runs the study on one thread; returns trials per condition enough to be killed on the way.
-int RunLongEnough(const std::string& study, const std::string& out) {
-  for (int num_trials = 400;; num_trials *= 4) {
-    std::filesystem::remove(out);
-    const auto start = std::chrono::steady_clock::now();
-    EXPECT_EQ(RunRcme(RunArguments(study, out, num_trials, 1)).exit_code, 0);
-    if (std::chrono::steady_clock::now() - start > std::chrono::seconds(3) || testing::Test::HasFailure()) {
-      return num_trials;
+// So many trials that no run of a test ends.
+constexpr int kEndless = 2'000'000'000;
+
+std::uintmax_t SizeOf(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
+}
+
+// A run without an end that is under way: the file has grown by so many bytes, committed or not.
+class EndlessRun {
+ public:
+  EndlessRun(const std::string& study, const std::string& out, std::uintmax_t growth)
+      : size_before_(SizeOf(out)), program_(RcmeCommand(RunArguments(study, out, kEndless, 2))) {
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    while (SizeOf(out) < size_before_ + growth && !program_.HasEnded() &&
+           std::chrono::steady_clock::now() < limit) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+    EXPECT_FALSE(program_.HasEnded()) << program_.Wait().err;
   }
-}
+  RunningProgram& program() { return program_; }
 
-// Trials in a result file that nobody holds.
-int CountTrials(const std::string& path) {
+ private:
+  std::uintmax_t size_before_;
+  RunningProgram program_;
+};
+
+// Trials in a result file that nobody holds: how many, and one more than the last.
+struct Held {
   int count = 0;
-  ResultStore::OpenForReading(path).ForEachRecord(
-      [&](const TrialRecord& record) { count += record.estimator == 0 ? 1 : 0; });
-  return count;
+  int end = 0;
+};
+
+Held TrialsIn(const std::string& path) {
+  Held held;
+  ResultStore::OpenForReading(path).ForEachRecord([&](const TrialRecord& record) {
+    held.count += record.estimator == 0 ? 1 : 0;
+    held.end = std::max(held.end, static_cast<int>(record.trial) + 1);
+  });
+  return held;
 }
 
+// The killed runs have no end, so that every kill is half-way however fast or loaded the machine is; a last
+// run asks for a few trials more than they left.
 TEST(Resume, ThreadsAndKillsChangeNothing) {
   const TempFolder folder;
   const std::string study = folder.Write("small.yaml", SmallStudyYaml());
   const std::string one = folder.Path("one.sqlite"), two = folder.Path("two.sqlite"),
                     cut = folder.Path("cut.sqlite");
-  const int num_trials = RunLongEnough(study, one);
-  ASSERT_EQ(RunRcme(RunArguments(study, two, num_trials, 2)).exit_code, 0);
-
-  int num_kills = 0, num_before = 0;
-  for (int attempt = 0; attempt < 20 && num_kills < 2; ++attempt) {
-    RunningProgram program(RcmeCommand(RunArguments(study, cut, num_trials, 2)));
-    // The file grows by a commit about twice a second; kill a little after one.
-    const auto size = [&] { return std::filesystem::exists(cut) ? std::filesystem::file_size(cut) : 0; };
-    const auto size_at_start = std::max<std::uintmax_t>(size(), 40'000);
-    while (!program.HasEnded() && size() <= size_at_start) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    if (program.HasEnded()) break;
-    program.Kill();
-    const int num_done = CountTrials(cut);
-    EXPECT_GE(num_done, num_before) << "a kill lost trials that were there before";
-    if (num_done > 0 && num_done < 2 * num_trials) ++num_kills;
-    num_before = num_done;
+  Held held;
+  // A kill before the first commit keeps nothing new: the next one comes later.
+  std::uintmax_t growth = 100'000;
+  for (int num_kept = 0; num_kept < 2; growth *= 2) {
+    ASSERT_LT(growth, 1'000'000'000u) << "nothing is ever committed";
+    EndlessRun(study, cut, growth).program().Kill();
+    const Held now = TrialsIn(cut);
+    EXPECT_GE(now.count, held.count) << "a kill lost trials that were there before";
+    num_kept += now.count > held.count;
+    held = now;
   }
-  ASSERT_GE(num_kills, 1) << "the run was never caught half-way";
-  ASSERT_LT(num_before, 2 * num_trials);
+  const int num_trials = held.end + 20;
   const ProgramResult resumed = RunRcme(RunArguments(study, cut, num_trials, 2));
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_NE(resumed.err.find(fmt::format("({} were there already)", num_before)), std::string::npos)
+  EXPECT_NE(resumed.err.find(fmt::format("({} were there already)", held.count)), std::string::npos)
       << resumed.err;
+  ASSERT_EQ(RunRcme(RunArguments(study, one, num_trials, 1)).exit_code, 0);
+  ASSERT_EQ(RunRcme(RunArguments(study, two, num_trials, 2)).exit_code, 0);
 
   const std::string csv = Csv(one);
   EXPECT_GT(csv.size(), 1000u);
@@ -98,6 +116,27 @@ TEST(Resume, ThreadsAndKillsChangeNothing) {
   const ProgramResult beyond =
       RunRcme({"replay", cut, "--condition", "1", "--trial", std::to_string(num_trials)});
   EXPECT_NE(beyond.out.find("not run yet"), std::string::npos) << beyond.out;
+}
+
+// Ctrl-C and SIGTERM: the trials in hand are kept, and the message says how many there are.
+TEST(Resume, AfterARequestToStop) {
+  const TempFolder folder;
+  const std::string study = folder.Write("small.yaml", SmallStudyYaml());
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string cut = folder.Path(fmt::format("cut_{}.sqlite", signal));
+    EndlessRun run(study, cut, 100'000);
+    run.program().Send(signal);
+    const ProgramResult stopped = run.program().Wait();
+    EXPECT_EQ(stopped.exit_code, 128 + signal) << stopped.err;
+    const Held held = TrialsIn(cut);
+    const std::string message =
+        fmt::format("stopped, {} trials kept; the same command resumes\n", held.count);
+    EXPECT_NE(stopped.err.find(message), std::string::npos) << stopped.err;
+    const ProgramResult resumed = RunRcme(RunArguments(study, cut, held.end + 1, 2));
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_NE(resumed.err.find(fmt::format("({} were there already)", held.count)), std::string::npos)
+        << resumed.err;
+  }
 }
 
 }  // namespace

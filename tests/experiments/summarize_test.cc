@@ -291,6 +291,31 @@ TEST_F(SummarizeTest, AMotionWithoutAKnownTruthNeitherFailsNorSucceeds) {
   EXPECT_EQ(Row("no_candidate", 1).n, 4);
 }
 
+// An answer that is not valid is a failure with or without a truth, and covers nothing: none leaves an n.
+TEST_F(SummarizeTest, InvalidAnswersAreFailuresInEveryCount) {
+  TrialRecord no_motion = NoMotion(0, MotionStatus::kInvalidMotion);
+  no_motion.nees = std::numeric_limits<double>::infinity();
+  TrialRecord no_covariance = Motion(1, 0.5, 0.5, std::numeric_limits<double>::infinity());
+  no_covariance.status = MotionStatus::kInvalidCovariance;
+  std::vector<TrialRecord> records = {no_motion, no_covariance, Motion(2, 0.5, 0.5, 4.0),
+                                      NoMotion(3, MotionStatus::kInvalidMotion)};  // no truth
+  for (TrialRecord& record : records) record.condition = 1;
+  Write("run", records);
+  const auto expect = [&](const std::string& quantity, double value, std::int64_t n) {
+    EXPECT_EQ(Row(quantity, 1).n, n) << quantity;
+    EXPECT_DOUBLE_EQ(Row(quantity, 1).value, value) << quantity;
+  };
+  expect("failure", 0.75, 4);
+  expect("success", 0.25, 4);
+  expect("invalid_motion", 0.5, 4);
+  expect("invalid_covariance", 0.25, 4);
+  expect("other_refusal", 0.0, 4);
+  expect("not_scored", 0.0, 4);
+  expect("nees_coverage", 1.0 / 3.0, 3);
+  expect("nees_median", std::numeric_limits<double>::infinity(), 3);  // 4 and twice infinity
+  expect("rotation_error_deg", 0.5, 1);                               // of successes
+}
+
 std::vector<std::string> Lines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);

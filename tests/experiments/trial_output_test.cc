@@ -14,6 +14,7 @@
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
+#include "tests/test_support/test_estimators.h"
 
 namespace rcme {
 namespace {
@@ -214,6 +215,23 @@ TEST(TrialAsJson, ARefusalHasItsReasonAndNoMotion) {
   for (const char* key : {"R", "t", "F", "centre2_in_cam1_m", "rotation_error_deg", "inlier_recall"}) {
     EXPECT_TRUE(refusal[key].is_null()) << key;
   }
+}
+
+// Indices of an estimator of a user's own are looked at before they are used.
+TEST(TrialAsJson, AnInvalidAnswerIsAFailureWithItsReasonAndNoMotion) {
+  StudyPlan plan = MakePlan(SmallStudy());
+  plan.estimators[0] = std::make_shared<FaultyEstimator>(
+      [](MotionEstimate& estimate) { estimate.inliers.push_back(1'000'000'000); });
+  const TrialResult result = RunLast(plan);
+  ASSERT_EQ(result.records[0].status, MotionStatus::kInvalidMotion);
+  EXPECT_EQ(MostTelling(plan, result), 0u);
+  const Json json = JsonOf(plan, result)["estimators"][0];
+  EXPECT_EQ(json["outcome"], "failed");
+  EXPECT_EQ(json["status"], "invalid_motion");
+  EXPECT_EQ(json["message"], "inlier 1000000000 is none of the 60 matches");
+  EXPECT_EQ(json["inliers"], Json::array());
+  EXPECT_TRUE(json["R"].is_null() && json["F"].is_null());
+  EXPECT_NE(TrialAsText(plan, result).find("failed"), std::string::npos);
 }
 
 TEST(TrialAsJson, RealPairsHaveNeitherSceneNorLabels) {

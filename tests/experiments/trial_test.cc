@@ -223,7 +223,10 @@ TEST(Score, SuccessAndFailureAtTheBounds) {
 
 TEST(Score, NoMotionIsNeitherSuccessNorFailure) {
   for (const MotionStatus status : AllStatuses()) {
-    if (status == MotionStatus::kOk) continue;
+    if (status == MotionStatus::kOk || status == MotionStatus::kDirectionNotObservable ||
+        status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance) {
+      continue;
+    }
     MotionEstimate estimate = HandMadeEstimate(40.0, 80.0);  // whatever is left in it must not be scored
     estimate.status = status;
     const TrialRecord record = Score(estimate, HandMadeData(), 0.0);
@@ -232,9 +235,60 @@ TEST(Score, NoMotionIsNeitherSuccessNorFailure) {
                                  record.inlier_precision, record.inlier_recall}) {
       EXPECT_TRUE(std::isnan(unknown)) << StatusName(status);
     }
-    EXPECT_EQ(HasFailed(record, {}), IsInvalid(record)) << StatusName(status);
-    EXPECT_EQ(HasRefused(record), !IsInvalid(record)) << StatusName(status);
-    EXPECT_FALSE(HasSucceeded(record, {})) << StatusName(status);
+    EXPECT_TRUE(HasRefused(record)) << StatusName(status);
+    EXPECT_FALSE(HasFailed(record, {}) || HasSucceeded(record, {})) << StatusName(status);
+  }
+}
+
+// A refusal whose rotation is scored beside it.
+TEST(Score, ADirectionThatIsNotObservableStillHasARotation) {
+  MotionEstimate estimate = HandMadeEstimate(2.0, 80.0);
+  estimate.status = MotionStatus::kDirectionNotObservable;
+  estimate.cam2_from_cam1.t.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const TrialRecord record = Score(estimate, HandMadeData(), 0.0);
+  EXPECT_EQ(record.status, MotionStatus::kDirectionNotObservable);
+  EXPECT_NEAR(record.rotation_error_deg, 2.0, 1e-9);
+  EXPECT_TRUE(std::isnan(record.direction_error_deg) && std::isnan(record.nees));
+  EXPECT_TRUE(HasRefused(record));
+  EXPECT_FALSE(HasFailed(record, {}) || HasSucceeded(record, {}));
+  estimate.cam2_from_cam1.R *= 2.0;
+  EXPECT_EQ(Score(estimate, HandMadeData(), 0.0).status, MotionStatus::kInvalidMotion);
+}
+
+// A failure, and no cover, whatever is left in it: NEES is infinite, not missing.
+TEST(Score, AnInvalidAnswerIsAFailureThatDoesNotCover) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  MotionEstimate estimate = HandMadeEstimate(0.0, 0.0);  // the truth itself
+  estimate.pose_cov(2, 2) = std::numeric_limits<double>::quiet_NaN();
+  const TrialRecord no_covariance = Score(estimate, HandMadeData(), 0.0);
+  EXPECT_EQ(no_covariance.status, MotionStatus::kInvalidCovariance);
+  EXPECT_NEAR(no_covariance.rotation_error_deg, 0.0, 1e-6);
+  EXPECT_NEAR(no_covariance.direction_error_deg, 0.0, 1e-6);
+  estimate.cam2_from_cam1.R.col(0) *= -1.0;  // a reflection
+  const TrialRecord no_motion = Score(estimate, HandMadeData(), 0.0);
+  EXPECT_EQ(no_motion.status, MotionStatus::kInvalidMotion);
+  EXPECT_TRUE(std::isnan(no_motion.rotation_error_deg) && std::isnan(no_motion.direction_error_deg));
+  TrialData no_truth = HandMadeData();
+  no_truth.truth = {};
+  const TrialRecord unknown = Score(estimate, no_truth, 0.0);
+  EXPECT_TRUE(std::isnan(unknown.nees));
+  EXPECT_EQ(no_covariance.nees, kInfinity);
+  EXPECT_EQ(no_motion.nees, kInfinity);
+  for (const TrialRecord& record : {no_covariance, no_motion, unknown}) {
+    EXPECT_TRUE(HasFailed(record, {}) && IsScored(record));
+    EXPECT_FALSE(HasRefused(record) || HasSucceeded(record, {}));
+  }
+}
+
+// Indices and counts come from an estimator of a user's own: none may be used before it is checked.
+TEST(Score, AnAccountThatCannotBeIsNoCrash) {
+  for (const std::vector<int>& inliers : {std::vector<int>{0, 6}, {-1}, {2147483647}, {1, 3, 1}}) {
+    MotionEstimate estimate = HandMadeEstimate(0.0, 0.0);
+    estimate.inliers = inliers;
+    const TrialRecord record = Score(estimate, HandMadeData(), 0.0);
+    EXPECT_EQ(record.status, MotionStatus::kInvalidMotion);
+    EXPECT_EQ(record.num_inliers, 0);
+    EXPECT_EQ(record.nees, std::numeric_limits<double>::infinity());
   }
 }
 

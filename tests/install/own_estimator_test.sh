@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs the build into a scratch prefix, builds examples/own_estimator against it as a user would, and runs its audit
-# and its study: the estimator that the example adds must be in both.
+# Installs the build into a scratch prefix, builds examples/own_estimator against it as a user would, and runs its contract,
+# its audit and its study: the estimator that the example adds must be in all of them.
 #   own_estimator_test.sh CMAKE BUILD_DIR
 set -eu
 cmake=$1
@@ -15,6 +15,7 @@ trap 'rm -rf "$scratch"' EXIT
 own=$scratch/own/own_rcme
 
 "$own" list estimators | grep -q '^opencv '
+"$own" check-estimator opencv
 "$own" audit --only estimator.coverage.opencv --out "$scratch/audit" | grep '^estimator.coverage.opencv '
 grep -q '"id": "estimator.coverage.opencv"' "$scratch/audit/audit.json"
 test -s "$scratch/audit/audit_estimator.png"

@@ -209,6 +209,16 @@ class Words(unittest.TestCase):
         self.assertEqual(marks_of(panel, "x"), {(300, 470), (20, 100)})
         self.assertNotIn("accepted", " ".join(text.get_text() for text in figure.legends[0].get_texts()))
 
+    def test_an_invalid_answer_is_a_failure_with_its_reason_and_no_motion(self):
+        nothing = dict(R=None, t=None, F=None, centre2_in_cam1_m=None, rotation_error_deg=None, direction_error_deg=None,
+                       inliers=[])
+        figure = drawn(estimators=[estimator("mine", "failed", status="invalid_motion", message="|t| = 0", **nothing)],
+                       drawn=[0])
+        self.assertIn("failed (invalid_motion): |t| = 0", words_of(figure))
+        panel = panels_of(figure)["Image 2"]
+        self.assertEqual(straight_lines_of(panel, dashed=True), [])
+        self.assertNotIn("rejected", " ".join(text.get_text() for text in figure.legends[0].get_texts()))
+
     def test_a_pure_rotation_has_no_true_lines_and_says_so(self):
         rotation = trial()
         rotation["truth"].update(t=None, F=None, baseline_m=0)

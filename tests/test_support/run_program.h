@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -36,6 +37,7 @@ class RunningProgram {
     const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int null_file = open("/dev/null", O_RDONLY);
+    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);  // as in a terminal
     dup2(null_file, STDIN_FILENO);
     dup2(out_file, STDOUT_FILENO);
     dup2(err_file, STDERR_FILENO);
@@ -51,6 +53,9 @@ class RunningProgram {
   bool HasEnded() {
     if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) == pid_) pid_ = 0;
     return pid_ == 0;
+  }
+  void Send(int signal) {
+    if (!HasEnded()) kill(pid_, signal);
   }
   void Kill() {
     if (HasEnded()) return;

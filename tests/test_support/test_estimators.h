@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -52,6 +53,24 @@ class WholeEstimator : public MotionEstimator {
 
  private:
   std::unique_ptr<MotionEstimator> rcme_;
+};
+
+// rcme with a fault planted in some of the motions it returns: each with probability `share`, drawn from its
+// stream.
+class FaultyEstimator : public MotionEstimator {
+ public:
+  using Plant = std::function<void(MotionEstimate&)>;
+  explicit FaultyEstimator(Plant plant, double share = 1.0) : plant_(std::move(plant)), share_(share) {}
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    MotionEstimate estimate = rcme_->Estimate(problem, rng);
+    if (estimate.status == MotionStatus::kOk && rng.Uniform() < share_) plant_(estimate);
+    return estimate;
+  }
+
+ private:
+  std::unique_ptr<MotionEstimator> rcme_ = FindEstimator("rcme").make(RansacOptions());
+  Plant plant_;
+  double share_;
 };
 
 // Registers "counted" and "whole" once; the counts are those of all counted estimators of the process.

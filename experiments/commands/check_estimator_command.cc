@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "estimator/estimator_registry.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_source.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/estimator_contract.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+struct CheckArguments {
+  EstimatorChoice estimator;
+  std::vector<std::string> only;
+  std::string problem;
+  std::int64_t seed = 1;
+  double seconds_per_call = ContractOptions{}.seconds_per_call;
+  bool is_in_process = false;
+};
+
+std::vector<std::string> CheckNames() {
+  std::vector<std::string> names;
+  for (const ContractCheck& check : ContractChecks()) names.push_back(check.name);
+  return names;
+}
+
+// A word of a command line as a shell takes it.
+std::string InQuotes(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+// The command that finds the same again.
+std::string Again(const CheckArguments& arguments, const std::string& check, const std::string& problem) {
+  const EstimatorChoice& choice = arguments.estimator;
+  std::string command =
+      "check-estimator " + (choice.file ? "--estimator-file " + InQuotes(*choice.file) : choice.name);
+  for (const std::string& text : choice.overrides) command += " --set " + InQuotes(text);
+  command += fmt::format(" --seed {} --only {}", arguments.seed, check);
+  if (!problem.empty()) command += " --problem " + InQuotes(problem);
+  return command;
+}
+
+void Print(const CheckArguments& arguments, const ContractCheck& check, const ContractResult& result) {
+  const std::string at = result.problem.empty() ? "" : fmt::format("on '{}': ", result.problem);
+  fmt::print("{:<7} {:<12} {}{}\n", result.has_passed ? "ok" : "FAILED", check.name, at,
+             Printable(result.finding));
+  if (!result.has_passed) {
+    fmt::print("{:<20} asked for: {}\n{:<20} again: {}\n", "", check.doc, "",
+               Again(arguments, check.name, result.problem));
+  }
+  std::fflush(stdout);
+}
+
+void RunChecks(const CheckArguments& arguments) {
+  const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
+  const EstimatorMaker make = [&] { return FindEstimator(spec.name).make(spec.options); };
+  make();  // options that contradict each other are found here
+  ContractOptions options;
+  options.seed = static_cast<std::uint64_t>(arguments.seed);
+  options.seconds_per_call = arguments.seconds_per_call;
+  options.problem = arguments.problem;
+  options.is_isolated = !arguments.is_in_process;
+  int num_checks = 0, num_passed = 0;
+  for (const ContractCheck& check : ContractChecks()) {
+    if (!arguments.only.empty() && std::ranges::count(arguments.only, check.name) == 0) continue;
+    const ContractResult result = RunContractCheck(check.name, make, options);
+    Print(arguments, check, result);
+    ++num_checks;
+    num_passed += result.has_passed;
+  }
+  fmt::print("{}: {} of {} checks passed\n", spec.label, num_passed, num_checks);
+  if (num_passed < num_checks) throw EndWith{1};
+}
+
+}  // namespace
+
+void AddCheckEstimatorCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "check-estimator", "Put an estimator through its contract: does it do what every command relies on?");
+  std::string checks;
+  for (const ContractCheck& check : ContractChecks())
+    checks += fmt::format("  {:<12} {}\n", check.name, check.doc);
+  command->footer(
+      "For an estimator of one's own (examples/own_estimator), before it is audited or put in a study. The\n"
+      "contract is in estimator/motion_estimator.h and motion_estimate.h. The checks:\n" +
+      checks +
+      "Each runs in a process of its own, so that a crash or a call that never returns fails the check. A\n"
+      "failed check names the problem it was found on and the command that finds it again. What the checks\n"
+      "do not ask is whether motions are precise and covariances right: that is what `rcme audit` decides.\n"
+      "\n"
+      "Exit code: 0 if all checks pass, 1 if one fails.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme check-estimator rcme --set reading=rank_aware\n"
+      "  own_rcme check-estimator opencv\n"
+      "  gdb --args own_rcme check-estimator opencv --only bad_input --problem 'no match' --in-process");
+  auto arguments = std::make_shared<CheckArguments>();
+  arguments->estimator.name.clear();
+  CLI::Option* name =
+      command->add_option("estimator", arguments->estimator.name, "see `rcme list estimators`");
+  AddEstimatorOptions(command, name, &arguments->estimator);
+  CLI::Option* only = command->add_option("--only", arguments->only, "checks a,b,...")
+                          ->delimiter(',')
+                          ->allow_extra_args(false)
+                          ->check(CLI::IsMember(CheckNames()));
+  command
+      ->add_option("--problem", arguments->problem,
+                   "only the problem of this name, as a failed check gives it")
+      ->needs(only);
+  command->add_option("--seed", arguments->seed, "seed of the problems and of the random samples")
+      ->transform(WholeNumberIn(0))
+      ->capture_default_str();
+  command
+      ->add_option("--seconds-per-call", arguments->seconds_per_call,
+                   "a call that takes longer is taken to hang, s")
+      ->transform(NumberIn({0.01, 1e6}))
+      ->capture_default_str();
+  command->add_flag("--in-process", arguments->is_in_process,
+                    "no process of its own for each check, for a debugger: a crash is a crash");
+  command->callback([arguments] {
+    if (arguments->estimator.name.empty() && !arguments->estimator.file)
+      throw InputError("check-estimator: give the name of an estimator or --estimator-file");
+    RunChecks(*arguments);
+  });
+}
+
+}  // namespace rcme

@@ -1,0 +1,25 @@
+// The estimator a command works with: by name or from a file, with what the command line changes in it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/study.h"
+
+namespace rcme {
+
+struct EstimatorChoice {
+  std::string name = "rcme";
+  std::optional<std::string> file;
+  std::vector<std::string> overrides;  // option=value each
+};
+
+// The options --estimator-file and --set; `name` is the command's own option for the name.
+void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice);
+
+// Throws InputError (estimator_file.h, parameters/parameter.h).
+EstimatorSpec ChosenEstimator(const EstimatorChoice& choice);
+
+}  // namespace rcme

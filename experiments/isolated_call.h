@@ -1,0 +1,28 @@
+// Work in a process of its own, so that a crash, an exit or an endless loop in code of others is an outcome.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace rcme {
+
+// Names the step that begins; callable from several threads.
+using Announce = std::function<void(const std::string& step)>;
+
+struct IsolatedEnd {
+  enum class Kind { kDone, kSignal, kExit, kTimeout };
+  Kind kind = Kind::kDone;
+  int code = 0;           // the signal's number, or the exit code
+  std::string last_step;  // the last that was announced
+  std::string result;     // what the work returned, if it is done
+};
+
+// Calls `work` in a child of this process and ends the child if no step is announced for `seconds_per_step`.
+// The child shares nothing with this process but what was in memory before. To be called where no other
+// thread runs. An exception from `work` ends the child by SIGABRT.
+IsolatedEnd RunIsolated(const std::function<std::string(const Announce&)>& work, double seconds_per_step);
+
+// How it ended, as part of a sentence: "ended the program by signal 11 (Segmentation fault)".
+std::string DescribeEnd(const IsolatedEnd& end, double seconds_per_step);
+
+}  // namespace rcme

@@ -1,0 +1,36 @@
+// Ctrl-C (SIGINT) and SIGTERM as a request: what is in hand is finished and kept, then the program ends. The
+// same signal a second time ends it at once.
+#pragma once
+
+#include <csignal>
+#include <stdexcept>
+#include <string>
+
+namespace rcme {
+
+// While one lives, the two signals are requests, and a reader of the messages that goes away (SIGPIPE) is no
+// reason to end. A signal that was ignored before (nohup) stays so. One at a time.
+class StopOnSignals {
+ public:
+  StopOnSignals();
+  ~StopOnSignals();
+  StopOnSignals(const StopOnSignals&) = delete;
+  StopOnSignals& operator=(const StopOnSignals&) = delete;
+
+ private:
+  struct sigaction interrupt_before_, terminate_before_, pipe_before_;
+};
+
+// Whether one of the two has come; the work looks between one piece and the next.
+bool IsStopRequested();
+
+// Work that ended because of it.
+class Stopped : public std::runtime_error {
+ public:
+  explicit Stopped(const std::string& message) : std::runtime_error(message) {}
+};
+
+// 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM.
+int StopExitCode();
+
+}  // namespace rcme
