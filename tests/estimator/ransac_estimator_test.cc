@@ -211,6 +211,33 @@ TEST(RansacEstimator, OfEqualMotionsTheFirstStays) {
   EXPECT_EQ(chosen({50, 49, 51, 50}), 2);
 }
 
+// Where nothing is too poor or too small, the winner is the best of all hypotheses by what selects.
+TEST(RansacEstimator, TheWinnerIsTheBestByWhatSelects) {
+  RansacOptions options;
+  options.reading = Reading::kRankAware;
+  options.mu = 1000.0;
+  options.lambda = 0.0;
+  options.num_iterations = 60;
+  const MotionProblem problem = MakeProblem(0.3, 120, 0);
+  for (const Selection selection : {Selection::kMeanEntropy, Selection::kPredictiveLikelihood}) {
+    options.selection = selection;
+    const auto estimator = FindEstimator("prcme").make(options);
+    RandomStream rng = SamplingStream();
+    const HypothesisTrace trace = AsRansac(*estimator)->Trace(problem, rng);
+    const InlierScore winner = AsRansac(*estimator)->Decide(trace).winner.value().score;
+    int num_worse = 0;
+    for (const ScoredHypothesis& hypothesis : trace.hypotheses) {
+      if (hypothesis.score.num_inliers == 0) continue;
+      const auto of = [&](const InlierScore& score) {
+        return selection == Selection::kMeanEntropy ? score.mean_entropy : score.negative_log_likelihood;
+      };
+      EXPECT_LE(of(winner), of(hypothesis.score));
+      num_worse += of(winner) < of(hypothesis.score);
+    }
+    EXPECT_GT(num_worse, 40);
+  }
+}
+
 TEST(RansacEstimator, AnEmptyLoopIsDegenerateOnlyIfEverySampleIs) {
   LoopCounts counts{.num_hypotheses = 20, .num_degenerate_samples = 20};
   EXPECT_EQ(RefusalFromLoop(counts).status, MotionStatus::kDegenerateMatches);

@@ -96,10 +96,29 @@ class AgreeingMatches : public ReferenceMatches {
     std::iota(agreeing_.begin(), agreeing_.end(), 0);
   }
   Set SelectFitSet(const RefinedMotion&, const Set&) const { return agreeing_; }
+  RefinedMotion Refine(const Set& set, const RelativePose& start, Loss loss) const {
+    starts.push_back(start);
+    refined.push_back(ReferenceMatches::Refine(set, start, loss));
+    return refined.back();
+  }
+  mutable std::vector<RelativePose> starts;
+  mutable std::vector<RefinedMotion> refined;
 
  private:
   Set agreeing_;
 };
+
+TEST(RefineWinner, EveryRefitBeginsWhereTheLastOneEnded) {
+  const Case made = MakeCase();
+  RandomStream rng({.seed = 1, .purpose = 930});
+  const AgreeingMatches matches(made.problem, 25);
+  FitRobustly(matches, made.support, MakeRandomProblem(rng, {.num_matches = 30}).pose_true);
+  ASSERT_GE(matches.starts.size(), 2u);
+  for (size_t k = 1; k < matches.starts.size(); ++k) {
+    EXPECT_EQ(matches.starts[k].R, matches.refined[k - 1].cam2_from_cam1.R);
+    EXPECT_EQ(matches.starts[k].t, matches.refined[k - 1].cam2_from_cam1.t);
+  }
+}
 
 // Five matches have no residuals that could speak for a motion; six have.
 TEST(RefineWinner, AFitToFiveMatchesHasNotConverged) {
