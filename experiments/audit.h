@@ -12,9 +12,10 @@ struct AuditOptions {
   std::vector<std::string> only;  // ids or their beginnings ("inlier", "sigma_p.theta"); empty: all
   Budget budget = Budget::kQuick;
   std::uint64_t seed = 1;
-  int num_threads = 0;  // 0: one per core; the results do not depend on it
-  std::string study;    // name of the study that the claims are made on; empty: the built-in scenes
-  Settings conditions;  // of all checks, where they do not say else
+  int num_threads = 0;     // 0: one per core; the results do not depend on it
+  std::string study;       // name of the study that the claims are made on; empty: the built-in scenes
+  std::string study_yaml;  // that study in full
+  Settings conditions;     // of all checks, where they do not say else
 };
 
 struct Audit {

@@ -248,7 +248,8 @@ std::string AuditAsJson(const Audit& audit) {
                {"budget", BudgetName(audit.options.budget)},
                {"confidence_per_target", audit.confidence},
                {"num_targets", audit.num_targets},
-               {"study", audit.options.study}};
+               {"study", audit.options.study},
+               {"study_yaml", audit.options.study_yaml}};
   for (const auto& [key, value] : audit.options.conditions) json["default_conditions"][key] = value;
   json["claims"] = Json::array();
   for (size_t i = 0; i < audit.claims.size(); ++i) {

@@ -36,6 +36,7 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
   const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
   options->seed = plan.study.seed;
   options->study = plan.study.name;
+  options->study_yaml = plan.study_yaml;
   options->conditions = plan.study.data;
   return StudyClaims(plan);
 }
