@@ -83,10 +83,14 @@ std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector
   return selected;
 }
 
-Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
+Audit PlanAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   Audit audit{options, CountTargets(all), 0.0, SelectClaims(all, options.only), {}};
   audit.confidence = 1.0 - kAuditErrorRate / std::max(audit.num_targets, 1);
+  return audit;
+}
 
+Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
+  Audit audit = PlanAudit(all, options);
   const std::vector<double> work = WorkPerCheck(audit.claims, options);
   double total_work = 0.0;
   for (const double seconds : work) total_work += seconds;

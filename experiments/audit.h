@@ -12,10 +12,9 @@ struct AuditOptions {
   std::vector<std::string> only;  // ids or their beginnings ("inlier", "sigma_p.theta"); empty: all
   Budget budget = Budget::kQuick;
   std::uint64_t seed = 1;
-  int num_threads = 0;     // 0: one per core; the results do not depend on it
-  std::string study;       // name of the study that the claims are made on; empty: the built-in scenes
-  std::string study_yaml;  // that study in full
-  Settings conditions;     // of all checks, where they do not say else
+  int num_threads = 0;  // 0: one per core; the results do not depend on it
+  std::string study;    // name of the study that the claims are made on; empty: the built-in scenes
+  Settings conditions;  // of all checks, where they do not say else
 };
 
 struct Audit {
@@ -32,6 +31,9 @@ inline constexpr double kAuditErrorRate = 0.05;
 
 // The claims of `all` that `only` names. Throws InputError for a name that fits none.
 std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector<std::string>& only);
+
+// The selected claims of `all` and the confidence of their targets: what can be said before any trial.
+Audit PlanAudit(const std::vector<Claim>& all, const AuditOptions& options);
 
 // Decides the selected claims of `all`, each target at confidence 1 - kAuditErrorRate / num_targets
 // (Bonferroni), and shows progress. A claim's result does not depend on which others are run: its random

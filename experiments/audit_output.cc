@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/claims/power.h"
 #include "experiments/summary_output.h"
 
 namespace rcme {
@@ -38,6 +39,12 @@ std::string ClaimedInWords(const Target& target) {
   if (!target.IsClaimed()) return "-";
   return fmt::format("{:.4g} in [{:.4g}, {:.4g}]", target.nominal, target.allowed.lower,
                      target.allowed.upper);
+}
+
+// What the target can decide at the audit's budget; "-" where nothing is claimed.
+std::string PowerInWords(const Audit& audit, const Check& check, const Target& target) {
+  if (!target.IsClaimed()) return "-";
+  return FoundInWords(PowerOf(target, check.limits.Max(audit.options.budget), audit.confidence));
 }
 
 std::string VerdictInWords(const Claim& claim, const ClaimResult& result) {
@@ -86,8 +93,14 @@ Decisive DecisiveOf(const Claim& claim, const ClaimResult& result, size_t begin,
   return best;
 }
 
+Json PowerAsJson(const TargetPower& power) {
+  return {{"holds_at_nominal", Number(power.holds_at_nominal)},
+          {"found_outside", {Number(power.found.lower), Number(power.found.upper)}},
+          {"found_sigma_error_outside", {Number(power.found_sigma.lower), Number(power.found_sigma.upper)}}};
+}
+
 Json TargetAsJson(const Target& target, const TargetResult& result) {
-  const char* kind = target.kind == Target::Kind::kMean ? "mean" : "rate";
+  const char* kind = target.IsMean() ? "mean" : "rate";
   Json json = {{"quantity", target.quantity},
                {"kind", kind},
                {"nominal", Number(target.nominal)},
@@ -102,7 +115,18 @@ Json TargetAsJson(const Target& target, const TargetResult& result) {
   return json;
 }
 
-Json CheckAsJson(const Check& check, const CheckResult& result) {
+Json FifthsAsJson(const std::vector<DifficultyFifth>& fifths) {
+  Json json = Json::array();
+  for (const DifficultyFifth& fifth : fifths) {
+    json.push_back({{"bound_deg", {Number(fifth.easiest), Number(fifth.hardest)}},
+                    {"measured", Number(fifth.measured)},
+                    {"interval", {fifth.interval.lower, fifth.interval.upper}},
+                    {"n", fifth.n}});
+  }
+  return json;
+}
+
+Json CheckAsJson(const Audit& audit, const Check& check, const CheckResult& result) {
   Json json = {{"conditions", Json::object()},
                {"num_trials", result.num_trials},
                {"verdict", VerdictName(result.verdict)},
@@ -112,11 +136,15 @@ Json CheckAsJson(const Check& check, const CheckResult& result) {
   for (const auto& [key, value] : check.conditions) json["conditions"][key] = value;
   for (size_t t = 0; t < check.targets.size(); ++t) {
     json["targets"].push_back(TargetAsJson(check.targets[t], result.targets[t]));
+    if (!check.targets[t].IsClaimed()) continue;
+    json["targets"].back()["power"] =
+        PowerAsJson(PowerOf(check.targets[t], check.limits.Max(audit.options.budget), audit.confidence));
   }
+  if (!result.fifths.empty()) json["fifths_of_difficulty"] = FifthsAsJson(result.fifths);
   return json;
 }
 
-Json ClaimAsJson(const Claim& claim, const ClaimResult& result) {
+Json ClaimAsJson(const Audit& audit, const Claim& claim, const ClaimResult& result) {
   Json json = {{"id", claim.id},
                {"family", claim.family()},
                {"label", claim.label},
@@ -125,10 +153,11 @@ Json ClaimAsJson(const Claim& claim, const ClaimResult& result) {
                {"statistic", claim.statistic},
                {"verdict", Name(result.verdict)}};
   json["holds_up_to_sigma_px"] = result.holds_up_to_sigma_px ? Json(*result.holds_up_to_sigma_px) : Json();
+  json["holds_at_nominal"] = HoldsAtNominal(claim, audit.options.budget, audit.confidence);
   json["figure_x"] = claim.figure_x;
   json["evidence"] = Json::array();
   for (size_t c = 0; c < claim.checks.size(); ++c) {
-    json["evidence"].push_back(CheckAsJson(claim.checks[c], result.checks[c]));
+    json["evidence"].push_back(CheckAsJson(audit, claim.checks[c], result.checks[c]));
   }
   return json;
 }
@@ -139,14 +168,37 @@ std::string TrialsInWords(const TargetResult& target, const CheckResult& check) 
                                       : fmt::format("{} of {}", target.n, check.num_trials);
 }
 
-std::string ClaimAsMarkdown(const Claim& claim, const ClaimResult& result) {
+// The coverage by fifths of difficulty, the worst one named.
+std::string FifthsAsMarkdown(const Claim& claim, const ClaimResult& result) {
+  std::string text;
+  for (size_t c = 0; c < claim.checks.size(); ++c) {
+    const std::vector<DifficultyFifth>& fifths = result.checks[c].fifths;
+    if (fifths.empty()) continue;
+    const auto worst = std::ranges::min_element(fifths, {}, &DifficultyFifth::measured);
+    text += fmt::format(
+        "\n{}, {}, by the Cramer-Rao bound of the problem (root of the trace):\n\n"
+        "| fifth | bound (deg) | measured | n |\n|---|---|---|---|\n",
+        ConditionsInWords(claim.checks[c]), claim.checks[c].targets.front().quantity);
+    for (auto fifth = fifths.begin(); fifth != fifths.end(); ++fifth) {
+      text += fmt::format("| {}{} | {:.3g} to {:.3g} | {:.4g} [{:.4g}, {:.4g}] | {} |\n",
+                          fifth - fifths.begin() + 1, fifth == worst ? " (worst)" : "", fifth->easiest,
+                          fifth->hardest, fifth->measured, fifth->interval.lower, fifth->interval.upper,
+                          fifth->n);
+    }
+  }
+  return text;
+}
+
+std::string ClaimAsMarkdown(const Audit& audit, const Claim& claim, const ClaimResult& result) {
   std::string text =
       fmt::format("### {} ({})\n\n{}: \"{}.\" Measured: {}.\n\n**{}**\n\n", claim.id, claim.reading,
                   claim.label, claim.sentence, claim.statistic, VerdictInWords(claim, result));
-  text += "| conditions | quantity | claimed | measured | n | verdict |\n|---|---|---|---|---|---|\n";
+  text +=
+      "| conditions | quantity | claimed | found with p = 0.9 | measured | n | verdict "
+      "|\n|---|---|---|---|---|---|---|\n";
   for (size_t c = 0; c < claim.checks.size(); ++c) {
     if (!claim.checks[c].not_possible.empty()) {
-      text += fmt::format("| {} | | | | 0 | not possible: {} |\n", ConditionsInWords(claim.checks[c]),
+      text += fmt::format("| {} | | | | | 0 | not possible: {} |\n", ConditionsInWords(claim.checks[c]),
                           claim.checks[c].not_possible);
     }
     for (size_t t = 0; t < claim.checks[c].targets.size(); ++t) {
@@ -157,12 +209,13 @@ std::string ClaimAsMarkdown(const Claim& claim, const ClaimResult& result) {
                        ? fmt::format(" (about {:.2g} trials would do)", target.trials_to_decide)
                        : " (no number of trials may do)";
       }
-      text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", ConditionsInWords(claim.checks[c]),
+      text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", ConditionsInWords(claim.checks[c]),
                           claim.checks[c].targets[t].quantity, ClaimedInWords(claim.checks[c].targets[t]),
+                          PowerInWords(audit, claim.checks[c], claim.checks[c].targets[t]),
                           MeasuredInWords(target), TrialsInWords(target, result.checks[c]), verdict);
     }
   }
-  return text + "\n";
+  return text + FifthsAsMarkdown(claim, result) + "\n";
 }
 
 std::string ErrorStatement(const Audit& audit) {
@@ -227,17 +280,35 @@ std::string VerdictTableAsMarkdown(const Audit& audit) {
 
 }  // namespace
 
+std::string PlanAsTable(const Audit& plan) {
+  const Budget budget = plan.options.budget;
+  std::vector<std::vector<std::string>> rows = {
+      {"claim", "checks", "holds at nominal", "quantity", "claimed", "trials", "found with p = 0.9"}};
+  for (const Claim& claim : plan.claims) {
+    const Check& check = claim.checks.front();
+    const std::string holds = fmt::format("{:.3f}", HoldsAtNominal(claim, budget, plan.confidence));
+    for (const Target& target : check.targets) {
+      if (!target.IsClaimed()) continue;
+      rows.push_back({claim.id, fmt::format("{}", claim.checks.size()), holds, target.quantity,
+                      ClaimedInWords(target), fmt::format("{}", check.limits.Max(budget)),
+                      PowerInWords(plan, check, target)});
+    }
+  }
+  return fmt::format("Seed {}, budget {}. {}\n\n{}", plan.options.seed, BudgetName(budget),
+                     ErrorStatement(plan), FormatColumns(rows));
+}
+
 std::string AuditAsTable(const Audit& audit) {
   if (IsOnStudy(audit)) return FormatColumns(RowsPerCondition(audit)) + "\n" + ErrorStatement(audit) + "\n";
   std::vector<std::vector<std::string>> rows = {
-      {"claim", "verdict", "quantity", "sigma_px", "claimed", "measured", "n"}};
+      {"claim", "verdict", "quantity", "sigma_px", "claimed", "found (p = 0.9)", "measured", "n"}};
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
     const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
     rows.push_back({claim.id, VerdictInWords(claim, audit.results[i]), decisive.target->quantity,
                     fmt::format("{}", decisive.check->sigma_px.value_or(kAssertedSigmaPx)),
-                    ClaimedInWords(*decisive.target), MeasuredInWords(*decisive.result),
-                    fmt::format("{}", decisive.result->n)});
+                    ClaimedInWords(*decisive.target), PowerInWords(audit, *decisive.check, *decisive.target),
+                    MeasuredInWords(*decisive.result), fmt::format("{}", decisive.result->n)});
   }
   return FormatColumns(rows) + "\n" + ErrorStatement(audit) + "\n";
 }
@@ -248,12 +319,11 @@ std::string AuditAsJson(const Audit& audit) {
                {"budget", BudgetName(audit.options.budget)},
                {"confidence_per_target", audit.confidence},
                {"num_targets", audit.num_targets},
-               {"study", audit.options.study},
-               {"study_yaml", audit.options.study_yaml}};
+               {"study", audit.options.study}};
   for (const auto& [key, value] : audit.options.conditions) json["default_conditions"][key] = value;
   json["claims"] = Json::array();
   for (size_t i = 0; i < audit.claims.size(); ++i) {
-    json["claims"].push_back(ClaimAsJson(audit.claims[i], audit.results[i]));
+    json["claims"].push_back(ClaimAsJson(audit, audit.claims[i], audit.results[i]));
   }
   return json.dump(1) + "\n";
 }
@@ -270,7 +340,7 @@ std::string AuditAsMarkdown(const Audit& audit) {
       family = claim.family();
       text += fmt::format("\n## {0}\n\n![{0}](audit_{0}.png)\n\n", family);
     }
-    text += ClaimAsMarkdown(claim, audit.results[i]);
+    text += ClaimAsMarkdown(audit, claim, audit.results[i]);
   }
   return text;
 }

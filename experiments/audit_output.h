@@ -7,6 +7,11 @@
 
 namespace rcme {
 
+// What was laid down before the run: of each claimed quantity the range that counts as nominal, the trials of
+// the budget, the probability that the claim holds where everything is nominal, and the smallest departure
+// that is found with probability 0.9. Of a claim with several checks the first.
+std::string PlanAsTable(const Audit& plan);
+
 // One row per claim: its verdict and the number that decided it, with interval and n; on a study one per
 // claim and condition.
 std::string AuditAsTable(const Audit& audit);

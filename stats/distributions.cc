@@ -1,6 +1,8 @@
 #include "stats/distributions.h"
 
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -30,6 +32,15 @@ double NormalQuantile(double probability) {
 double NormalCdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
 double StudentQuantile(int degrees_of_freedom, double probability) {
   return boost::math::quantile(boost::math::students_t(degrees_of_freedom), probability);
+}
+double BinomialCdf(std::int64_t successes, std::int64_t n, double probability) {
+  if (successes < 0) return 0.0;
+  if (successes >= n) return 1.0;
+  return boost::math::cdf(boost::math::binomial(static_cast<double>(n), probability),
+                          static_cast<double>(successes));
+}
+double FisherCdf(int degrees_of_freedom_1, int degrees_of_freedom_2, double x) {
+  return boost::math::cdf(boost::math::fisher_f(degrees_of_freedom_1, degrees_of_freedom_2), x);
 }
 
 }  // namespace rcme

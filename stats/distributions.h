@@ -1,6 +1,8 @@
 // Quantiles and distribution functions of the reference laws, by Boost.Math.
 #pragma once
 
+#include <cstdint>
+
 namespace rcme {
 
 double ChiSquareQuantile(int degrees_of_freedom, double probability);
@@ -8,5 +10,9 @@ double ChiSquareCdf(int degrees_of_freedom, double x);
 double NormalQuantile(double probability);
 double NormalCdf(double x);
 double StudentQuantile(int degrees_of_freedom, double probability);
+// P(at most `successes` of n); 0 below none, 1 from n on.
+double BinomialCdf(std::int64_t successes, std::int64_t n, double probability);
+// Of the ratio of two independent chi-squares, each over its degrees of freedom.
+double FisherCdf(int degrees_of_freedom_1, int degrees_of_freedom_2, double x);
 
 }  // namespace rcme

@@ -10,10 +10,21 @@ namespace rcme {
 // of samples.
 TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made);
 
-// What a call says of the covariance it returns: NEES of the motion (NaN if none is returned,
-// infinite if what is returned is not valid), whether one is returned, whether it failed by the bounds.
+// What an answer says of the covariance it comes with:
+//   0  NEES of the motion. Infinite, and so not covered, for an answer that is not valid or whose NEES is not
+//      finite. NaN, and so not counted, for a refusal and for a motion beyond the failure bounds: how often a
+//      wrong motion is returned is a question of its own, answered by statistic 2.
+//   1  whether a motion is returned, valid or not
+//   2  whether it fails: not valid, or beyond the bounds
+//   3  whether it is not valid
+//   4  how hard the problem is: root of the trace of its Cramer-Rao bound, deg; NaN: it has none
+Outcome CovarianceStatistic(const TrialRecord& record, const Case& made,
+                            const FailureBounds& bounds = FailureBounds());
 Outcome ReportedCovarianceStatistic(const MotionEstimator& estimator, const Case& made,
                                     const FailureBounds& bounds = FailureBounds());
+inline constexpr size_t kDifficultyStatistic = 4;
+// The targets for it: coverage and mean PIT of statistic 0 are claimed, the rates are measured.
+std::vector<Target> ReportedCovarianceTargets();
 
 // Whether the call failed where a refusal ("Detect-fail") counts as no failure, and where it counts as one.
 bool FailsSilently(const TrialRecord& record);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "experiments/claims/design.h"
 #include "stats/coverage.h"
 #include "stats/distributions.h"
 
@@ -61,24 +62,26 @@ std::vector<Check> SigmaLadder(const std::vector<double>& sigmas_px, const Setti
 }
 
 std::vector<Target> CoverageTargets(int degrees_of_freedom, size_t statistic) {
-  constexpr double kMargin = 0.01, kAlphaOfMargin = 0.05;
+  constexpr double kFirstAlpha = 0.05;
   std::vector<Target> targets;
   for (const double alpha : Coverage::kSignificanceLevels) {
-    const double margin =
-        kMargin * std::sqrt(alpha * (1.0 - alpha) / (kAlphaOfMargin * (1.0 - kAlphaOfMargin)));
     Target target{fmt::format("coverage at alpha {}", alpha),
                   Target::Kind::kCoverage,
                   1.0 - alpha,
-                  Around(1.0 - alpha, margin),
+                  CoverageWithin(degrees_of_freedom, alpha, kCoverageTolerance),
                   ChiSquareQuantile(degrees_of_freedom, 1.0 - alpha),
-                  statistic};
-    targets.insert(alpha == kAlphaOfMargin ? targets.begin() : targets.end(), std::move(target));
+                  statistic,
+                  degrees_of_freedom};
+    targets.insert(alpha == kFirstAlpha ? targets.begin() : targets.end(), std::move(target));
   }
+  targets.push_back({"mean PIT", Target::Kind::kMeanPit, 0.5,
+                     MeanPitWithin(degrees_of_freedom, kMeanPitTolerance),
+                     std::numeric_limits<double>::quiet_NaN(), statistic, degrees_of_freedom});
   return targets;
 }
 
 Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic) {
-  return {quantity, Target::Kind::kCoverage, 1.0, {0.999, 1.0}, tolerance, statistic};
+  return {quantity, Target::Kind::kCoverage, 1.0, AllowedRate(1.0, kIdentity.margin), tolerance, statistic};
 }
 
 }  // namespace rcme

@@ -44,9 +44,9 @@ std::vector<Check> SigmaLadder(const std::vector<double>& sigmas_px, const Setti
                                const Statistic& statistic, const std::vector<Target>& targets,
                                const TrialLimits& limits);
 
-// Coverage of the 1 - alpha regions of a chi-square law at alpha = .5, .2, .1, .05, .01; alpha = .05 first.
-// What counts as nominal: +-0.01 at alpha = .05 and wider or narrower in proportion to the binomial deviation
-// there.
+// Coverage of the 1 - alpha regions of a chi-square law at alpha = .5, .2, .1, .05, .01, alpha = .05 first,
+// and the mean of its probability integral transform. What counts as nominal: what sigmas wrong by the
+// tolerances of design.h would do.
 std::vector<Target> CoverageTargets(int degrees_of_freedom, size_t statistic = 0);
 
 // An identity that holds in at least 999 of 1,000 trials: the statistic, a relative deviation, is within

@@ -6,6 +6,7 @@ Claim OnBuiltInScene(const CaseClaim& claim, const std::vector<Settings>& settin
   Claim on_scene = claim.words;
   for (const Settings& each : settings) {
     on_scene.checks.push_back(MakeCheck(each, claim.statistic, claim.targets, claim.limits));
+    on_scene.checks.back().difficulty_statistic = claim.difficulty_statistic;
   }
   return on_scene;
 }

@@ -27,6 +27,7 @@ struct CaseClaim {
   std::vector<Target> targets;
   TrialLimits limits;
   CaseNeeds needs;
+  std::optional<size_t> difficulty_statistic = std::nullopt;  // as of Check
 };
 
 // The claim on the built-in scene, one check for each of the settings.

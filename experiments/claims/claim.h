@@ -28,6 +28,8 @@ struct Target {
     kAtMost,    // share of trials with statistic <= threshold
     kRate,      // share of trials with statistic != 0
     kMean,      // mean of the statistic
+    kMeanPit,   // mean of F(statistic), F the chi-square law's distribution function; infinite or negative: 1
+    kBoundedMean,  // mean of a statistic in [range.lower, range.upper]
   };
   std::string quantity;
   Kind kind = Kind::kRate;
@@ -35,8 +37,14 @@ struct Target {
   // What still counts as nominal. Unbounded: nothing is claimed, the number is only measured.
   Interval allowed{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   double threshold = std::numeric_limits<double>::quiet_NaN();
-  size_t statistic = 0;  // index into the outcome
+  size_t statistic = 0;        // index into the outcome
+  int degrees_of_freedom = 0;  // of the chi-square law the statistic is claimed to have; 0: another law
+  Interval range{0.0, 1.0};
+  // What the design expects, for planning alone (power.h).
+  double planned_share = 1.0;
+  double planned_spread = std::numeric_limits<double>::quiet_NaN();
 
+  bool IsMean() const { return kind == Kind::kMean || kind == Kind::kMeanPit || kind == Kind::kBoundedMean; }
   bool IsClaimed() const { return std::isfinite(allowed.lower) || std::isfinite(allowed.upper); }
 };
 
@@ -67,7 +75,7 @@ inline Target MeasuredMean(const std::string& quantity, size_t statistic = 0) {
 enum class Budget { kQuick, kFull };
 
 // A check stops at its first verdict, not before `min` trials (so that the measured number is worth reading)
-// and not after the budget's. Means are looked at once, at the end.
+// and not after the budget's. Means without bounds are looked at once, at the end.
 struct TrialLimits {
   std::int64_t min = 0, quick = 0, full = 0;
   std::int64_t Max(Budget budget) const { return budget == Budget::kQuick ? quick : full; }
@@ -81,7 +89,10 @@ struct Check {
   TrialLimits limits;
   std::function<Outcome(const StreamName&)> trial;  // a pure function of the name
   std::string not_possible;  // why there are no trials (and then no targets either); empty: there are
-  bool is_timed = false;     // measures time: trials run one after the other, nothing beside them
+  // The statistic that says how hard a trial's problem is: the coverage of the first target is given by
+  // fifths of the trials in its order.
+  std::optional<size_t> difficulty_statistic;
+  bool is_timed = false;  // measures time: trials run one after the other, nothing beside them
 };
 
 struct Claim {

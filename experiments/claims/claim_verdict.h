@@ -7,16 +7,25 @@ namespace rcme {
 
 struct TargetResult {
   double measured = 0.0;
-  Interval interval;  // rates: anytime-valid; means: Student's at the one look
+  Interval interval;  // anytime-valid; of means without bounds: Student's at the one look
   std::int64_t n = 0;
   std::optional<Verdict> verdict;  // nothing: not claimed, only measured
   double trials_to_decide = 0.0;   // if undecided: about how many trials of the check would decide
 };
 
+// The coverage of a fifth of the trials, from those of the easiest problems to those of the hardest.
+struct DifficultyFifth {
+  double easiest = 0.0, hardest = 0.0;  // of its trials
+  double measured = 0.0;
+  Interval interval;
+  std::int64_t n = 0;
+};
+
 struct CheckResult {
   std::int64_t num_trials = 0;
   std::vector<TargetResult> targets;
-  std::optional<Verdict> verdict;  // of all targets together; nothing: none is claimed
+  std::optional<Verdict> verdict;       // of all targets together; nothing: none is claimed
+  std::vector<DifficultyFifth> fifths;  // of the first target; empty: the check has no difficulty
 };
 
 enum class ClaimVerdict { kHolds, kSmallNoiseOnly, kDoesNotHold, kUndecided, kMeasured, kNotPossible };

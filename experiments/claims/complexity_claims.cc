@@ -6,12 +6,11 @@
 
 #include "estimator/refinement/reprojection_mle.h"
 #include "experiments/claims/case.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
 
 namespace rcme {
 namespace {
-
-constexpr TrialLimits kRepetitions{20, 20, 100};
 
 // Slope of the least-squares line of log y over log x.
 double Exponent(const std::vector<double>& x, const std::vector<double>& y) {
@@ -69,10 +68,10 @@ Outcome LoopStatistic(Case& made) {
   return {Exponent(ns, times_n), Exponent(Ns, times_N)};
 }
 
-RefinedMotion Refine(const MotionProblem& problem, const RelativePose& start, double function_tolerance) {
+RefinedMotion Refine(const MotionProblem& problem, const RelativePose& start) {
   std::vector<int> indices(problem.matches.size());
   std::iota(indices.begin(), indices.end(), 0);
-  return RefineByReprojection(problem, indices, start, Loss::kSquared, function_tolerance);
+  return RefineByReprojection(problem, indices, start, Loss::kSquared);
 }
 
 // Exponent of the refinement's time in n, from a start 2 deg off.
@@ -82,25 +81,14 @@ Outcome RefinementStatistic(Case& made) {
   std::vector<double> times;
   for (const double n : ns) {
     const MotionProblem part = FirstMatches(made.problem(), n);
-    times.push_back(SecondsOf([&] { Refine(part, start, 1e-10); }));
+    times.push_back(SecondsOf([&] { Refine(part, start); }));
   }
   return {Exponent(ns, times)};
 }
 
-// Exponent of the refinement's iterations in 1 / eps, eps the relative decrease of the cost at which it
-// stops.
-Outcome IterationsStatistic(Case& made) {
-  const std::vector<double> inverse_tolerances = {1e2, 1e4, 1e6, 1e8, 1e10};
-  const RelativePose start = Retract(made.pose_true(), Vector5d::Constant(0.035 / std::sqrt(5.0)));
-  std::vector<double> counts;
-  for (const double inverse : inverse_tolerances) {
-    counts.push_back(Refine(made.problem(), start, 1.0 / inverse).num_iterations);
-  }
-  return {Exponent(inverse_tolerances, counts)};
-}
-
-Check TimedCheck(const char* num_matches, const Statistic& statistic, const std::vector<Target>& targets) {
-  Check check = MakeCheck({{"num_matches", num_matches}}, statistic, targets, kRepetitions);
+Check TimedCheck(const char* num_matches, const Statistic& statistic, const std::vector<Target>& targets,
+                 const CheckDesign& design) {
+  Check check = MakeCheck({{"num_matches", num_matches}}, statistic, targets, design.limits);
   check.is_timed = true;
   return check;
 }
@@ -109,31 +97,24 @@ Check TimedCheck(const char* num_matches, const Statistic& statistic, const std:
 
 std::vector<Claim> ComplexityClaims() {
   const char* kLabel = "Thm. complexity";
-  return {
-      {"complexity.loop",
-       kLabel,
-       "pRCME as printed: every sample is scored",
-       "The loop takes O(N n): exponents 1 and 1 (within 0.15)",
-       "slope of log time over log n (N = 50) and over log N (n = 500)",
-       "",
-       {TimedCheck("2000", LoopStatistic,
-                   {ClaimedMean("exponent in n", 1.0, Around(1.0, 0.15), 0),
-                    ClaimedMean("exponent in N", 1.0, Around(1.0, 0.15), 1)})}},
-      {"complexity.refinement",
-       kLabel,
-       "bundle adjustment, Schur complement",
-       "The refinement takes O(n^3): exponent 3 (within 0.3)",
-       "slope of log time over log n",
-       "",
-       {TimedCheck("1600", RefinementStatistic, {ClaimedMean("exponent in n", 3.0, Around(3.0, 0.3), 0)})}},
-      {"complexity.iterations",
-       kLabel,
-       "Levenberg-Marquardt",
-       "The refinement needs at most O(1 / eps^2) iterations: an exponent of at most 2",
-       "slope of log iterations over log 1 / eps, eps = 1e-2 to 1e-10",
-       "",
-       {MakeCheck({{"num_matches", "200"}}, IterationsStatistic,
-                  {ClaimedMean("exponent in 1 / eps", 2.0, {-2.0, 2.0}, 0)}, {100, 500, 5'000})}}};
+  return {{"complexity.loop",
+           kLabel,
+           "pRCME as printed: every sample is scored",
+           "The loop takes O(N n): exponents 1 and 1 (within 0.15)",
+           "slope of log time over log n (N = 50) and over log N (n = 500)",
+           "",
+           {TimedCheck("2000", LoopStatistic,
+                       {PlannedMean("exponent in n", 1.0, kLoopExponent, 0),
+                        PlannedMean("exponent in N", 1.0, kLoopExponent, 1)},
+                       kLoopExponent)}},
+          {"complexity.refinement",
+           kLabel,
+           "bundle adjustment, Schur complement",
+           "The refinement takes O(n^3): exponent 3 (within 0.3)",
+           "slope of log time over log n",
+           "",
+           {TimedCheck("1600", RefinementStatistic, {PlannedMean("exponent in n", 3.0, kRefinementExponent)},
+                       kRefinementExponent)}}};
 }
 
 }  // namespace rcme

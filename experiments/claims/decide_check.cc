@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "experiments/for_each_index.h"
+#include "stats/bounded_mean.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
@@ -14,13 +15,29 @@ namespace {
 // A confidence sequence needs about this many times the trials of an interval of fixed n (equivalence.h).
 constexpr double kPriceOfLooking = 2.5;
 
+bool HasSequenceOfMean(const Target& target) {
+  return target.kind == Target::Kind::kMeanPit || target.kind == Target::Kind::kBoundedMean;
+}
+
+double InUnitRange(const Target& target, double value) {
+  if (target.kind == Target::Kind::kBoundedMean) {
+    return (value - target.range.lower) / (target.range.upper - target.range.lower);
+  }
+  return value >= 0.0 && std::isfinite(value) ? ChiSquareCdf(target.degrees_of_freedom, value) : 1.0;
+}
+
 // The trials of one target, counted.
 struct Tally {
-  Moments moments;  // of the statistic; of an indicator for rates
+  Moments moments;      // of the statistic; of an indicator for rates
+  BoundedMean bounded;  // where its sequence is asked for
   std::int64_t num_successes = 0;
 
   void Add(const Target& target, double value) {
     if (std::isnan(value)) return;
+    if (HasSequenceOfMean(target)) {
+      bounded.Add(InUnitRange(target, value));
+      return;
+    }
     if (target.kind == Target::Kind::kCoverage) value = value >= 0.0 && value <= target.threshold;
     if (target.kind == Target::Kind::kAtMost) value = value <= target.threshold;
     if (target.kind == Target::Kind::kRate) value = value != 0.0;
@@ -36,33 +53,70 @@ Interval StudentInterval(const Moments& moments, double confidence) {
   return Around(moments.mean(), quantile * moments.standard_error());
 }
 
-// Trials of the check until a mean's interval fits between the estimate and the nearest border.
-double TrialsToDecideMean(const Moments& moments, const Interval& interval, const Interval& allowed) {
-  const double gap =
-      std::min(std::abs(moments.mean() - allowed.lower), std::abs(moments.mean() - allowed.upper));
-  const double half_width = 0.5 * (interval.upper - interval.lower);
-  return static_cast<double>(moments.n()) * half_width * half_width / (gap * gap);
-}
-
-TargetResult Look(const Target& target, const Tally& tally, std::int64_t num_trials, double confidence,
-                  bool is_last) {
-  const bool is_mean = target.kind == Target::Kind::kMean;
+// n, the measured number and its interval.
+TargetResult Measure(const Target& target, const Tally& tally, double confidence) {
   TargetResult result;
+  if (HasSequenceOfMean(target)) {
+    const Interval sequence = tally.bounded.Sequence(confidence);
+    const double low = target.range.lower, size = target.range.upper - low;
+    result.n = tally.bounded.n();
+    result.measured = low + size * tally.bounded.mean();
+    result.interval = {low + size * sequence.lower, low + size * sequence.upper};
+    return result;
+  }
+  const bool is_mean = target.kind == Target::Kind::kMean;
   result.n = tally.moments.n();
   result.measured = is_mean ? tally.moments.mean()
                             : static_cast<double>(tally.num_successes) / static_cast<double>(result.n);
   result.interval = is_mean ? StudentInterval(tally.moments, confidence)
                             : ConfidenceSequence(tally.num_successes, result.n, confidence);
+  return result;
+}
+
+// Trials of the check until a mean's interval fits between the estimate and the nearest border.
+double TrialsToDecideMean(const TargetResult& result, const Interval& allowed) {
+  const double gap =
+      std::min(std::abs(result.measured - allowed.lower), std::abs(result.measured - allowed.upper));
+  const double half_width = 0.5 * (result.interval.upper - result.interval.lower);
+  return static_cast<double>(result.n) * half_width * half_width / (gap * gap);
+}
+
+TargetResult Look(const Target& target, const Tally& tally, std::int64_t num_trials, double confidence,
+                  bool is_last) {
+  TargetResult result = Measure(target, tally, confidence);
   if (!target.IsClaimed()) return result;
-  result.verdict =
-      is_mean && !is_last ? Verdict::kUndecided : DecideEquivalence(result.interval, target.allowed);
+  const bool must_wait = target.kind == Target::Kind::kMean && !is_last;
+  result.verdict = must_wait ? Verdict::kUndecided : DecideEquivalence(result.interval, target.allowed);
   if (result.verdict == Verdict::kUndecided && result.n > 0) {
     const double outcomes =
-        is_mean ? TrialsToDecideMean(tally.moments, result.interval, target.allowed)
-                : kPriceOfLooking * TrialsToDecide(result.measured, target.allowed, confidence);
+        target.IsMean() ? TrialsToDecideMean(result, target.allowed)
+                        : kPriceOfLooking * TrialsToDecide(result.measured, target.allowed, confidence);
     result.trials_to_decide = outcomes * static_cast<double>(num_trials) / static_cast<double>(result.n);
   }
   return result;
+}
+
+// How hard a trial's problem was, and whether the first target's statistic covered.
+struct RatedTrial {
+  double difficulty;
+  bool is_covered;
+};
+
+std::vector<DifficultyFifth> Fifths(std::vector<RatedTrial> trials, double confidence) {
+  constexpr size_t kParts = 5;
+  std::ranges::stable_sort(trials, {}, &RatedTrial::difficulty);
+  std::vector<DifficultyFifth> fifths;
+  for (size_t part = 0; part < kParts && trials.size() >= kParts; ++part) {
+    const auto begin = trials.begin() + static_cast<std::ptrdiff_t>(part * trials.size() / kParts);
+    const auto end = trials.begin() + static_cast<std::ptrdiff_t>((part + 1) * trials.size() / kParts);
+    const std::int64_t num_covered =
+        std::count_if(begin, end, [](const RatedTrial& t) { return t.is_covered; });
+    const std::int64_t n = end - begin;
+    fifths.push_back({begin->difficulty, (end - 1)->difficulty,
+                      static_cast<double>(num_covered) / static_cast<double>(n),
+                      ConfidenceSequence(num_covered, n, confidence), n});
+  }
+  return fifths;
 }
 
 std::vector<Outcome> RunTrials(const Check& check, const CheckRun& run, std::int64_t begin,
@@ -87,6 +141,7 @@ CheckResult DecideCheck(const Check& check, const CheckRun& run) {
     return target.kind == Target::Kind::kMean && target.IsClaimed();
   });
   CheckResult result;
+  std::vector<RatedTrial> rated;
   bool is_decided = false;
   do {
     const std::int64_t begin = result.num_trials;
@@ -96,6 +151,11 @@ CheckResult DecideCheck(const Check& check, const CheckRun& run) {
       for (size_t t = 0; t < tallies.size(); ++t) {
         tallies[t].Add(check.targets[t], outcome.at(check.targets[t].statistic));
       }
+      if (!check.difficulty_statistic) continue;
+      const Target& first = check.targets.front();
+      const double difficulty = outcome.at(*check.difficulty_statistic), value = outcome.at(first.statistic);
+      if (std::isnan(value) || std::isnan(difficulty)) continue;
+      rated.push_back({difficulty, value >= 0.0 && value <= first.threshold});
     }
     result.num_trials = end;
     result.targets.clear();
@@ -107,6 +167,7 @@ CheckResult DecideCheck(const Check& check, const CheckRun& run) {
     result.verdict = Together(verdicts);
     is_decided = !claims_mean && result.verdict && *result.verdict != Verdict::kUndecided;
   } while (result.num_trials < max_trials && !(is_decided && result.num_trials >= check.limits.min));
+  result.fifths = Fifths(std::move(rated), run.confidence);
   return result;
 }
 

@@ -14,9 +14,9 @@ struct CheckRun {
 };
 
 // Trials run in batches whose ends do not depend on the number of threads and are counted in their order: the
-// result is a pure function of the check and the run. After each batch the rates are looked at through
-// confidence sequences, so that looking often does not inflate errors; means are looked at once, after the
-// last trial of the budget, and a check that claims a mean runs to there.
+// result is a pure function of the check and the run. After each batch rates and bounded means are looked at
+// through confidence sequences, so that looking often does not inflate errors; other means are looked at
+// once, after the last trial of the budget, and a check that claims one runs to there.
 // A check that is not possible has no trials and no results.
 CheckResult DecideCheck(const Check& check, const CheckRun& run);
 

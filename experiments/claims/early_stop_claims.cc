@@ -1,6 +1,6 @@
 #include "experiments/claims/call_estimator.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 
 namespace rcme {
 namespace {
@@ -26,11 +26,12 @@ Claim EarlyStopClaim(const std::string& id, const std::string& name, Reading rea
           "hypotheses not drawn; trials in which only the early one fails or refuses",
           "outlier_ratio",
           {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.3"}}, statistic,
-                     {ClaimedRate("only the early one fails", 0.0, {0.0, 0.01}, 0),
-                      ClaimedMean("share of hypotheses saved", 1.0, {0.1, 1.0}, 1),
+                     {PlannedRate("only the early one fails", 0.0, kEarlyStopCost, 0),
+                      PlannedBoundedMean("share of hypotheses saved", 1.0, {0.1, 1.0}, {0.0, 1.0},
+                                         kEarlyStopSaving, 1),
                       MeasuredRate("all hypotheses: fails or is refused", 2),
                       MeasuredRate("early stop: fails or is refused", 3)},
-                     kManyEstimatorCalls)}};
+                     kEarlyStopCost.limits)}};
 }
 
 }  // namespace

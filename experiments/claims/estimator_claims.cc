@@ -1,27 +1,25 @@
 #include "experiments/claims/calibration.h"
 #include "experiments/claims/call_estimator.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 
 namespace rcme {
 
 CaseClaim EstimatorCalibration(const std::string& label, const std::string& reading,
                                std::shared_ptr<const MotionEstimator> estimator,
                                const FailureBounds& bounds) {
-  std::vector<Target> targets = CoverageTargets(5);
-  targets.push_back(MeasuredRate("returns a motion", 1));
-  targets.push_back(MeasuredRate("fails", 2));
   return {{"estimator.coverage." + label,
            "Sec. model selection, MLE",
            reading,
-           "The covariance that comes with a returned motion is that of its error",
-           "NEES of the returned motion, chi2_5",
+           "The covariance that comes with a motion within the failure bounds is that of its error",
+           "NEES of the motions that are no failures, chi2_5; an answer that is not valid does not cover",
            "outlier_ratio",
            {}},
           [estimator, bounds](Case& made) { return ReportedCovarianceStatistic(*estimator, made, bounds); },
-          targets,
-          {800, 800, 60'000},
-          {.num_true_matches = 0, .matches = MatchesOf::kPair}};
+          ReportedCovarianceTargets(),
+          kEstimatorCoverage.limits,
+          {.num_true_matches = 0, .matches = MatchesOf::kPair},
+          kDifficultyStatistic};
 }
 
 std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators) {

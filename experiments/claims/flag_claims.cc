@@ -1,6 +1,6 @@
 #include "experiments/claims/call_estimator.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 
 namespace rcme {
 namespace {
@@ -19,16 +19,15 @@ Outcome FlagStatistic(const MotionEstimator& estimator, const Case& made) {
 }  // namespace
 
 std::vector<Claim> FlagClaims() {
-  const std::vector<Target> targets = {
-      ClaimedRate("sensitivity: failures that are flagged", 1.0, {0.9, 1.0}, 0),
-      ClaimedRate("specificity: good motions that are not", 1.0, {0.9, 1.0}, 1),
-      MeasuredRate("failures of the estimator", 2)};
+  const std::vector<Target> targets = {PlannedRate("sensitivity: failures that are flagged", 1.0, kFlag, 0),
+                                       PlannedRate("specificity: good motions that are not", 1.0, kFlag, 1),
+                                       MeasuredRate("failures of the estimator", 2)};
   std::shared_ptr<const MotionEstimator> standard = FindEstimator("standard").make(RansacOptions());
   std::vector<Check> checks;
   for (const char* outlier_ratio : {"0.4", "0.5"}) {
     checks.push_back(MakeCheck(
         {{"scene", "uniform_volume"}, {"num_matches", "200"}, {"outlier_ratio", outlier_ratio}},
-        [standard](Case& made) { return FlagStatistic(*standard, made); }, targets, kEstimatorCalls));
+        [standard](Case& made) { return FlagStatistic(*standard, made); }, targets, kFlag.limits));
   }
   return {{"flag.kappa", "eq::metric", "standard, kappa = 0.5",
            "n*_I / n_I <= kappa tells the failed motions from the good ones (9 of 10 of either)",

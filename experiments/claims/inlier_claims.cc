@@ -1,8 +1,8 @@
 #include "estimator/uncertainty/as_printed.h"
 #include "estimator/uncertainty/sampson_covariance.h"
 #include "experiments/claims/calibration.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
 
 namespace rcme {
@@ -43,7 +43,7 @@ Check UntunedCheck(const PointReading& reading) {
                              {"image_width", "800"},
                              {"image_height", "600"}};
   return MakeCheck(settings, TruePoseStatistic(reading.distance), CoverageTargets(reading.degrees_of_freedom),
-                   {1'000'000, 1'000'000, 1'000'000});
+                   kUntunedCoverage.limits);
 }
 
 CaseClaim MakeClaim(const std::string& point, const char* label, const PointReading& reading,
@@ -57,7 +57,7 @@ CaseClaim MakeClaim(const std::string& point, const char* label, const PointRead
            {}},
           statistic,
           CoverageTargets(reading.degrees_of_freedom),
-          kMicroseconds,
+          kSampleCoverage.limits,
           needs};
 }
 

@@ -5,15 +5,15 @@
 #include "estimator/refinement/reprojection_mle.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "experiments/claims/calibration.h"
+#include "experiments/claims/cramer_rao.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 #include "experiments/covariance_score.h"
 
 namespace rcme {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr TrialLimits kRefinements{1'000, 2'000, 60'000};
 
 using Refine = RefinedMotion (*)(const MotionProblem& problem, const RelativePose& start);
 
@@ -42,18 +42,11 @@ Statistic NeesStatistic(Refine refine) {
   };
 }
 
-// NEES of the optimum under the Cramer-Rao bound: the inverse information at the true motion and the exact
-// points.
+// NEES of the optimum under the Cramer-Rao bound.
 Statistic CramerRaoStatistic(Refine refine) {
   return [refine](Case& made) -> Outcome {
-    const MotionProblem& problem = made.problem();
-    std::vector<Correspondence> exact;
-    for (const Eigen::Vector3d& point : made.scene.points_in_cam1) {
-      exact.push_back({problem.camera1.Project(point), problem.camera2.Project(made.scene.InCamera2(point))});
-    }
-    const std::optional<Matrix5d> bound = FirstOrderMotionCovariance(
-        made.pose_true(), problem.camera1, problem.camera2, exact, problem.sigma_px);
-    const std::optional<RefinedMotion> refined = FitAll(problem, refine);
+    const std::optional<Matrix5d> bound = CramerRaoBound(made);
+    const std::optional<RefinedMotion> refined = FitAll(made.problem(), refine);
     if (!refined || !bound) return {kInfinity};
     return {NormalizedErrorOfPose(refined->cam2_from_cam1, *bound, made.pose_true())};
   };
@@ -73,16 +66,16 @@ CaseClaim MakeClaim(const std::string& id, const std::string& reading, const std
 std::vector<CaseClaim> MleCalibration() {
   const std::string reported = "The covariance that maximum likelihood reports is that of its error";
   return {MakeClaim("reprojection", "reprojection error, motion and points", reported,
-                    NeesStatistic(RefineReprojection), kRefinements),
+                    NeesStatistic(RefineReprojection), kReprojectionCoverage.limits),
           MakeClaim("sampson", "Sampson error, motion alone", reported, NeesStatistic(RefineAllBySampson),
-                    kMicroseconds)};
+                    kSampleCoverage.limits)};
 }
 
 std::vector<Claim> MleClaims() {
   std::vector<CaseClaim> all = MleCalibration();
   all.push_back(MakeClaim("cramer_rao", "Sampson error, motion alone",
                           "Maximum likelihood reaches the Cramer-Rao bound",
-                          CramerRaoStatistic(RefineAllBySampson), kMicroseconds));
+                          CramerRaoStatistic(RefineAllBySampson), kSampleCoverage.limits));
   // On a hundred matches: the validity map shows where first order breaks with fewer.
   std::vector<Claim> claims;
   for (const CaseClaim& claim : all) {

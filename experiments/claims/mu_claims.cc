@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "estimator/solvers/five_point.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 #include "experiments/claims/model_entropy.h"
 #include "stats/area_under_curve.h"
 #include "stats/distributions.h"
@@ -27,10 +27,10 @@ Check SeparationCheck(Reading reading) {
   RansacOptions options;
   options.reading = reading;
   Check check = MakeCheck(kPair, nullptr,
-                          {ClaimedRate("AUC: a good model has the lower psi", 1.0, {0.9, 1.0}, 0),
-                           ClaimedRate("good models that pass", 1.0, {0.9, 1.0}, 1),
-                           ClaimedRate("contaminated models that pass", 0.0, {0.0, 0.1}, 2)},
-                          kMicroseconds);
+                          {PlannedRate("AUC: a good model has the lower psi", 1.0, kPowerOfTest, 0),
+                           PlannedRate("good models that pass", 1.0, kPowerOfTest, 1),
+                           PlannedRate("contaminated models that pass", 0.0, kPowerOfTest, 2)},
+                          kPowerOfTest.limits);
   check.trial = [cases = SimulatedCases(kPair), options](StreamName name) -> Outcome {
     name.trial *= 2;
     Case first = cases(name);
@@ -61,7 +61,7 @@ Check RocCheck(SampleKind kind, const std::vector<double>& thresholds) {
   Check check = MakeCheck(
       kPair,
       [kind](Case& made) -> Outcome { return {MeanEntropyOrInfinity(ScoreOf<PointTest>(kind, made))}; },
-      targets, {0, 4'000, 40'000});
+      targets, kRoc.limits);
   check.conditions.emplace_back("models", kind == SampleKind::kGood ? "good" : "contaminated");
   return check;
 }
@@ -122,10 +122,10 @@ Claim SolverClaim() {
   };
   Check check =
       MakeCheck(kPair, nullptr,
-                {ClaimedRate("the five-point model has the higher psi", 0.5, {0.4, 0.6}, 0),
+                {PlannedRate("the five-point model has the higher psi", 0.5, kSameLaw, 0),
                  pass_at(2, "eight-point", 1), pass_at(4, "eight-point", 1), pass_at(6, "eight-point", 1),
                  pass_at(2, "five-point", 2), pass_at(4, "five-point", 2), pass_at(6, "five-point", 2)},
-                kMicroseconds);
+                kPowerOfTest.limits);
   check.trial = [cases = SimulatedCases(kPair)](StreamName name) -> Outcome {
     name.trial *= 2;
     Case first = cases(name);

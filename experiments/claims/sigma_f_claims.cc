@@ -3,8 +3,8 @@
 #include "estimator/solvers/five_point.h"
 #include "estimator/uncertainty/as_printed.h"
 #include "experiments/claims/calibration.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
 #include "experiments/covariance_score.h"
 
@@ -88,7 +88,7 @@ std::vector<CaseClaim> SigmaFCalibration() {
             {}},
            NeesStatistic,
            CoverageTargets(8),
-           kMicroseconds,
+           kSampleCoverage.limits,
            {}},
           {{"sigma_f.exact",
             kLabel,
@@ -99,7 +99,7 @@ std::vector<CaseClaim> SigmaFCalibration() {
             {}},
            ExactNeesStatistic,
            CoverageTargets(5),
-           kMicroseconds,
+           kSampleCoverage.limits,
            {.num_true_matches = 5}}};
 }
 
@@ -114,7 +114,7 @@ std::vector<Claim> SigmaFClaims() {
        "largest relative deviation of an entry, at most 1e-5",
        "",
        {MakeCheck(kSample, PrintedFormulaStatistic, {IdentityTarget("share within 1e-5", 1e-5)},
-                  kMicroseconds)}},
+                  kIdentity.limits)}},
       {"sigma_f.basis_first_axis",
        kLabel,
        "reflection onto the first axis",
@@ -122,7 +122,7 @@ std::vector<Claim> SigmaFClaims() {
        "largest |A'f|, at most 1e-12",
        "",
        {MakeCheck(kSample, NormalBasisStatistic(0), {IdentityTarget("share within 1e-12", 1e-12)},
-                  kMicroseconds)}},
+                  kIdentity.limits)}},
       {"sigma_f.basis_last_axis",
        kLabel,
        "reflection onto the last axis",
@@ -130,7 +130,7 @@ std::vector<Claim> SigmaFClaims() {
        "largest |A'f|, at most 1e-12",
        "",
        {MakeCheck(kSample, NormalBasisStatistic(8), {IdentityTarget("share within 1e-12", 1e-12)},
-                  kMicroseconds)}},
+                  kIdentity.limits)}},
       AtNoiseLevels(calibration[1], kNoiseLadderPx, {{"num_matches", "5"}}),
       {"sigma_f.exact_inverse",
        kLabel,
@@ -139,7 +139,7 @@ std::vector<Claim> SigmaFClaims() {
        "eigenvalues of the 9x9 matrix above 1e-12 of the largest",
        "",
        {MakeCheck({{"num_matches", "5"}}, ExactInverseStatistic,
-                  {ClaimedRate("share that has an inverse", 1.0, {0.999, 1.0})}, kMicroseconds)}},
+                  {PlannedRate("share that has an inverse", 1.0, kIdentity)}, kIdentity.limits)}},
   };
 }
 

@@ -3,8 +3,8 @@
 #include "estimator/uncertainty/motion_covariance.h"
 #include "estimator/uncertainty/svd_differential.h"
 #include "experiments/claims/calibration.h"
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 #include "experiments/claims/sample_statistics.h"
 #include "experiments/covariance_score.h"
 
@@ -55,7 +55,7 @@ std::vector<CaseClaim> SigmaPCalibration() {
              {}},
             nees,
             CoverageTargets(5),
-            kMicroseconds,
+            kSampleCoverage.limits,
             {}};
   };
   return {claim("sigma_p.theta", "pseudo-inverse of dTheta/dp", NeesStatistic(ThetaJacobian)),
@@ -74,8 +74,8 @@ std::vector<Claim> SigmaPClaims() {
        "eigenvalues above 1e-13 of the largest",
        "",
        {MakeCheck(kSample, RankStatistic,
-                  {ClaimedRate("share of rank 7", 1.0, {0.999, 1.0}, 1), MeasuredRate("share of rank 5")},
-                  kMicroseconds)}},
+                  {PlannedRate("share of rank 7", 1.0, kIdentity, 1), MeasuredRate("share of rank 5")},
+                  kIdentity.limits)}},
   };
 }
 

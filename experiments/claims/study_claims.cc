@@ -26,13 +26,6 @@ std::vector<CaseClaim> CalibrationOf(const StudyPlan& plan) {
   return all;
 }
 
-// The factor that a figure has along x: of a full factorial design the one with the most levels. Empty: none.
-std::string FigureX(const Study& study) {
-  if (study.design != Design::kFullFactorial || study.factors.empty()) return {};
-  const auto num_levels = [](const Factor& factor) { return factor.levels.size(); };
-  return std::ranges::max_element(study.factors, {}, num_levels)->key;
-}
-
 // A condition of the study, with the first of its trials for a look at what they hold.
 struct ConditionCases {
   Settings levels;  // factor, level
@@ -76,6 +69,7 @@ Check CheckOn(const ConditionCases& cases, const CaseClaim& claim) {
   if (!check.not_possible.empty()) return check;
   check.targets = claim.targets;
   check.limits = claim.limits;
+  check.difficulty_statistic = claim.difficulty_statistic;
   const Outcome nothing(NumStatistics(claim.targets), kNaN);
   check.trial = [make = cases.make, statistic = claim.statistic, needs = claim.needs,
                  nothing](const StreamName& name) {
@@ -95,7 +89,7 @@ std::vector<Claim> StudyClaims(const StudyPlan& plan) {
   std::vector<Claim> claims;
   for (const CaseClaim& claim : calibration) {
     claims.push_back(claim.words);
-    claims.back().figure_x = FigureX(plan.study);
+    claims.back().figure_x = plan.factor_names.size() == 1 ? plan.factor_names.front() : "";
   }
   for (const Condition& condition : plan.conditions) {
     const ConditionCases cases = CasesOf(plan, condition);

@@ -1,7 +1,7 @@
 #include <cmath>
 
+#include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/claims/limits.h"
 #include "experiments/claims/model_entropy.h"
 #include "stats/distributions.h"
 
@@ -47,8 +47,8 @@ Claim SizeClaim(const char* id, const char* reading, QualityTest quality_test, c
           "",
           {MakeCheck({{"num_matches", std::to_string(kSampleSize + kNumTested + kNumForMean)}},
                      SizeStatistic<PointTest>(quality_test),
-                     {ClaimedRate("share of models that pass", 0.05, Around(0.05, 0.03))},
-                     {1'000, 6'000, 40'000})}};
+                     {PlannedRate("share of models that pass", 0.05, kQualityTestLevel)},
+                     kQualityTestLevel.limits)}};
 }
 
 // Whether the psi of two good models of one scene differ by less than 1.96 of their standard errors
@@ -71,16 +71,17 @@ Outcome SpreadStatistic(Case& made) {
 
 template <typename PointTest>
 Claim SpreadClaim(const char* id, const char* reading) {
-  return {id,
-          "Sec. inlier_qual_test",
-          reading,
-          "s / sqrt(n) is the standard error of psi: two all-inlier models of a scene differ by less than "
-          "1.96 of its "
-          "kind in 95 %",
-          "|psi_j - psi_k| against 1.96 sqrt(s_j^2 / n_j + s_k^2 / n_k)",
-          "",
-          {MakeCheck({{"num_matches", "100"}}, SpreadStatistic<PointTest>,
-                     {ClaimedRate("share of pairs within 1.96", 0.95, Around(0.95, 0.02))}, kMilliseconds)}};
+  return {
+      id,
+      "Sec. inlier_qual_test",
+      reading,
+      "s / sqrt(n) is the standard error of psi: two all-inlier models of a scene differ by less than "
+      "1.96 of its "
+      "kind in 95 %",
+      "|psi_j - psi_k| against 1.96 sqrt(s_j^2 / n_j + s_k^2 / n_k)",
+      "",
+      {MakeCheck({{"num_matches", "100"}}, SpreadStatistic<PointTest>,
+                 {PlannedRate("share of pairs within 1.96", 0.95, kStandardError)}, kStandardError.limits)}};
 }
 
 }  // namespace

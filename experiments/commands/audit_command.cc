@@ -14,6 +14,7 @@
 #include "experiments/file_output.h"
 #include "experiments/message.h"
 #include "experiments/stop_request.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -23,6 +24,7 @@ struct AuditArguments {
   StudyChanges changes;
   std::vector<std::string> only;
   std::string budget = "quick", out;
+  bool only_plan = false;
   int threads = 0;
 };
 
@@ -36,7 +38,6 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
   const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
   options->seed = plan.study.seed;
   options->study = plan.study.name;
-  options->study_yaml = plan.study_yaml;
   options->conditions = plan.study.data;
   return StudyClaims(plan);
 }
@@ -48,6 +49,12 @@ void RunAuditCommand(const AuditArguments& arguments) {
   options.budget = arguments.budget == "full" ? Budget::kFull : Budget::kQuick;
   options.num_threads = arguments.threads;
   const std::vector<Claim> all = ClaimsOf(arguments, &options);
+  if (arguments.only_plan) {
+    fmt::print("{}", PlanAsTable(PlanAudit(all, options)));
+    return;
+  }
+  if (arguments.out.empty())
+    throw InputError("--out is missing: the folder for the results (or ask for --plan)");
   SelectClaims(all, options.only);
   MakeResultFolder(arguments.out);
   const Audit audit = RunAudit(all, options);
@@ -76,6 +83,7 @@ void AddAuditCommand(CLI::App& app) {
       "  rcme audit --out audit                                   all claims, at most a few minutes\n"
       "  rcme audit --only inlier,sigma_p.theta --out audit       a family and one claim\n"
       "  rcme audit --budget full --seed 2 --out audit            narrow intervals, other random streams\n"
+      "  rcme audit --plan                                        margins, trials and power, without a run\n"
       "\n"
       "On a study of your own (your cameras, your noise, your outliers, your estimators) it checks the "
       "claims "
@@ -99,7 +107,9 @@ void AddAuditCommand(CLI::App& app) {
       ->add_option("--budget", arguments->budget, "quick (minutes) or full (up to hours; says so beforehand)")
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
-  command->add_option("-o,--out", arguments->out, "folder for the results; made if missing")->required();
+  command->add_option("-o,--out", arguments->out, "folder for the results; made if missing");
+  command->add_flag("--plan", arguments->only_plan,
+                    "only print the plan: margins, trials, and what each claim finds with probability 0.9");
   AddStudyOptions(command, &arguments->changes);
   command
       ->add_option("--threads", arguments->threads,

@@ -8,6 +8,7 @@
 #include "experiments/audit_output.h"
 #include "experiments/claims/case.h"
 #include "experiments/claims/claim_table.h"
+#include "experiments/claims/design.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/expect_input_error.h"
@@ -23,7 +24,7 @@ Claim GaussianClaim(const std::string& id, int degrees_of_freedom) {
   Check check;
   check.conditions = {{"sigma_px", "0.5"}};
   check.targets = CoverageTargets(degrees_of_freedom);
-  check.limits = {0, 60'000, 60'000};
+  check.limits = {0, kSampleCoverage.limits.quick, kSampleCoverage.limits.quick};
   check.trial = [degrees_of_freedom](const StreamName& name) -> Outcome {
     RandomStream rng(name);
     double sum = 0.0;
@@ -48,7 +49,7 @@ std::vector<Claim> GaussianClaims() {
 
 TEST(Audit, ACorrectGaussianEstimatorPassesAtTheStatedErrorRate) {
   CoverageCount alarms, all_hold;
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     AuditOptions options;
     options.seed = seed;
     bool is_alarm = false, holds = true;
@@ -79,7 +80,7 @@ TEST(Audit, AClaimsResultDoesNotDependOnTheOthersThatAreRun) {
   some.only = {"gauss.b2"};
   const Audit whole = RunAudit(GaussianClaims(), all), part = RunAudit(GaussianClaims(), some);
   ASSERT_EQ(part.claims.size(), 1);
-  EXPECT_EQ(part.num_targets, 50);
+  EXPECT_EQ(part.num_targets, 60);
   EXPECT_EQ(part.confidence, whole.confidence);
   for (size_t i = 0; i < whole.claims.size(); ++i) {
     if (whole.claims[i].id != "gauss.b2") continue;
@@ -103,21 +104,48 @@ TEST(AuditOutput, SaysEverythingOfAClaim) {
   const Audit audit = RunAudit(GaussianClaims(), options);
   const auto json = nlohmann::json::parse(AuditAsJson(audit));
   EXPECT_EQ(json["format"], "rcme audit 1");
-  EXPECT_EQ(json["num_targets"], 50);
+  EXPECT_EQ(json["num_targets"], 60);
   const auto& claim = json["claims"].at(0);
   EXPECT_EQ(claim["id"], "gauss.a1");
   EXPECT_EQ(claim["family"], "gauss");
   EXPECT_EQ(claim["verdict"], "holds");
   const auto& evidence = claim["evidence"].at(0);
   EXPECT_EQ(evidence["conditions"]["sigma_px"], "0.5");
-  EXPECT_EQ(evidence["targets"].size(), 5);
+  EXPECT_EQ(evidence["targets"].size(), 6);
   const auto& target = evidence["targets"].at(0);
   EXPECT_EQ(target["quantity"], "coverage at alpha 0.05");
   EXPECT_EQ(target["nominal"], 0.95);
   EXPECT_LT(target["interval"].at(0), target["measured"]);
   EXPECT_EQ(target["n"], evidence["num_trials"]);
+  EXPECT_GT(target["power"]["holds_at_nominal"], 0.9);
+  EXPECT_LT(target["power"]["found_outside"].at(0), target["low"]);
+  EXPECT_GT(claim["holds_at_nominal"], 0.9);
   EXPECT_NE(AuditAsTable(audit).find("gauss.a1"), std::string::npos);
   EXPECT_NE(AuditAsMarkdown(audit).find("| gauss.a1 |"), std::string::npos);
+}
+
+TEST(AuditOutput, NamesTheWorstFifthOfDifficulty) {
+  Claim claim = GaussianClaim("gauss.a1", 1);
+  claim.checks[0].limits = {1'000, 1'000, 1'000};
+  claim.checks[0].difficulty_statistic = 1;
+  claim.checks[0].trial = [](const StreamName& name) -> Outcome {
+    const bool is_hardest = name.trial % 5 == 0;
+    return {is_hardest ? 100.0 : 0.1, is_hardest ? 9.0 : 0.001 * name.trial};
+  };
+  const Audit audit = RunAudit({claim}, {});
+  const std::vector<DifficultyFifth>& fifths = audit.results[0].checks[0].fifths;
+  ASSERT_EQ(fifths.size(), 5);
+  EXPECT_EQ(fifths[4].measured, 0.0);
+  EXPECT_EQ(fifths[4].easiest, 9.0);
+  EXPECT_EQ(fifths[3].measured, 1.0);
+  EXPECT_EQ(fifths[0].n, 200);
+  EXPECT_NE(AuditAsMarkdown(audit).find("| 5 (worst) | 9 to 9 | 0 "), std::string::npos);
+}
+
+TEST(PlanAsTable, SaysWhatIsFoundBeforeAnyTrial) {
+  const std::string table = PlanAsTable(PlanAudit(GaussianClaims(), {}));
+  EXPECT_NE(table.find("gauss.b5"), std::string::npos);
+  EXPECT_NE(table.find("sigma off by"), std::string::npos);
 }
 
 // The table of claims itself.

@@ -99,6 +99,32 @@ TEST(DecideCheck, KindsCountWhatTheySay) {
   EXPECT_EQ(result.num_trials, 64);
 }
 
+// Of five trials that yield 0, 1, 2, infinity, -1 and NaN.
+TEST(DecideCheck, MeanPitCountsWhatIsNoNumberOfTheLawAsBeyondIt) {
+  Target pit = MeasuredMean("mean PIT");
+  pit.kind = Target::Kind::kMeanPit;
+  pit.degrees_of_freedom = 2;  // F(x) = 1 - exp(-x / 2)
+  Target bounded = MeasuredMean("difference", 1);
+  bounded.kind = Target::Kind::kBoundedMean;
+  bounded.range = {-1.0, 1.0};
+  Check check;
+  check.targets = {pit, bounded};
+  check.limits = {6, 6, 6};
+  const std::vector<double> values = {0.0, 1.0, 2.0, std::numeric_limits<double>::infinity(), -1.0, kNaN};
+  check.trial = [values](const StreamName& name) -> Outcome {
+    return {values[name.trial], name.trial == 0 ? -1.0 : 1.0};
+  };
+  const CheckResult result = DecideCheck(check, {});
+  constexpr double kHalfBin = 1.0 / 256.0;
+  EXPECT_EQ(result.targets[0].n, 5);
+  EXPECT_NEAR(result.targets[0].measured,
+              (0.0 + 1.0 - std::exp(-0.5) + 1.0 - std::exp(-1.0) + 1.0 + 1.0) / 5.0, kHalfBin);
+  EXPECT_EQ(result.targets[1].n, 6);
+  EXPECT_NEAR(result.targets[1].measured, 4.0 / 6.0, 2.0 * kHalfBin);
+  EXPECT_GE(result.targets[1].interval.lower, -1.0);
+  EXPECT_LT(result.targets[1].interval.lower, result.targets[1].measured);
+}
+
 TEST(DecideCheck, MeansAreLookedAtOnceAtTheEnd) {
   Check check;
   check.limits = {0, 1'000, 1'000};

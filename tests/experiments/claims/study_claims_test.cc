@@ -91,7 +91,6 @@ TEST(StudyClaims, HaveOneCheckPerConditionNamedByItsLevels) {
   for (const Claim& claim : claims) {
     EXPECT_TRUE(ids.insert(claim.id).second) << claim.id;
     ASSERT_EQ(claim.checks.size(), 4) << claim.id;
-    EXPECT_EQ(claim.figure_x, "outlier_ratio");  // the factor with the most levels, the first of equals
     EXPECT_EQ(claim.checks[1].conditions, (Settings{{"outlier_ratio", "0"}, {"sigma_px", "1"}})) << claim.id;
     for (const Check& check : claim.checks) {
       EXPECT_EQ(check.not_possible, "") << claim.id;
