@@ -33,11 +33,6 @@ class PairCounts {
         cells_(num_conditions_ * num_estimators_ * TrialEvents().size()) {}
 
   void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
-    if (problem.condition >= num_conditions_ || records.size() != num_estimators_) {
-      throw InputError(
-          fmt::format("the result file is damaged at condition {}, trial {}: a trial is not whole",
-                      problem.condition, problem.trial));
-    }
     ++num_trials_;
     is_weighted_ = is_weighted_ || problem.weight != 1.0;
     for (size_t v = 0; v < TrialEvents().size(); ++v) {

@@ -35,7 +35,7 @@ struct Comparison {
 };
 
 // One pass over the raw trials, in constant memory. `reference` is a label of the study; empty: its first.
-// Throws InputError if the study has no such label, or a trial in the file is not whole.
+// Throws InputError if the study has no such label.
 Comparison Compare(const ResultStore& store, const std::string& reference);
 
 }  // namespace rcme

@@ -57,6 +57,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddSummarizeCommand(app);
   AddCompareCommand(app);
   AddReportCommand(app);
+  AddCheckCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);
   AddTuneCommand(app);

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "experiments/for_each_index.h"
+#include "experiments/message.h"
 #include "experiments/progress.h"
 #include "experiments/stop_request.h"
 
@@ -108,6 +109,10 @@ class RecordBuffer {
 RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
   const Clock::time_point start = Clock::now();
   const TrialsToRun trials(plan, store);
+  if (trials.size() > 0) {
+    const std::string warning = store->NoteOrigin(ThisProgram());
+    if (!warning.empty()) PrintMessage("warning: {}\n", warning);
+  }
   Progress progress("trials", plan.NumTrials(), plan.NumTrials() - trials.size());
   RecordBuffer buffer(store);
   std::atomic<std::int64_t> num_done = plan.NumTrials() - trials.size();

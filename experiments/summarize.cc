@@ -1,14 +1,11 @@
 #include "experiments/summarize.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
 
-#include "parameters/input_error.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
@@ -258,11 +255,6 @@ Summary Summarize(const ResultStore& store, bool with_times) {
   const Accumulator<TrialRecord> empty(TrialQuantities());
   std::vector<Cell> cells(plan.conditions.size(), Cell{std::vector(num_estimators, empty)});
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
-    if (problem.condition >= cells.size() || records.size() != num_estimators) {
-      throw InputError(
-          fmt::format("the result file is damaged: condition {}, trial {} does not fit its study",
-                      problem.condition, problem.trial));
-    }
     ++summary.num_trials_done;
     Cell& cell = cells[problem.condition];
     cell.problems.Add(problem, problem.weight, plan.study.failure);

@@ -16,6 +16,7 @@ void AddAuditCommand(CLI::App& app);
 void AddSummarizeCommand(CLI::App& app);
 void AddCompareCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);
+void AddCheckCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
 void AddShowCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);

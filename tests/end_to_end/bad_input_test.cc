@@ -395,6 +395,7 @@ TEST(Help, IsThereForEveryCommand) {
                                                   {"summarize"},
                                                   {"compare"},
                                                   {"report"},
+                                                  {"check"},
                                                   {"replay"},
                                                   {"show"},
                                                   {"estimate"},

@@ -176,15 +176,6 @@ TEST_F(CompareTest, ABadLabelNamesWhatIsAllowed) {
                                {"--against", "'rcme'", "'small'", "allowed: standard, ours"}));
 }
 
-TEST_F(CompareTest, ATrialThatIsNotWholeIsDamage) {
-  Write("last", {{"ss", 1}, {"s", 1}});
-  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("last"); }, {"damaged", "condition 0", "trial 1"}));
-  Write("first", {{"s", 1}, {"ss", 1}});
-  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("first"); }, {"damaged", "condition 0", "trial 0"}));
-  Write("three", {{"sss", 1}});
-  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("three"); }, {"damaged", "not whole"}));
-}
-
 TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
   const Comparison comparison = ComparisonOf("run");

@@ -21,7 +21,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using Trials = std::vector<std::uint32_t>;
 
-// Both estimators' records of one trial, no two numbers alike.
+// Both estimators' records of one trial, no two numbers alike, all within what their columns may hold.
 std::vector<TrialRecord> RecordsOfTrial(std::uint32_t condition, std::uint32_t trial) {
   std::vector<TrialRecord> records;
   for (std::uint32_t estimator = 0; estimator < 2; ++estimator) {
@@ -30,7 +30,7 @@ std::vector<TrialRecord> RecordsOfTrial(std::uint32_t condition, std::uint32_t t
     VisitFields(record, [&]([[maybe_unused]] const char* name, auto& field) {
       using Field = std::decay_t<decltype(field)>;
       if constexpr (std::is_same_v<Field, double>) {
-        field = ++next + 1.0 / 3.0;
+        field = (++next + 1.0 / 3.0) / 1e6;
       } else if constexpr (std::is_same_v<Field, int>) {
         field = ++next;
       }
@@ -42,6 +42,13 @@ std::vector<TrialRecord> RecordsOfTrial(std::uint32_t condition, std::uint32_t t
     record.failed_by_kappa = estimator == 1;
     records.push_back(record);
   }
+  return records;
+}
+
+// Both estimators' records of a trial, alike.
+std::vector<TrialRecord> Twice(const TrialRecord& record) {
+  std::vector<TrialRecord> records(2, record);
+  records[1].estimator = 1;
   return records;
 }
 
@@ -128,7 +135,7 @@ TEST_F(ResultStoreTest, UnknownNumbersAreNull) {
   record.nees = std::numeric_limits<double>::infinity();
   {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);
-    AddRecords(store, {record});
+    AddRecords(store, Twice(record));
   }
   EXPECT_EQ(Query(path_, "SELECT rotation_error_deg FROM trials"), "NULL");
   EXPECT_EQ(Query(path_, "SELECT count(*) FROM trials WHERE direction_error_deg IS NULL"), "0");
@@ -146,7 +153,7 @@ TEST_F(ResultStoreTest, EveryStatusComesBack) {
     TrialRecord record;
     record.trial = trial++;
     record.status = status;
-    AddRecords(store, {record});
+    AddRecords(store, Twice(record));
   }
   trial = 0;
   for (const MotionStatus status : AllStatuses()) EXPECT_EQ(store.RecordsOf(0, trial++).at(0).status, status);
@@ -170,6 +177,32 @@ TEST_F(ResultStoreTest, AddsWholeTrialsOnce) {
   ResultStore store = ResultStore::OpenForRun(path_, plan_);
   AddRecords(store, RecordsOfTrial(0, 0));
   EXPECT_TRUE(ThrowsInputError([&] { AddRecords(store, RecordsOfTrial(0, 0)); }, {path_}));
+}
+
+// What is no whole trial of the study is not taken: a file of it would be refused ever after.
+TEST_F(ResultStoreTest, AddsNothingButWholeTrials) {
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  std::vector<TrialRecord> one(1), three(3), swapped = RecordsOfTrial(0, 0);
+  std::swap(swapped[0], swapped[1]);
+  for (const auto& records : {one, three, swapped, RecordsOfTrial(2, 0)}) {
+    EXPECT_THROW(AddRecords(store, records), std::logic_error);
+  }
+  EXPECT_THROW(store.Add({ProblemRecord()}, RecordsOfTrial(0, 1)), std::logic_error);
+  EXPECT_EQ(Missing(store, 0, 2), (Trials{0, 1}));
+}
+
+TEST_F(ResultStoreTest, ASecondOriginIsNotedAndWarnedOf) {
+  ResultStore store = ResultStore::OpenForRun(path_, plan_);
+  EXPECT_EQ(store.NoteOrigin({"rcme 1", "AVX2"}), "") << "no trial is of another origin yet";
+  AddRecords(store, RecordsOfTrial(0, 0));
+  EXPECT_EQ(store.NoteOrigin({"rcme 1", "AVX2"}), "");
+  const std::string warning = store.NoteOrigin({"rcme 1", "AVX-512"});
+  for (const std::string& part : {path_, std::string("AVX2"), std::string("AVX-512")}) {
+    EXPECT_NE(warning.find(part), std::string::npos) << warning;
+  }
+  EXPECT_EQ(store.Origin().program, "rcme 1");
+  EXPECT_EQ(store.Origin().instruction_set, "AVX2, AVX-512");
+  EXPECT_NE(store.NoteOrigin({"rcme 1", "AVX2"}), "") << "a part of the trials is of another";
 }
 
 TEST_F(ResultStoreTest, ACallThatFailsLeavesNothing) {
@@ -281,7 +314,8 @@ TEST_F(ResultStoreTest, RefusesFilesOfOthers) {
   const std::string later = folder_.Path("later.sqlite");
   { ResultStore::OpenForRun(later, plan_); }
   Query(later, "UPDATE run SET value = 'rcme results 99' WHERE key = 'format'");
-  EXPECT_TRUE(RefusesToRun(later, {"rcme results 3"}));
+  EXPECT_TRUE(RefusesToRun(later, {"another version", "'rcme results 99'", "'rcme results 4'"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(later); }, {later, "another version"}));
 }
 
 TEST_F(ResultStoreTest, PathsThatCannotBeWritten) {

@@ -15,7 +15,6 @@
 #include "experiments/summary_output.h"
 #include "stats/confidence_sequence.h"
 #include "tests/test_support/add_records.h"
-#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -256,13 +255,6 @@ TEST_F(SummarizeTest, RowsAreComplete) {
   EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
   for (const SummaryRow& row : SummaryOf("run").rows)
     EXPECT_NE(row.quantity, "time_ms") << "times were not asked for";
-}
-
-TEST_F(SummarizeTest, ARecordOutsideOfTheStudyIsDamage) {
-  TrialRecord record = Motion(0, 1.0, 1.0, 1.0);
-  record.condition = 2;
-  Write("damaged", {record});
-  EXPECT_TRUE(ThrowsInputError([&] { SummaryOf("damaged"); }, {"damaged", "condition 2"}));
 }
 
 TEST_F(SummarizeTest, UnknownTruthIsNotCounted) {

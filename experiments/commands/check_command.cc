@@ -1,0 +1,173 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "experiments/commands/commands.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/result_file/salvage.h"
+#include "experiments/summary_output.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMaxRanges = 8, kMaxConditions = 40;  // printed
+
+struct CheckArguments {
+  std::string run, save_good, study;
+  StudyChanges changes;  // of that study
+};
+
+// "3, 17-23, ...": the trials of a condition that are not sound, to the last that is known of.
+std::string NotSoundText(const SalvagedCondition& condition, std::int64_t num_planned) {
+  const std::int64_t last = condition.sound.empty() ? 0 : condition.sound.back().end;
+  const std::int64_t end = std::max({last, condition.num_counted.value_or(0), num_planned});
+  std::vector<std::string> ranges;
+  std::int64_t next = 0;
+  const auto add_until = [&](std::int64_t first_sound) {
+    if (next + 1 == first_sound) ranges.push_back(fmt::format("{}", next));
+    if (next + 1 < first_sound) ranges.push_back(fmt::format("{}-{}", next, first_sound - 1));
+  };
+  for (const TrialRange& range : condition.sound) {
+    add_until(range.first);
+    next = range.end;
+  }
+  add_until(end);
+  const size_t num_more = ranges.size() - std::min(ranges.size(), kMaxRanges);
+  ranges.resize(ranges.size() - num_more);
+  return fmt::format("{}{}", fmt::join(ranges, ", "),
+                     num_more > 0 ? fmt::format(" and {} more", num_more) : "");
+}
+
+std::string DamageAsTable(const StudyPlan& plan, const std::vector<SalvagedCondition>& conditions) {
+  std::vector<std::vector<std::string>> rows = {
+      {"condition", "sound", "counted", "damaged, lost or not run"}};
+  size_t num_more = 0;
+  for (size_t c = 0; c < conditions.size(); ++c) {
+    const SalvagedCondition& condition = conditions[c];
+    if (condition.num_sound == condition.num_counted) continue;
+    num_more += rows.size() > kMaxConditions;
+    if (rows.size() > kMaxConditions) continue;
+    const std::string counted =
+        condition.num_counted ? fmt::format("{}", *condition.num_counted) : "not known";
+    rows.push_back({fmt::format("{}", c), fmt::format("{}", condition.num_sound), counted,
+                    NotSoundText(condition, plan.conditions[c].num_trials)});
+  }
+  const std::string more = num_more > 0 ? fmt::format("... and {} more conditions\n", num_more) : "";
+  return rows.size() > 1 ? FormatColumns(rows) + more : "";
+}
+
+// Sound trials on their way into a new result file, many at a time.
+class SoundTrials {
+ public:
+  explicit SoundTrials(ResultStore* store) : store_(store) {}
+
+  void Add(const StoredTrial& trial) {
+    problems_.push_back(trial.problem);
+    records_.insert(records_.end(), trial.records.begin(), trial.records.end());
+    if (problems_.size() >= kBatch) Flush();
+  }
+  void Flush() {
+    store_->Add(problems_, records_);
+    problems_.clear();
+    records_.clear();
+  }
+
+ private:
+  static constexpr size_t kBatch = 1000;
+  ResultStore* store_;
+  std::vector<ProblemRecord> problems_;
+  std::vector<TrialRecord> records_;
+};
+
+std::vector<SalvagedCondition> SaveGood(Salvage* salvage, const std::string& out) {
+  if (std::filesystem::exists(out))
+    throw InputError(fmt::format("--save-good: {} exists already; give the path of a new file", out));
+  ResultStore store = ResultStore::OpenForRun(out, salvage->plan());
+  store.NoteOrigin(salvage->origin());
+  if (!salvage->stopping_rule().empty()) store.NoteStoppingRule(salvage->stopping_rule());
+  SoundTrials trials(&store);
+  std::vector<SalvagedCondition> conditions =
+      salvage->ForEachSoundTrial([&](const StoredTrial& trial) { trials.Add(trial); });
+  trials.Flush();
+  store.Commit();
+  return conditions;
+}
+
+void PrintSound(const std::string& run, const ResultStore& store) {
+  const TrialOrigin origin = store.Origin();
+  fmt::print("{}: sound: {} trials, every checksum is right; of {} ({})\n", run, store.NumTrials(),
+             origin.program.empty() ? "a program not noted" : origin.program,
+             origin.instruction_set.empty() ? "instruction set not noted" : origin.instruction_set);
+}
+
+// Reports, and saves what is asked for; throws the error again if that was nothing.
+void ReportDamage(const CheckArguments& arguments, const InputError& error) {
+  std::optional<Study> study;
+  if (!arguments.study.empty()) study = LoadChangedStudy(arguments.study, arguments.changes);
+  Salvage salvage(arguments.run, study);
+  const std::vector<SalvagedCondition> conditions = arguments.save_good.empty()
+                                                        ? salvage.ForEachSoundTrial([](const StoredTrial&) {})
+                                                        : SaveGood(&salvage, arguments.save_good);
+  std::int64_t num_sound = 0;
+  for (const SalvagedCondition& condition : conditions) num_sound += condition.num_sound;
+  fmt::print("{}: damaged; {} trials are sound\n", arguments.run, num_sound);
+  for (const std::string& finding : salvage.findings()) fmt::print("  {}\n", finding);
+  fmt::print("{}", DamageAsTable(salvage.plan(), conditions));
+  if (arguments.save_good.empty()) {
+    const bool is_study_lost = num_sound == 0 && arguments.study.empty();
+    fmt::print(
+        "Next: rcme check {} --save-good NEW.sqlite{}, then rcme run its study with --out NEW.sqlite\n",
+        arguments.run, is_study_lost ? " --study ITS_STUDY.yaml" : "");
+    throw error;
+  }
+  fmt::print("{}: {} trials saved; `rcme run` of the study with --out {} adds the others\n",
+             arguments.save_good, num_sound, arguments.save_good);
+}
+
+void Check(const CheckArguments& arguments) {
+  try {
+    const ResultStore store = ResultStore::OpenForReading(arguments.run);
+    PrintSound(arguments.run, store);
+  } catch (const DamagedFileError& error) {
+    ReportDamage(arguments, error);
+  } catch (const InputError& error) {
+    if (arguments.study.empty()) throw;
+    ReportDamage(arguments, error);  // it does not look like a result file, but is said to be one
+  }
+}
+
+}  // namespace
+
+void AddCheckCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("check", "Is a result file sound? If not: what is damaged, and what can be saved");
+  command->footer(
+      "Every command checks the result file that it reads, and refuses a damaged one: the tables and their\n"
+      "columns, the type and range of every number, one record per estimator in every trial, a checksum\n"
+      "(CRC-32) per trial, and per condition how many trials there are and the sum of their checksums.\n"
+      "This command goes on where those stop. It names the trials that are not sound; with --save-good it\n"
+      "writes the sound ones to a new file, which `rcme run` then completes: a trial is a function of the\n"
+      "study, its seed and its number, so that the result is the same as if nothing had happened.\n"
+      "The exit code is 0 for a sound file and where the sound trials were saved, 2 for a damaged one.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme check run.sqlite\n"
+      "  rcme check run.sqlite --save-good saved.sqlite\n"
+      "  rcme run study.yaml --out saved.sqlite                     the trials that were lost\n"
+      "  rcme check run.sqlite --study study.yaml --save-good saved.sqlite    where the study in the file is "
+      "damaged");
+  auto arguments = std::make_shared<CheckArguments>();
+  command->add_option("run", arguments->run, "result file of `rcme run`")->required();
+  command->add_option("--save-good", arguments->save_good,
+                      "write the sound trials of a damaged file to this new file");
+  command->add_option("--study", arguments->study,
+                      "study file (YAML) of the run, where what the file says of it is damaged too");
+  AddStudyOptions(command, &arguments->changes);
+  command->callback([arguments] { Check(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,44 @@
+// What each condition holds in all, in the table `totals`. It is written together with the trials, so that
+// one that is lost or was put there by someone else is noticed.
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <cstdint>
+#include <set>
+#include <vector>
+
+namespace rcme {
+
+struct TrialTotal {
+  std::int64_t num_trials = 0;
+  std::int64_t checksum = 0;  // sum of the trials' checksums: in whatever order they were added
+
+  void Add(std::uint32_t trial_checksum) {
+    ++num_trials;
+    checksum += trial_checksum;
+  }
+  bool operator==(const TrialTotal&) const = default;
+};
+
+class TrialTotals {
+ public:
+  // Throws Damage if the rows are not those of conditions 0, 1, 2, ...
+  static TrialTotals Read(SQLite::Database& database);
+  // Writes a row of zeros for each condition; the table is empty.
+  static TrialTotals Write(SQLite::Database& database, size_t num_conditions);
+
+  size_t num_conditions() const { return totals_.size(); }
+  const TrialTotal& Of(size_t condition) const { return totals_[condition]; }
+  std::int64_t NumTrials() const;
+
+  void Add(std::uint32_t condition, std::uint32_t trial_checksum);
+  // Writes the rows that have changed since.
+  void WriteChanged(SQLite::Database& database);
+
+ private:
+  std::vector<TrialTotal> totals_;
+  std::set<std::uint32_t> changed_;
+};
+
+}  // namespace rcme

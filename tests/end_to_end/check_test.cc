@@ -1,0 +1,99 @@
+// Damaged result files as a user meets them: every command refuses, `rcme check` says what is wrong and saves
+// the rest, `rcme run` completes it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/result_store.h"
+#include "tests/test_support/run_program.h"
+#include "tests/test_support/small_study.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class Check : public testing::Test {
+ protected:
+  Check() {
+    EXPECT_EQ(RunRcme({"run", study_, "--out", run_, "--trials", "40", "--threads", "1"}).exit_code, 0);
+    csv_ = Csv(run_);
+  }
+  static std::string Csv(const std::string& run) {
+    return RunRcme({"summarize", run, "--format", "csv"}).out;
+  }
+
+  TempFolder folder_;
+  std::string study_ = folder_.Write("small.yaml", SmallStudyYaml());
+  std::string run_ = folder_.Path("run.sqlite"), saved_ = folder_.Path("saved.sqlite"), csv_;
+};
+
+TEST_F(Check, EveryCommandRefusesADamagedFile) {
+  std::string bytes = ReadBytes(run_);
+  bytes[bytes.size() - 100] = static_cast<char>(bytes[bytes.size() - 100] ^ 1);  // in the last record written
+  folder_.Write("run.sqlite", bytes);
+  for (std::vector<std::string> command :
+       std::vector<std::vector<std::string>>{{"summarize", run_},
+                                             {"compare", run_},
+                                             {"report", run_, "--out", folder_.Path("page.html")},
+                                             {"replay", run_, "--condition", "0", "--trial", "0"},
+                                             {"show", run_, "--condition", "0", "--trial", "0"},
+                                             {"run", study_, "--out", run_},
+                                             {"run", study_, "--out", run_, "--until", "ci=0.3"},
+                                             {"check", run_}}) {
+    const ProgramResult result = RunRcme(command);
+    EXPECT_EQ(result.exit_code, 2) << command[0] << ": " << result.err;
+    EXPECT_THAT(result.err, HasSubstr(run_)) << command[0];
+    EXPECT_THAT(result.err, HasSubstr("damaged")) << command[0];
+    EXPECT_THAT(result.err, HasSubstr("rcme check")) << command[0];
+  }
+  EXPECT_EQ(ReadBytes(run_), bytes) << "a refusal changed the file";
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("page.html")));
+}
+
+TEST_F(Check, SavesWhatIsSoundAndTheRunIsCompleted) {
+  {
+    const ProgramResult sound = RunRcme({"check", run_});
+    EXPECT_EQ(sound.exit_code, 0) << sound.err;
+    EXPECT_THAT(sound.out, HasSubstr("sound: 80 trials"));
+    EXPECT_THAT(sound.out, HasSubstr("rcme "));
+  }
+  std::string bytes = ReadBytes(run_);
+  const size_t page = bytes.size() - 4096;  // a leaf of the records
+  bytes.replace(page, 4096, 4096, '\0');
+  folder_.Write("run.sqlite", bytes);
+  const ProgramResult found = RunRcme({"check", run_});
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.out, HasSubstr("trials are sound"));
+  EXPECT_THAT(found.out, HasSubstr("damaged, lost or not run"));
+  EXPECT_THAT(found.out, HasSubstr("--save-good"));
+  const ProgramResult saved = RunRcme({"check", run_, "--save-good", saved_});
+  EXPECT_EQ(saved.exit_code, 0) << saved.err;
+  EXPECT_EQ(RunRcme({"check", run_, "--save-good", saved_}).exit_code, 2) << "replaced a file";
+  EXPECT_EQ(RunRcme({"check", saved_}).exit_code, 0);
+  const ProgramResult completed = RunRcme({"run", study_, "--out", saved_, "--trials", "40"});
+  EXPECT_EQ(completed.exit_code, 0) << completed.err;
+  EXPECT_THAT(completed.err, Not(HasSubstr("(0 were there already)")));
+  EXPECT_EQ(Csv(saved_), csv_);
+}
+
+TEST_F(Check, AnotherInstructionSetIsWarnedOf) {
+  {
+    ResultStore store = ResultStore::OpenForRun(run_, MakePlan(SmallStudy()));
+    store.NoteOrigin({ThisProgram().program, "abacus"});
+  }
+  const ProgramResult more = RunRcme({"run", study_, "--out", run_, "--trials", "41"});
+  EXPECT_EQ(more.exit_code, 0) << more.err;
+  EXPECT_THAT(more.err, HasSubstr("warning: " + run_));
+  EXPECT_THAT(more.err, HasSubstr("abacus"));
+  EXPECT_THAT(more.err, HasSubstr(ThisProgram().instruction_set));
+  EXPECT_THAT(RunRcme({"check", run_}).out, HasSubstr(ThisProgram().instruction_set + ", abacus"));
+  EXPECT_THAT(RunRcme({"run", study_, "--out", run_}).err, Not(HasSubstr("warning"))) << "nothing was run";
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,158 @@
+// Result files changed by hand, through SQL: every column, rows, tables.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/fuzz/damaged_result_file.h"
+#include "tests/test_support/expect_input_error.h"
+
+namespace rcme {
+namespace {
+
+class ChangedResultFile : public DamagedResultFile {
+ protected:
+  // The sound file after some SQL; false if SQLite refuses it.
+  bool Change(const std::string& sql) { return Execute(Write(*bytes_), sql); }
+};
+
+TEST_F(ChangedResultFile, TheSoundOneIsRead) {
+  Write(*bytes_);
+  EXPECT_EQ(Read("sound"), Outcome::kSame);
+  EXPECT_EQ(Resume("sound"), Outcome::kSame);
+  EXPECT_EQ(SaveAndComplete("sound"), 2 * kTrials);
+}
+
+// Every value of every column of one trial replaced, by every type and by numbers out of range.
+TEST_F(ChangedResultFile, EveryColumnOfEveryTable) {
+  const std::vector<std::string> values = {"'text'", "x'00ff'", "NULL", "-1", "3", "1e300", "9e18", "0.5"};
+  std::vector<std::pair<std::string, std::string>> columns = {
+      // table and rows, column
+      {"run WHERE key = 'study'", "value"},
+      {"run WHERE key = 'identity'", "value"},
+      {"run WHERE key = 'format'", "value"},
+      {"run WHERE key = 'checksum'", "value"},
+      {"run WHERE key = 'study'", "key"},
+      {"conditions WHERE condition = 1", "factor"},
+      {"conditions WHERE condition = 1", "level"},
+      {"conditions WHERE condition = 1", "condition"},
+      {"estimators WHERE estimator = 1", "label"},
+      {"estimators WHERE estimator = 1", "estimator"},
+      {"totals WHERE condition = 1", "condition"},
+      {"totals WHERE condition = 1", "num_trials"},
+      {"totals WHERE condition = 1", "checksum"},
+      {"problems WHERE condition = 1 AND trial = 3", "checksum"}};
+  TrialRecord record;
+  VisitFields(record, [&](const std::string& name, const auto&) {
+    columns.emplace_back("trials WHERE condition = 1 AND trial = 3 AND estimator = 1", name);
+  });
+  ProblemRecord problem;
+  VisitProblemFields(problem, [&](const std::string& name, const auto&) {
+    columns.emplace_back("problems WHERE condition = 1 AND trial = 3", name);
+  });
+  int num_refused = 0, num_same = 0, num_impossible = 0;
+  for (const auto& [rows, column] : columns) {
+    const size_t space = rows.find(' ');
+    for (const std::string& value : values) {
+      const std::string sql =
+          fmt::format("UPDATE {} SET {} = {}{}", rows.substr(0, space), column, value, rows.substr(space));
+      if (!Change(sql)) {
+        ++num_impossible;  // NOT NULL, or a key that is there already
+        continue;
+      }
+      const Outcome outcome = Read(sql);  // the same: it was that value already
+      EXPECT_EQ(Resume(sql), outcome) << sql;
+      (outcome == Outcome::kRefused ? num_refused : num_same) += 1;
+    }
+  }
+  fmt::print("{} changes of a column: {} refused, {} changed nothing, {} not taken by SQLite\n",
+             columns.size() * values.size(), num_refused, num_same, num_impossible);
+  EXPECT_GT(num_refused, 300);
+  EXPECT_LT(num_same, 25);
+}
+
+// A column is read by its type and range before its checksum: the message says what is wrong with it.
+TEST_F(ChangedResultFile, TheMessageNamesTheColumn) {
+  const auto refuses = [&](const std::string& sql, const std::vector<std::string>& fragments) {
+    EXPECT_TRUE(Change(sql)) << sql;
+    return ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, fragments);
+  };
+  EXPECT_TRUE(refuses("UPDATE trials SET num_inliers = 'many'",
+                      {path_, "condition 0, trial 0", "num_inliers", "is text", "rcme check"}));
+  EXPECT_TRUE(refuses("UPDATE trials SET nees = x'01'", {"nees of table trials is bytes"}));
+  EXPECT_TRUE(refuses("UPDATE trials SET status = 'fine'", {"status", "'fine'", "not possible"}));
+  EXPECT_TRUE(refuses("UPDATE trials SET num_support = 3000000000", {"num_support", "'3000000000'"}));
+  EXPECT_TRUE(refuses("UPDATE trials SET num_matches = -1", {"num_matches", "'-1'"}));
+  EXPECT_TRUE(refuses("UPDATE trials SET failed_by_kappa = 2", {"failed_by_kappa", "'2'"}));
+  EXPECT_TRUE(refuses("UPDATE trials SET inlier_precision = 1.5", {"inlier_precision", "'1.5'"}));
+  EXPECT_TRUE(refuses("UPDATE problems SET weight = -1", {"weight", "'-1.0'"}));
+  EXPECT_TRUE(refuses("UPDATE problems SET num_inliers_true = 1 + num_inliers_true",
+                      {"condition 0, trial 0", "checksum"}));
+  EXPECT_TRUE(
+      refuses("DELETE FROM problems WHERE trial = 5", {"condition 0, trial 6", "others are in its place"}));
+}
+
+TEST_F(ChangedResultFile, RowsLostDoubledSwappedAndForeign) {
+  const std::string trial = " WHERE condition = 1 AND trial = 3";
+  const auto copy = [&](const std::string& table, const std::string& key, const std::string& other) {
+    return "CREATE TEMP TABLE t AS SELECT * FROM " + table + trial + "; UPDATE t SET " + key + " = " + other +
+           "; INSERT INTO " + table + " SELECT * FROM t; DROP TABLE t;";
+  };
+  for (const std::string& sql : std::vector<std::string>{
+           "DELETE FROM trials" + trial,
+           "DELETE FROM trials" + trial + " AND estimator = 1",
+           "DELETE FROM problems" + trial,
+           "DELETE FROM trials" + trial + "; DELETE FROM problems" + trial,
+           "DELETE FROM trials WHERE trial = 11; DELETE FROM problems WHERE trial = 11",
+           "DELETE FROM trials WHERE condition = 1; DELETE FROM problems WHERE condition = 1",
+           "DELETE FROM trials; DELETE FROM problems",
+           "DELETE FROM run",
+           "DELETE FROM run WHERE key = 'checksum'",
+           "DELETE FROM run WHERE key = 'instruction set'",
+           "INSERT INTO run VALUES ('stopping rule', 'a reason')",
+           "DELETE FROM conditions",
+           "DELETE FROM estimators WHERE estimator = 1",
+           "INSERT INTO estimators VALUES (2, 'foreign')",
+           "DELETE FROM totals",
+           "DELETE FROM totals WHERE condition = 1",
+           "INSERT INTO totals VALUES (2, 0, 0)",
+           copy("trials", "estimator", "estimator + 2"),  // more records than estimators
+           copy("trials", "estimator", "estimator + 4000000000"),
+           copy("trials", "trial", "99"),
+           copy("trials", "condition", "2"),
+           copy("trials", "condition", "4294967295") + copy("problems", "condition", "4294967295"),
+           copy("problems", "trial", "99"),
+           copy("trials", "trial", "99") + copy("problems", "trial", "99"),
+           "UPDATE trials SET estimator = 1 - estimator + 10; UPDATE trials SET estimator = estimator - 10",
+           "UPDATE trials SET trial = trial + 100; UPDATE problems SET trial = trial + 100",
+           "UPDATE problems SET trial = trial + 100",
+           "UPDATE trials SET seconds = seconds + 1e-9" + trial}) {
+    ASSERT_TRUE(Change(sql)) << sql;
+    ExpectRefused(sql);
+  }
+}
+
+TEST_F(ChangedResultFile, AnotherSchema) {
+  const auto edited = [](const std::string& from, const std::string& to) {
+    return "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, '" + from + "', '" + to +
+           "')";
+  };
+  for (const std::string& sql : std::vector<std::string>{
+           "CREATE VIEW extra AS SELECT * FROM trials", "CREATE TABLE extra (x)",
+           "CREATE INDEX extra ON trials (nees)",
+           "CREATE TRIGGER extra AFTER INSERT ON trials BEGIN DELETE FROM trials; END",
+           "ALTER TABLE trials RENAME COLUMN nees TO nes", "ALTER TABLE trials ADD COLUMN extra REAL",
+           "ALTER TABLE trials DROP COLUMN nees", "ALTER TABLE trials RENAME TO trails", "DROP TABLE trials",
+           "DROP TABLE problems; CREATE VIEW problems AS SELECT * FROM trials",
+           "ALTER TABLE trials RENAME TO t; CREATE VIEW trials AS SELECT * FROM t", "DROP TABLE totals",
+           edited("nees REAL", "nees TEXT"), edited("num_support INTEGER NOT NULL", "num_support INTEGER"),
+           edited("rotation_error_deg REAL, direction_error_deg REAL",
+                  "direction_error_deg REAL, rotation_error_deg REAL")}) {
+    ASSERT_TRUE(Change(sql)) << sql;
+    ExpectRefused(sql);
+  }
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,135 @@
+// A sound result file that tests damage, and what they ask of every damaged one: who reads it either gets the
+// very same results as before (the damage was in unused space) or a refusal that names the file; and a run
+// never calls it done.
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/compare.h"
+#include "experiments/comparison_output.h"
+#include "experiments/result_file/salvage.h"
+#include "experiments/run_study.h"
+#include "experiments/summary_output.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+
+inline constexpr int kTrials = 12;    // per condition
+inline constexpr size_t kPage = 512;  // bytes: small, so that little of the file is unused
+
+// Runs SQL on a file, with all protection off; false if SQLite refuses it.
+inline bool Execute(const std::string& path, const std::string& sql) {
+  sqlite3* database = nullptr;
+  sqlite3_open(path.c_str(), &database);
+  const bool is_done = sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK;
+  sqlite3_close(database);
+  return is_done;
+}
+
+// All that the commands say of a run: its summary with the times, its comparison, every record.
+inline std::string ResultsOf(const std::string& path) {
+  const ResultStore store = ResultStore::OpenForReading(path);
+  std::string text = SummaryAsCsv(Summarize(store, /*with_times=*/true)) +
+                     ComparisonAsCsv(Compare(store, "")) + store.Plan().study_yaml + store.StoppingRule() +
+                     store.UntilOptionsOfAll() + store.Origin().program + store.Origin().instruction_set;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    for (const TrialRecord& record : store.RecordsOf(trial % 2, trial)) text += RecordText(record);
+  }
+  return text;
+}
+
+enum class Outcome { kSame, kRefused };
+
+class DamagedResultFile : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    Study study = SmallStudy();
+    study.trials = kTrials;
+    plan_ = new StudyPlan(MakePlan(study));
+    const std::string path = folder_->Path("sound.sqlite");
+    {
+      ResultStore store = ResultStore::OpenForRun(path, *plan_);
+      RunStudy(*plan_, 1, &store);
+    }
+    EXPECT_TRUE(Execute(path, fmt::format("PRAGMA page_size = {}; VACUUM", kPage)));
+    bytes_ = new std::string(ReadBytes(path));
+    results_ = new std::string(ResultsOf(path));
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    delete plan_;
+    delete bytes_;
+    delete results_;
+  }
+
+  // The file with these bytes, and nothing beside it.
+  std::string Write(const std::string& bytes) {
+    for (const char* suffix : {"-journal", "-wal", "-shm"}) std::filesystem::remove(path_ + suffix);
+    return folder_->Write("run.sqlite", bytes);
+  }
+
+  // What reading the file at path_ gives; anything but the same results or a refusal that names it is a
+  // failure.
+  Outcome Read(const std::string& what) {
+    try {
+      EXPECT_EQ(ResultsOf(path_) == *results_, true) << what << ": changed in silence";
+      return Outcome::kSame;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << what << ": " << error.what();
+      return Outcome::kRefused;
+    }
+  }
+  // What resuming its run gives: refused, or done, and then it reads as before.
+  Outcome Resume(const std::string& what) {
+    try {
+      ResultStore store = ResultStore::OpenForRun(path_, *plan_);
+      EXPECT_EQ(RunStudy(*plan_, 1, &store).num_run_now, 0) << what << ": trials were lost in silence";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << what << ": " << error.what();
+      return Outcome::kRefused;
+    }
+    EXPECT_EQ(Read(what), Outcome::kSame) << what << ": done, but not readable";
+    return Outcome::kSame;
+  }
+  void ExpectRefused(const std::string& what) {
+    EXPECT_EQ(Read(what), Outcome::kRefused) << what;
+    EXPECT_EQ(Resume(what), Outcome::kRefused) << what;
+  }
+  // Saves what is sound in the file at path_ and runs the rest; returns how many trials were saved.
+  std::int64_t SaveAndComplete(const std::string& what) {
+    const std::string saved = folder_->Path("saved.sqlite");
+    std::filesystem::remove(saved);
+    std::int64_t num_sound = 0;
+    Salvage salvage(path_, plan_->study);
+    {
+      ResultStore store = ResultStore::OpenForRun(saved, salvage.plan());
+      salvage.ForEachSoundTrial([&](const StoredTrial& trial) {
+        store.Add({trial.problem}, trial.records);
+        ++num_sound;
+      });
+    }
+    {
+      ResultStore store = ResultStore::OpenForRun(saved, *plan_);
+      EXPECT_EQ(RunStudy(*plan_, 1, &store).num_run_now, 2 * kTrials - num_sound) << what;
+    }
+    const Summary summary = Summarize(ResultStore::OpenForReading(saved), false);
+    const Summary sound = Summarize(ResultStore::OpenForReading(folder_->Path("sound.sqlite")), false);
+    EXPECT_EQ(SummaryAsCsv(summary), SummaryAsCsv(sound)) << what << ": other results after saving";
+    return num_sound;
+  }
+
+  inline static TempFolder* folder_ = nullptr;
+  inline static StudyPlan* plan_ = nullptr;
+  inline static std::string *bytes_ = nullptr, *results_ = nullptr;
+  const std::string path_ = folder_->Path("run.sqlite");
+};
+
+}  // namespace rcme
