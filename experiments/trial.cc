@@ -65,6 +65,27 @@ ProblemRecord Describe(const TrialData& data, const StreamName& name) {
   return {name.condition, name.trial, data.weight, num_inliers, data.severity};
 }
 
+TrialRecord ScoreJudged(const MotionEstimate& judged, const TrialData& data, double seconds) {
+  TrialRecord record;
+  record.status = judged.status;
+  record.rotation_error_deg = record.direction_error_deg = record.nees = kNaN;
+  record.inlier_precision = record.inlier_recall = kNaN;
+  record.num_matches = static_cast<int>(data.problem.matches.size());
+  record.num_inliers = static_cast<int>(judged.inliers.size());
+  record.num_support = judged.num_support;
+  record.mean_entropy = judged.num_support > 0 ? judged.mean_entropy : kNaN;
+  record.z_statistic = judged.num_support > 0 ? judged.z_statistic : kNaN;
+  record.num_consistent_before = judged.num_consistent_before;
+  record.num_consistent_after = judged.num_consistent_after;
+  record.failed_by_kappa = judged.failed_by_kappa;
+  record.num_explained = judged.num_explained;
+  record.counts = judged.counts;
+  record.seconds = seconds;
+  ScoreMotion(judged, data.truth, &record);
+  ScoreInliers(judged, data.truth, &record);
+  return record;
+}
+
 }  // namespace
 
 bool IsInvalid(const TrialRecord& record) {
@@ -90,25 +111,7 @@ bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds) {
 }
 
 TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double seconds) {
-  const MotionEstimate judged = Judged(estimate, data.problem.matches.size());
-  TrialRecord record;
-  record.status = judged.status;
-  record.rotation_error_deg = record.direction_error_deg = record.nees = kNaN;
-  record.inlier_precision = record.inlier_recall = kNaN;
-  record.num_matches = static_cast<int>(data.problem.matches.size());
-  record.num_inliers = static_cast<int>(judged.inliers.size());
-  record.num_support = judged.num_support;
-  record.mean_entropy = judged.num_support > 0 ? judged.mean_entropy : kNaN;
-  record.z_statistic = judged.num_support > 0 ? judged.z_statistic : kNaN;
-  record.num_consistent_before = judged.num_consistent_before;
-  record.num_consistent_after = judged.num_consistent_after;
-  record.failed_by_kappa = judged.failed_by_kappa;
-  record.num_explained = judged.num_explained;
-  record.counts = judged.counts;
-  record.seconds = seconds;
-  ScoreMotion(judged, data.truth, &record);
-  ScoreInliers(judged, data.truth, &record);
-  return record;
+  return ScoreJudged(Judged(estimate, data.problem.matches.size()), data, seconds);
 }
 
 TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
@@ -124,7 +127,7 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
     MotionEstimate estimate = plan.estimators[e]->Estimate(result.data.problem, sampling_rng);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     result.estimates.push_back(Judged(std::move(estimate), result.data.problem.matches.size()));
-    TrialRecord record = Score(result.estimates.back(), result.data, elapsed.count());
+    TrialRecord record = ScoreJudged(result.estimates.back(), result.data, elapsed.count());
     record.condition = condition.index;
     record.trial = trial;
     record.estimator = static_cast<std::uint32_t>(e);
