@@ -7,7 +7,8 @@
 
 namespace rcme {
 
-// How a call ended. Every call ends in one of these; only kOk carries a motion.
+// How a call ended. Every call ends in one of these; only kOk carries a motion,
+// kDirectionNotObservable a rotation.
 enum class MotionStatus {
   kOk,                      // a motion was found and refined
   kNoCandidate,             // the paper's "Detect-fail": the candidate set is empty
@@ -41,7 +42,9 @@ struct MotionEstimate {
   MotionStatus status = MotionStatus::kInvalidInput;
   std::string message;  // one sentence for a person
 
-  RelativePose cam2_from_cam1;           // valid if status is kOk
+  // Valid if status is kOk. If it is kDirectionNotObservable, R and the covariance's rotation block are, and
+  // the rest is NaN.
+  RelativePose cam2_from_cam1;
   Matrix5d pose_cov = Matrix5d::Zero();  // 5x5 [rotation, direction], rad^2
   std::vector<int> inliers;              // indices of the matches consistent with the motion, ascending
 

@@ -1,6 +1,7 @@
 #include "estimator/ransac_options.h"
 
 #include <cmath>
+#include <limits>
 
 #include "parameters/input_error.h"
 
@@ -15,7 +16,26 @@ double RansacOptions::SampleLevelOrDefault() const {
   return std::isnan(sample_significance_level) ? significance_level : sample_significance_level;
 }
 
+namespace {
+
+double LevelOrDefault(double level, Reading reading) {
+  if (!std::isnan(level)) return level;
+  return reading == Reading::kAsPrinted ? 1.0 : 0.001;
+}
+
+}  // namespace
+
+double RansacOptions::ObservabilityLevelOrDefault() const {
+  return LevelOrDefault(observability_significance_level, reading);
+}
+
+double RansacOptions::ChanceLevelOrDefault() const {
+  return LevelOrDefault(chance_significance_level, reading);
+}
+
 std::vector<Parameter> Parameters(RansacOptions& o) {
+  const std::vector<std::pair<std::string, double>> automatic_or_off = {
+      {"auto", std::numeric_limits<double>::quiet_NaN()}, {"off", 1.0}};
   return {
       Parameter::Integer("num_iterations", &o.num_iterations, {1, 1e6}, "hypotheses N of Algorithm 1"),
       Parameter::Real("significance_level", &o.significance_level, {1e-9, 0.5}, "",
@@ -58,6 +78,16 @@ std::vector<Parameter> Parameters(RansacOptions& o) {
                          "wins"),
       Parameter::Real("least_explained_share", &o.least_explained_share, {0.0, 1.0}, "",
                       "refuse a refined motion that explains a smaller share of the matches"),
+      Parameter::RealOrWords(
+          "observability_significance_level", &o.observability_significance_level, {1e-9, 1.0},
+          automatic_or_off, "",
+          "a rotation without a translation is taken for a motion with at most this "
+          "probability, else the answer is direction_not_observable; auto: off as printed, "
+          "0.001 rank-aware"),
+      Parameter::RealOrWords("chance_significance_level", &o.chance_significance_level, {1e-9, 1.0},
+                             automatic_or_off, "",
+                             "random matches are taken for a motion with at most this probability, else the "
+                             "answer is not_better_than_chance; auto: off as printed, 0.001 rank-aware"),
       Parameter::Real("kappa", &o.kappa, {0.0, 1.0}, "",
                       "failure flag: consistent matches after over before the refinement <= kappa"),
   };

@@ -63,13 +63,19 @@ struct RansacOptions {
   Implementation implementation = Implementation::kFast;
   int num_refined = 1;                 // the best so many candidates are refined; the best motion wins
   double least_explained_share = 0.0;  // of the matches, by the refined motion; less is refused
-  double kappa = 0.5;                  // failure flag: n*_I / n_I <= kappa (eq::metric)
+  // What the refined motion is refused for. Levels: the greatest probability of an answer where the test's
+  // null hypothesis holds; 1: off; NaN: off as printed (the paper has neither test), 0.001 rank-aware.
+  double observability_significance_level = std::numeric_limits<double>::quiet_NaN();  // observability.h
+  double chance_significance_level = std::numeric_limits<double>::quiet_NaN();         // motion_chance.h
+  double kappa = 0.5;  // failure flag: n*_I / n_I <= kappa (eq::metric)
 
   // mu, or the default of the reading: -3.53 as printed (of a 4-dimensional density in px: it has units);
   // rank-aware, 6 nats of excess entropy: at 40 % outliers 3 nats refused 23 % of 150 trials and 6 nats 5 %,
   // with no more failures.
   double MuOrDefault() const;
   double SampleLevelOrDefault() const;
+  double ObservabilityLevelOrDefault() const;
+  double ChanceLevelOrDefault() const;
 };
 
 // The fields by name, for study files and the command line. Valid as long as `options` lives.

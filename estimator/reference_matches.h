@@ -1,6 +1,7 @@
 #pragma once
 
 #include "estimator/geometry/essential_matrix.h"
+#include "estimator/kernels/match_blocks.h"
 #include "estimator/motion_problem.h"
 #include "estimator/ransac_options.h"
 #include "estimator/refinement/fit_set.h"
@@ -11,9 +12,11 @@ namespace rcme {
 class ReferenceMatches {
  public:
   using Set = std::vector<int>;
-  ReferenceMatches(const MotionProblem& problem, RefinementError error) : problem_(problem), error_(error) {}
+  ReferenceMatches(const MotionProblem& problem, RefinementError error)
+      : problem_(problem), blocks_(problem), error_(error) {}
 
   const MotionProblem& problem() const { return problem_; }
+  const MatchBlocks& blocks() const { return blocks_; }
   RelativePose SelectPose(const EssentialProjection& projection, const Set& set) const;
   RefinedMotion Refine(const Set& set, const RelativePose& start, Loss loss) const;
   Set FindAgreeing(const RefinedMotion& motion, const Set& fitted, double significance_level) const;
@@ -26,6 +29,7 @@ class ReferenceMatches {
 
  private:
   const MotionProblem& problem_;
+  MatchBlocks blocks_;
   RefinementError error_;
 };
 

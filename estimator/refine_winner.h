@@ -5,6 +5,7 @@
 //   struct Matches {
 //     using Set = ...;
 //     const MotionProblem& problem() const;
+//     const MatchBlocks& blocks() const;  // all matches
 //     // cheirality
 //     RelativePose SelectPose(projection, set) const;
 //     RefinedMotion Refine(set, start, loss) const;
@@ -24,6 +25,7 @@
 #include <optional>
 
 #include "estimator/hypothesis.h"
+#include "estimator/kernels/match_blocks.h"
 #include "estimator/motion_estimate.h"
 #include "estimator/ransac_options.h"
 #include "estimator/refinement/motion_search.h"
@@ -96,6 +98,16 @@ Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis* w
 // long as its corner lies at or beyond the threshold.
 double ConsistencyThreshold(double significance_level);
 
+// Refuses a motion that explains no more than chance does (motion_chance.h), or whose direction cannot be
+// observed (observability.h): then direction and its covariance are NaN, and the rotation is that of the best
+// rotation alone where it explains the matches, else the motion's. `num_explained` is known.
+void RefuseByMotionTests(const MotionProblem& problem, const MatchBlocks& matches,
+                         const RansacOptions& options, MotionEstimate* estimate);
+
+// A refinement that diverged from `start` and its matches: for want of a parallax, or for another reason.
+void ExplainDivergence(const MotionProblem& problem, const MatchBlocks& matches, const RansacOptions& options,
+                       const RelativePose& start, const MatchMask& support, MotionEstimate* estimate);
+
 std::string DivergenceMessage(int num_support, int num_fitted);
 std::string SuccessMessage(int num_inliers, int num_matches);
 
@@ -120,6 +132,8 @@ void RefineWinner(const Matches& matches, const RansacOptions& options, const Sa
   if (!refined.converged) {
     estimate->status = MotionStatus::kRefinementDiverged;
     estimate->message = DivergenceMessage(matches.Count(support), matches.Count(fit.fitted));
+    ExplainDivergence(matches.problem(), matches.blocks(), options, winner.pose,
+                      MaskOf(matches.IndicesOf(support), matches.blocks()), estimate);
     return;
   }
   estimate->status = MotionStatus::kOk;
@@ -135,6 +149,7 @@ void RefineWinner(const Matches& matches, const RansacOptions& options, const Sa
       estimate->num_consistent_after <= options.kappa * estimate->num_consistent_before;  // (eq::metric)
   estimate->message = SuccessMessage(static_cast<int>(estimate->inliers.size()),
                                      static_cast<int>(matches.problem().matches.size()));
+  RefuseByMotionTests(matches.problem(), matches.blocks(), options, estimate);
 }
 
 }  // namespace rcme

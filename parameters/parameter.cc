@@ -59,15 +59,29 @@ Parameter Parameter::Real(std::string name, double* target, Range range, std::st
 
 Parameter Parameter::RealOrWord(std::string name, double* target, Range range, std::string automatic,
                                 std::string unit, std::string doc) {
+  return RealOrWords(std::move(name), target, range,
+                     {{std::move(automatic), std::numeric_limits<double>::quiet_NaN()}}, std::move(unit),
+                     std::move(doc));
+}
+
+Parameter Parameter::RealOrWords(std::string name, double* target, Range range,
+                                 std::vector<std::pair<std::string, double>> words, std::string unit,
+                                 std::string doc) {
   Parameter parameter = Real(std::move(name), target, range, std::move(unit), std::move(doc));
-  parameter.allowed_ += " or " + automatic;
-  parameter.set_ = [target, automatic, set_number = parameter.set_](const std::string& text) {
-    if (text != automatic) return set_number(text);
-    *target = std::numeric_limits<double>::quiet_NaN();
-    return true;
+  for (const auto& [word, value] : words) parameter.allowed_ += " or " + word;
+  parameter.set_ = [target, words, set_number = parameter.set_](const std::string& text) {
+    for (const auto& [word, value] : words) {
+      if (text != word) continue;
+      *target = value;
+      return true;
+    }
+    return set_number(text);
   };
-  parameter.get_ = [target, automatic] {
-    return std::isnan(*target) ? automatic : fmt::format("{}", *target);
+  parameter.get_ = [target, words] {
+    for (const auto& [word, value] : words) {
+      if (*target == value || (std::isnan(*target) && std::isnan(value))) return word;
+    }
+    return fmt::format("{}", *target);
   };
   return parameter;
 }

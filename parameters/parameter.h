@@ -28,6 +28,10 @@ class Parameter {
   // Like Real, but the word `automatic` (stored as NaN) is allowed too.
   static Parameter RealOrWord(std::string name, double* target, Range range, std::string automatic,
                               std::string unit, std::string doc);
+  // Like Real, but words are allowed too, each for a number (NaN, or the one it stands for).
+  static Parameter RealOrWords(std::string name, double* target, Range range,
+                               std::vector<std::pair<std::string, double>> words, std::string unit,
+                               std::string doc);
   static Parameter Integer(std::string name, int* target, Range range, std::string doc);
   static Parameter Text(std::string name, std::string* target, std::string allowed, std::string doc);
 

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 
 namespace rcme {
@@ -41,6 +42,11 @@ double BinomialCdf(std::int64_t successes, std::int64_t n, double probability) {
 }
 double FisherCdf(int degrees_of_freedom_1, int degrees_of_freedom_2, double x) {
   return boost::math::cdf(boost::math::fisher_f(degrees_of_freedom_1, degrees_of_freedom_2), x);
+}
+double BinomialUpperTail(int n, int k, double p) {
+  if (k <= 0 || p >= 1.0) return k <= n ? 1.0 : 0.0;
+  if (k > n || p <= 0.0) return 0.0;
+  return boost::math::ibeta(k, n - k + 1.0, p, DoublePrecision());
 }
 
 }  // namespace rcme

@@ -14,5 +14,7 @@ double StudentQuantile(int degrees_of_freedom, double probability);
 double BinomialCdf(std::int64_t successes, std::int64_t n, double probability);
 // Of the ratio of two independent chi-squares, each over its degrees of freedom.
 double FisherCdf(int degrees_of_freedom_1, int degrees_of_freedom_2, double x);
+// P(Binomial(n, p) >= k).
+double BinomialUpperTail(int n, int k, double p);
 
 }  // namespace rcme

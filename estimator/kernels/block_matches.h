@@ -16,6 +16,7 @@ class BlockMatches {
       : problem_(problem), matches_(matches), error_(error) {}
 
   const MotionProblem& problem() const { return problem_; }
+  const MatchBlocks& blocks() const { return matches_; }
   RelativePose SelectPose(const EssentialProjection& projection, const Set& set) const;
   RefinedMotion Refine(const Set& set, const RelativePose& start, Loss loss) const;
   Set FindAgreeing(const RefinedMotion& motion, const Set& fitted, double significance_level) const;

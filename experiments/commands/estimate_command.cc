@@ -44,6 +44,10 @@ nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord&
                                  {"num_matches", record.num_matches},
                                  {"num_inliers", record.num_inliers},
                                  {"failed_by_kappa", nullptr}};
+  if (estimate.status == MotionStatus::kDirectionNotObservable) {
+    json["R"] = RowMajor(estimate.cam2_from_cam1.R);
+    json["rotation_cov"] = RowMajor(estimate.pose_cov.topLeftCorner<3, 3>());
+  }
   if (estimate.status != MotionStatus::kOk) return json;
   json["R"] = RowMajor(estimate.cam2_from_cam1.R);
   json["t"] = RowMajor(estimate.cam2_from_cam1.t);
@@ -54,8 +58,37 @@ nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord&
   return json;
 }
 
+constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+
+void PrintRotation(const MotionEstimate& estimate) {
+  fmt::print("rotation of camera 2 from camera 1 (X2 = R X1 + t; t is not known)\n");
+  for (int row = 0; row < 3; ++row) {
+    const auto& R = estimate.cam2_from_cam1.R;
+    fmt::print("  R {:>12.8f} {:>12.8f} {:>12.8f}\n", R(row, 0), R(row, 1), R(row, 2));
+  }
+  const Eigen::Vector3d sd_deg =
+      kDegreesPerRadian * estimate.pose_cov.topLeftCorner<3, 3>().diagonal().cwiseSqrt();
+  fmt::print("standard deviations (deg), if there is no translation: {:.4f} {:.4f} {:.4f}\n", sd_deg(0),
+             sd_deg(1), sd_deg(2));
+}
+
+// The tests of the motion are off as printed. A person should know what they would have said.
+void PrintCaution(const EstimatorSpec& spec, const MotionProblem& problem, std::int64_t seed) {
+  RansacOptions tested = spec.options;
+  if (tested.ObservabilityLevelOrDefault() < 1.0 || tested.ChanceLevelOrDefault() < 1.0) return;
+  tested.observability_significance_level = tested.chance_significance_level = 0.001;
+  RandomStream rng = StreamFor({static_cast<std::uint64_t>(seed), 0, 0, 0}, StreamPurpose::kSampling);
+  const MotionEstimate estimate = FindEstimator(spec.name).make(tested)->Estimate(problem, rng);
+  if (estimate.status == MotionStatus::kOk) return;
+  fmt::print(
+      "caution: {} - {}\n  (--set observability_significance_level=0.001 --set "
+      "chance_significance_level=0.001 refuses such an answer)\n",
+      StatusName(estimate.status), estimate.message);
+}
+
 void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, const std::string& estimator) {
   fmt::print("{}: {} - {}\n", estimator, StatusName(estimate.status), estimate.message);
+  if (estimate.status == MotionStatus::kDirectionNotObservable) PrintRotation(estimate);
   if (estimate.status != MotionStatus::kOk) return;
   const RelativePose& pose = estimate.cam2_from_cam1;
   fmt::print("cam2_from_cam1 (X2 = R X1 + t, |t| = 1)\n");
@@ -63,7 +96,7 @@ void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, c
     fmt::print("  R {:>12.8f} {:>12.8f} {:>12.8f}   t {:>12.8f}\n", pose.R(row, 0), pose.R(row, 1),
                pose.R(row, 2), pose.t(row));
   }
-  const Vector5d sd_deg = 180.0 / std::numbers::pi * estimate.pose_cov.diagonal().cwiseSqrt();
+  const Vector5d sd_deg = kDegreesPerRadian * estimate.pose_cov.diagonal().cwiseSqrt();
   fmt::print("standard deviations (deg): rotation {:.4f} {:.4f} {:.4f}, direction {:.4f} {:.4f}\n", sd_deg(0),
              sd_deg(1), sd_deg(2), sd_deg(3), sd_deg(4));
   fmt::print("inliers: {} of {} matches\n", record.num_inliers, record.num_matches);
@@ -93,6 +126,7 @@ void RunEstimate(const EstimateArguments& arguments) {
         AsJson(estimate, record, spec.label).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
     PrintForPeople(estimate, record, spec.label);
+    if (estimate.status == MotionStatus::kOk) PrintCaution(spec, data.problem, arguments.seed);
   }
   // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
   // answer.
@@ -138,7 +172,8 @@ void AddEstimateCommand(CLI::App& app) {
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command->add_flag("--json", arguments->as_json,
-                    "one JSON object; R row-major (9), pose_cov row-major (25), rad^2");
+                    "one JSON object; R row-major (9), pose_cov row-major (25), rad^2; without a direction "
+                    "(direction_not_observable) R and rotation_cov (9) alone");
   command->callback([arguments] { RunEstimate(*arguments); });
 }
 
