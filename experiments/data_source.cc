@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/calibration_file.h"
 #include "experiments/real_data/match_folder.h"
 #include "experiments/simulated_data.h"
 #include "parameters/input_error.h"
@@ -69,7 +70,8 @@ struct Configured {
   MatchFolderSettings folder;
   std::shared_ptr<SimulatedData> simulated;  // null: a folder
 
-  explicit Configured(const Settings& settings) {
+  explicit Configured(const Settings& given) {
+    const Settings settings = WithCalibration(given);
     const Choices choices = ChoicesIn(settings);
     if (choices.scene != kMatchFilesScene) {
       const bool is_known = std::ranges::count(SceneRegistry(), choices.scene, &SceneEntry::name) > 0;

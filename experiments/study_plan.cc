@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/calibration_file.h"
 #include "experiments/study_file.h"
 #include "parameters/input_error.h"
 
@@ -48,7 +49,13 @@ std::int64_t StudyPlan::NumTrials() const {
   return sum;
 }
 
-StudyPlan MakePlan(const Study& study) {
+StudyPlan MakePlan(const Study& given) {
+  Study study = given;
+  study.data = WithCalibration(given.data);
+  if (std::ranges::count(study.factors, kCalibrationKey, &Factor::key) > 0) {
+    throw InputError(fmt::format("factors: {} cannot vary; give the intrinsics of own_intrinsics as factors",
+                                 kCalibrationKey));
+  }
   StudyPlan plan;
   plan.study = study;
   for (const Factor& factor : study.factors) plan.factor_names.push_back(factor.key);

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/calibration_file.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/commands/commands.h"
 #include "experiments/study_file.h"
@@ -52,7 +53,11 @@ Rows ListScenes() {
   return rows;
 }
 
-Rows ListCameras() { return ListRegistry("cameras", CameraRegistry()); }
+Rows ListCameras() {
+  Rows rows = ListRegistry("cameras", CameraRegistry());
+  rows.push_back({kCamerasFromFile, "two cameras of one's own, from the file of the key calibration"});
+  return rows;
+}
 Rows ListMotions() { return ListRegistry("motion", MotionRegistry()); }
 Rows ListNoise() { return ListRegistry("noise", NoiseRegistry()); }
 Rows ListOutliers() { return ListRegistry("outliers", OutlierRegistry()); }
@@ -75,6 +80,9 @@ Rows ListSettings() {
     rows.push_back({std::string("scene: ") + kMatchFilesScene, s.name, s.value, s.unit, s.allowed, s.doc});
   }
   AddSettings("cameras", CameraRegistry(), &rows);
+  const SettingHelp file = CalibrationHelp();
+  rows.push_back({std::string("cameras: ") + kCamerasFromFile, file.name, file.value, file.unit, file.allowed,
+                  file.doc});
   AddSettings("motion", MotionRegistry(), &rows);
   AddSettings("noise", NoiseRegistry(), &rows);
   AddSettings("outliers", OutlierRegistry(), &rows);

@@ -7,10 +7,11 @@
 
 namespace rcme {
 
-// Ideal cameras with the principal point in the middle; both equal, or each with its own size and focal
-// length.
+// Ideal cameras with the principal point in the middle, both equal or each with its own size and focal length;
+// or with all intrinsics of either.
 std::unique_ptr<CameraModel> MakePinhole();
 std::unique_ptr<CameraModel> MakeTwoPinholes();
+std::unique_ptr<CameraModel> MakeOwnIntrinsics();
 
 // Published calibrations of real cameras (after rectification or undistortion).
 std::unique_ptr<CameraModel> MakeKitti();
