@@ -1,7 +1,5 @@
 #include "estimator/hypothesis.h"
 
-#include "estimator/geometry/triangulation.h"
-
 namespace rcme {
 
 std::optional<Hypothesis> InstantiateModel(const MotionProblem& problem, const Sample& sample) {
@@ -34,13 +32,6 @@ void PropagateCovariance(const MotionProblem& problem, Hypothesis* hypothesis) {
       FundamentalFromEssential(Matricize(hypothesis->linear.f), problem.camera1, problem.camera2);
   hypothesis->f_cov =
       CovarianceOfF(hypothesis->linear, ConstraintVariances(F_of_f, sample, problem.sigma_px));
-  hypothesis->pose_cov = CovarianceOfMotion(hypothesis->pose, hypothesis->f_cov);
-}
-
-void ResolveCheirality(const MotionProblem& problem, std::span<const Correspondence> matches,
-                       Hypothesis* hypothesis) {
-  const std::array<RelativePose, 4> poses = PosesFromEssential(hypothesis->projection);
-  hypothesis->pose = SelectPoseByCheirality(poses, matches, problem.camera1, problem.camera2);
   hypothesis->pose_cov = CovarianceOfMotion(hypothesis->pose, hypothesis->f_cov);
 }
 

@@ -31,9 +31,4 @@ std::optional<Hypothesis> InstantiateModel(const MotionProblem& problem, const S
 // Fills f_cov and pose_cov from the noise of the sample.
 void PropagateCovariance(const MotionProblem& problem, Hypothesis* hypothesis);
 
-// Turns `pose` into the one of the four motions that sees most of `matches` in front of both cameras, and
-// expresses pose_cov there.
-void ResolveCheirality(const MotionProblem& problem, std::span<const Correspondence> matches,
-                       Hypothesis* hypothesis);
-
 }  // namespace rcme

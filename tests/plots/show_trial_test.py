@@ -118,7 +118,8 @@ class Images(unittest.TestCase):
 
     def test_lines_are_those_of_the_matrices_in_the_file(self):
         panel = panels_of(drawn())["Image 2"]
-        self.assertEqual([sorted(ends[:, 1]) for ends in straight_lines_of(panel, dashed=False)], [[50, 50], [400, 400]])
+        across_image_2 = [sorted(map(tuple, ends)) for ends in straight_lines_of(panel, dashed=False)]
+        self.assertEqual(across_image_2, [[(-0.5, y), (319.5, y)] for y in (50, 400)])
         vertical = [sorted(ends[:, 0]) for ends in straight_lines_of(panel, dashed=True)]
         self.assertEqual(vertical, [[100, 100], [300, 300]])
         self.assertEqual(straight_lines_of(panels_of(drawn())["Image 1"], dashed=True), [])

@@ -126,12 +126,13 @@ class DrawnValues(ValidityMapTest):
                          [[f"baseline {b} m" for b in ("0.5", "1", "2", "3")], ["baseline 4 m"]])
 
     def test_borders_run_between_the_cells_on_either_side_of_a_level(self):
-        axes, = validity_map.draw_map(*self.read()).axes
-        borders = {line.get_linewidth(): [] for line in axes.lines}
-        for line in axes.lines:
-            borders[line.get_linewidth()].append(sorted(zip(*line.get_data())))
-        self.assertEqual(borders[validity_map.CONTOURS[0.94]["linewidth"]], [[(0, 1), (1, 1)], [(1, 1), (2, 1)]])
-        self.assertEqual(borders[validity_map.CONTOURS[0.90]["linewidth"]], [[(1, 0), (1, 1)], [(1, 1), (2, 1)]])
+        for upper_right in ("0.942", "0.94"):  # a coverage at a level is on its upper side
+            axes, = validity_map.draw_map(*self.read(MAP.replace("0.942", upper_right))).axes
+            borders = {line.get_linewidth(): [] for line in axes.lines}
+            for line in axes.lines:
+                borders[line.get_linewidth()].append(sorted(zip(*line.get_data())))
+            self.assertEqual(borders[validity_map.CONTOURS[0.94]["linewidth"]], [[(0, 1), (1, 1)], [(1, 1), (2, 1)]])
+            self.assertEqual(borders[validity_map.CONTOURS[0.90]["linewidth"]], [[(1, 0), (1, 1)], [(1, 1), (2, 1)]])
 
     def test_every_coverage_has_a_shade(self):
         for coverage in (0, 0.5, 0.8999, 0.9, 0.94, 0.95, 0.96, 1):
