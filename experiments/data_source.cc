@@ -110,13 +110,17 @@ RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose) {
 
 DataSources MakeDataSources(const Settings& settings) {
   const Configured configured(settings);
-  if (configured.simulated) return {"", {{"", configured.simulated}}};
+  if (configured.simulated) {
+    configured.simulated->FixBaseline();
+    return {"", {{"", configured.simulated}}};
+  }
   return {"pair_scene", LoadMatchFolder(configured.folder)};
 }
 
 std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings) {
   const Configured configured(settings);
   if (!configured.simulated) throw InputError(fmt::format("scene: {} is not simulated", kMatchFilesScene));
+  configured.simulated->FixBaseline();
   return configured.simulated;
 }
 

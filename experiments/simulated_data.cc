@@ -1,5 +1,10 @@
 #include "experiments/simulated_data.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
 #include "simulator/noise_registry.h"
 #include "simulator/outlier_registry.h"
 
@@ -33,6 +38,17 @@ std::vector<Parameter> SimulatedData::Parameters() {
                                         {{"measured", true}, {"skipped", false}},
                                         "whether each trial's severity is measured and stored"));
   return all;
+}
+
+void SimulatedData::FixBaseline() {
+  // Scenes of a condition that no study has (kMaxConditions), whatever the study's seed.
+  constexpr std::uint32_t kPilotCondition = std::numeric_limits<std::uint32_t>::max();
+  scenes_.FixBaseline({0, kPilotCondition, 0, static_cast<std::uint32_t>(StreamPurpose::kScene)});
+}
+
+std::string SimulatedData::Identity() const {
+  const double baseline_m = scenes_.BaselineOfParallax();
+  return std::isnan(baseline_m) ? "" : fmt::format("baseline_m {:.6g}", baseline_m);
 }
 
 Scene SimulatedData::DrawScene(const StreamName& trial_name) const {

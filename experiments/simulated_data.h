@@ -25,6 +25,11 @@ class SimulatedData : public DataSource {
   const Choices& choices() const { return choices_; }  // none empty
   std::vector<Parameter> Parameters();
 
+  // To be called once all parameters are set; see SceneGenerator.
+  void FixBaseline();
+  // The baseline, where it was found from a parallax.
+  std::string Identity() const override;
+
   int NumTrials(int trials) const override { return trials; }
   TrialData Make(const StreamName& trial_name) const override {
     return MakeFrom(DrawScene(trial_name), trial_name);

@@ -1,24 +1,24 @@
 #include "simulator/motion_model.h"
 
 #include <cmath>
-#include <numbers>
+#include <stdexcept>
 
 #include "stats/portable_math.h"
 
 namespace rcme {
 
-double Baseline::Length(double typical_depth_m) const {
-  if (std::isnan(parallax_deg)) return baseline_m;
-  // The rays of the two ends of the baseline to a point half-way between them, at that depth.
-  return 2.0 * typical_depth_m * std::tan(0.5 * parallax_deg * std::numbers::pi / 180.0);
+double Baseline::Length() const {
+  if (!IsParallax()) return baseline_m;
+  if (std::isnan(of_parallax_m)) throw std::logic_error("the baseline of a parallax is not fixed yet");
+  return of_parallax_m;
 }
 
 std::vector<Parameter> Parameters(Baseline& baseline) {
-  return {
-      Parameter::Real("baseline_m", &baseline.baseline_m, {1e-9, 1e6}, "m", "length of the translation"),
-      Parameter::RealOrWord("parallax_deg", &baseline.parallax_deg, {1e-9, 120.0}, "none", "deg",
-                            "the length as an angle instead: the parallax of a point at the scene's typical "
-                            "depth under a sideways move of that length")};
+  return {Parameter::Real("baseline_m", &baseline.baseline_m, {1e-9, 1e6}, "m", "length of the translation"),
+          Parameter::RealOrWord(
+              "parallax_deg", &baseline.parallax_deg, {1e-9, 120.0}, "none", "deg",
+              "the length as an angle instead: the angle at a point between the rays to the two "
+              "centres, its median over the points, that on average over trials")};
 }
 
 Eigen::Vector3d DrawDirection(RandomStream& rng) {

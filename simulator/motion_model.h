@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -16,6 +17,19 @@ struct Motion {
   double baseline_m = 0.0;
 };
 
+// The length of a translation, in metres or as the parallax that it gives.
+struct Baseline {
+  double baseline_m = 0.5;
+  double parallax_deg = std::numeric_limits<double>::quiet_NaN();  // NaN: in metres
+  // The length that gives this parallax in a scene (SceneGenerator::FixBaseline); NaN: not known yet.
+  double of_parallax_m = std::numeric_limits<double>::quiet_NaN();
+
+  bool IsParallax() const { return !std::isnan(parallax_deg); }
+  // Throws std::logic_error where it is a parallax whose length is not known yet.
+  double Length() const;
+};
+std::vector<Parameter> Parameters(Baseline& baseline);
+
 // A law of camera motions: the plug-in contract of simulator/motions. Configured once, then const and shared
 // by threads.
 class MotionModel {
@@ -23,18 +37,10 @@ class MotionModel {
   virtual ~MotionModel() = default;
   // The parameters by name; valid as long as the model lives.
   virtual std::vector<Parameter> Parameters() = 0;
-  // `typical_depth_m` stands for the scene where the baseline is given as parallax.
-  virtual Motion Draw(double typical_depth_m, RandomStream& rng) const = 0;
+  // The length of the translation; null where there is none.
+  virtual Baseline* MutableBaseline() { return nullptr; }
+  virtual Motion Draw(RandomStream& rng) const = 0;
 };
-
-// The length of a translation, in metres or as the parallax of a sideways move at the scene's typical depth.
-struct Baseline {
-  double baseline_m = 0.5;
-  double parallax_deg = std::numeric_limits<double>::quiet_NaN();  // NaN: in metres
-
-  double Length(double typical_depth_m) const;
-};
-std::vector<Parameter> Parameters(Baseline& baseline);
 
 // Uniform on the unit sphere.
 Eigen::Vector3d DrawDirection(RandomStream& rng);

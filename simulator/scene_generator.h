@@ -25,11 +25,23 @@ class SceneGenerator {
 
   // num_matches and the parameters of scene, cameras and motion.
   std::vector<Parameter> Parameters();
+  // Where the motion's length is given as parallax: fixes the baseline such that the median parallax of a
+  // scene's points is that on average, as found in scenes drawn from the streams that `pilot` names (by their
+  // trial). To be called once all parameters are set, before the first scene. Throws InputError if no
+  // baseline gives it.
+  void FixBaseline(const StreamName& pilot);
+  // The length of every motion; NaN where it is not given as parallax.
+  double BaselineOfParallax() const;
+
   // One scene, from a stream of its own, of which more may be drawn than is used. Throws InputError that
   // names the keys if the parameters admit no such scene.
-  Scene Generate(RandomStream& rng) const;
+  Scene Generate(RandomStream& rng) const { return Generate(num_matches_, rng); }
 
  private:
+  // Mean over the pilot scenes of the median parallax of the points. Throws InputError if one cannot be
+  // drawn.
+  double MeanParallaxDeg(const StreamName& pilot) const;
+  Scene Generate(int num_matches, RandomStream& rng) const;
   void DrawPart(const World& world, size_t part, size_t num_points, RandomStream& rng, Scene* scene) const;
 
   std::string scene_name_, cameras_name_, motion_name_;

@@ -62,8 +62,6 @@ class SceneModel {
   virtual ~SceneModel() = default;
   // The parameters by name; valid as long as the model lives.
   virtual std::vector<Parameter> Parameters() = 0;
-  // The depth (m) that stands for the scene where a baseline is given as parallax.
-  virtual double TypicalDepth() const = 0;
   // Throws InputError that names the keys if the parameters contradict each other or admit no world in view.
   virtual std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const = 0;
 };

@@ -38,7 +38,9 @@ class Ackermann : public MotionModel {
     return all;
   }
 
-  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+  Baseline* MutableBaseline() override { return &baseline_; }
+
+  Motion Draw(RandomStream& rng) const override {
     RelativePose pose = ArcPose(rng.Uniform(-max_yaw_deg_, max_yaw_deg_) * kRadPerDeg);
     if (is_jittered_) {
       const double sd = jitter_deg_ * kRadPerDeg;
@@ -46,7 +48,7 @@ class Ackermann : public MotionModel {
       for (const int k : {0, 2, 3, 4}) jitter(k) = sd * rng.Normal();  // pitch, roll, direction
       pose = Retract(pose, jitter);
     }
-    return {pose, baseline_.Length(typical_depth_m)};
+    return {pose, baseline_.Length()};
   }
 
  private:

@@ -25,14 +25,16 @@ class DirectedMotion : public MotionModel {
     return all;
   }
 
-  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+  Baseline* MutableBaseline() override { return &baseline_; }
+
+  Motion Draw(RandomStream& rng) const override {
     const Eigen::Matrix3d R = DrawRotation(max_rotation_deg_ * kRadPerDeg, rng);
     const Eigen::Vector3d axis = is_either_way_ && rng.Uniform() < 0.5 ? Eigen::Vector3d(-axis_) : axis_;
     // Uniform on the cap: the height is uniform.
     const double height = rng.Uniform(std::cos(max_deviation_deg_ * kRadPerDeg), 1.0);
     const Eigen::Vector3d sideways = DrawSideways(axis, rng);
     const Eigen::Vector3d centre2_in_cam1 = height * axis + std::sqrt(1.0 - height * height) * sideways;
-    return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length(typical_depth_m)};
+    return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length()};
   }
 
  private:

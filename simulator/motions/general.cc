@@ -17,9 +17,11 @@ class GeneralMotion : public MotionModel {
     return all;
   }
 
-  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+  Baseline* MutableBaseline() override { return &baseline_; }
+
+  Motion Draw(RandomStream& rng) const override {
     const Eigen::Matrix3d R = DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng);
-    return {{R, DrawDirection(rng)}, baseline_.Length(typical_depth_m)};
+    return {{R, DrawDirection(rng)}, baseline_.Length()};
   }
 
  private:

@@ -20,12 +20,14 @@ class HandHeld : public MotionModel {
     return all;
   }
 
-  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+  Baseline* MutableBaseline() override { return &baseline_; }
+
+  Motion Draw(RandomStream& rng) const override {
     const double sd = rotation_sd_deg_ * std::numbers::pi / 180.0;
     const double yaw = sd * rng.Normal(), pitch = 0.5 * sd * rng.Normal(), roll = 0.5 * sd * rng.Normal();
     const Eigen::Matrix3d R = RotationFromVector({pitch, yaw, roll});
     const double x = rng.Normal(), y = 0.6 * rng.Normal(), z = 0.5 * rng.Normal();
-    return {{R, Eigen::Vector3d(x, y, z).normalized()}, baseline_.Length(typical_depth_m)};
+    return {{R, Eigen::Vector3d(x, y, z).normalized()}, baseline_.Length()};
   }
 
  private:

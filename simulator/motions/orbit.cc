@@ -18,14 +18,16 @@ class Orbit : public MotionModel {
     return all;
   }
 
-  Motion Draw(double typical_depth_m, RandomStream& rng) const override {
+  Baseline* MutableBaseline() override { return &baseline_; }
+
+  Motion Draw(RandomStream& rng) const override {
     const double side = rng.Uniform() < 0.5 ? -1.0 : 1.0;
     const double angle = side * orbit_deg_ * std::numbers::pi / 180.0;
     // The chord runs sideways and half the angle towards the point; seen from camera 2, which has turned the
     // other way by the whole angle, camera 1 lies sideways and half the angle towards the point too.
     const Eigen::Matrix3d R = RotationFromVector({0.0, angle, 0.0});
     const Eigen::Vector3d centre2_in_cam1(std::cos(0.5 * angle) * side, 0.0, std::abs(std::sin(0.5 * angle)));
-    return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length(typical_depth_m)};
+    return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length()};
   }
 
  private:

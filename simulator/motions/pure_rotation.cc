@@ -11,7 +11,7 @@ class PureRotation : public MotionModel {
     return {Parameter::Real("max_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
                             "bound of the rotation angle, uniform from 0, about any axis")};
   }
-  Motion Draw(double, RandomStream& rng) const override {
+  Motion Draw(RandomStream& rng) const override {
     return {{DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng), Eigen::Vector3d::UnitX()}, 0.0};
   }
 

@@ -61,7 +61,6 @@ class Clusters : public SceneModel {
                     "the rest equally")});
     return all;
   }
-  double TypicalDepth() const override { return depths_.Middle(); }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     depths_.Check();

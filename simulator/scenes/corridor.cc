@@ -49,8 +49,6 @@ class Corridor : public SceneModel {
         Parameter::Real("floor_share", &floor_share_, {0.0, 1.0}, "",
                         "share of the points on the floor; those on neither are on the ceiling")};
   }
-  // Where the images of the walls are about half-way between the middle and the border.
-  double TypicalDepth() const override { return 1.5 * width_m_; }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     if (camera_height_m_ >= height_m_) {

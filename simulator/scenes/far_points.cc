@@ -40,7 +40,6 @@ class FarPoints : public SceneModel {
                                   "least depth of the far points in camera 1, uniform up to ten times that"));
     return all;
   }
-  double TypicalDepth() const override { return near_.Middle(); }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream&) const override {
     near_.Check();

@@ -77,7 +77,6 @@ class ImageClusters : public SceneModel {
              "(Matern)")});
     return all;
   }
-  double TypicalDepth() const override { return depths_.Middle(); }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     depths_.Check();

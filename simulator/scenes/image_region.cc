@@ -80,7 +80,6 @@ class ImageRegion : public SceneModel {
                               "corner and band 0.25, full 1"));
     return all;
   }
-  double TypicalDepth() const override { return depths_.Middle(); }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream&) const override {
     depths_.Check();

@@ -57,7 +57,6 @@ class Lattice : public SceneModel {
             "greatest distance of a point of the motif from the facade's plane, uniform to either "
             "side")};
   }
-  double TypicalDepth() const override { return shape_.depth_m; }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     Check();

@@ -52,7 +52,6 @@ class PlaneScene : public SceneModel {
             Parameter::Real("off_plane_m", &off_plane_m_, {1e-9, 1e9}, "m",
                             "greatest distance of those points from the plane, uniform to either side")};
   }
-  double TypicalDepth() const override { return plane_depth_m_; }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     const CosSin tilt = PortableCosSinOfTurn(plane_tilt_deg_ / 360.0);

@@ -61,7 +61,6 @@ class Room : public SceneModel {
         Parameter::Real("free_radius_m", &free_radius_m_, {0.0, 1e6}, "m",
                         "no box is nearer to camera 1 than this, measured on the floor")};
   }
-  double TypicalDepth() const override { return 0.5 * std::min(width_m_, length_m_); }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     Check();

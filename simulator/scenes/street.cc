@@ -73,8 +73,6 @@ class Street : public SceneModel {
         Parameter::Real("facade_share", &facade_share_, {0.0, 1.0}, "",
                         "share of the points on both facades; those on neither are far away")};
   }
-  // Where the images of the facades are about half-way between the middle and the border.
-  double TypicalDepth() const override { return 2.5 * size_.facade_distance_m; }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     const double far_share = RestOfShares({"road_share", road_share_}, {"facade_share", facade_share_});

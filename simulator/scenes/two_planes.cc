@@ -60,7 +60,6 @@ class TwoPlanes : public SceneModel {
         Parameter::Real("first_plane_share", &first_plane_share_, {0.0, 1.0}, "",
                         "share of the points on the left plane; the others lie on the right one")};
   }
-  double TypicalDepth() const override { return edge_depth_m_; }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {
     const double half_deg = 0.5 * dihedral_deg_;

@@ -20,7 +20,6 @@ class UniformVolumeWorld : public World {
 class UniformVolume : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override { return rcme::Parameters(depths_); }
-  double TypicalDepth() const override { return depths_.Middle(); }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream&) const override {
     depths_.Check();

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "simulator/severity/homography_share.h"
+#include "simulator/severity/parallax.h"
 #include "simulator/severity/point_information.h"
 #include "stats/moments.h"
 #include "stats/spatial_pattern.h"
@@ -38,22 +39,10 @@ void MeasureImages(const Scene& scene, const Observation& observation, Severity*
   severity->image_coverage = ConvexHullArea(std::move(inliers1)) / image_area;
 }
 
-double Quantile(std::vector<double>& values, double probability) {
-  if (values.empty()) return kNaN;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(probability * (static_cast<double>(values.size()) - 1));
-  std::ranges::nth_element(values, at);
-  return *at;
-}
-
 void MeasureParallax(const Scene& scene, const Points& points, Severity* severity) {
-  std::vector<double> angles_deg;
-  for (const Eigen::Vector3d& point : points) {
-    angles_deg.push_back(kDegPerRad *
-                         AngleBetween(scene.cam2_from_cam1_true.R * point, scene.InCamera2(point)));
-  }
-  severity->parallax_median_deg = Quantile(angles_deg, 0.5);
-  severity->parallax_p10_deg = Quantile(angles_deg, 0.1);
+  std::vector<double> angles_deg = ParallaxesDeg(scene, points);
+  severity->parallax_median_deg = QuantileOf(angles_deg, 0.5);
+  severity->parallax_p10_deg = QuantileOf(angles_deg, 0.1);
 }
 
 double Planarity(const Points& points) {

@@ -62,6 +62,7 @@ SceneGenerator MakeScenes(const Condition& c) {
   SetKey(scenes, "num_matches", std::to_string(c.num_matches));
   if (c.world == World::kZeroMotion) SetKey(scenes, "max_rotation_deg", "0");
   if (c.world == World::kParallax) SetKey(scenes, "parallax_deg", fmt::format("{}", c.parallax_deg));
+  scenes.FixBaseline({1, 14, 0, 5});
   return scenes;
 }
 

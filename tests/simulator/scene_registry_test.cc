@@ -29,12 +29,18 @@ Scene Generate(const SceneGenerator& generator, std::uint32_t trial) {
 // Generates a few scenes with each of the cameras and each of the motions, and with the usual ones.
 class SceneContract : public testing::TestWithParam<SceneEntry> {
  protected:
+  // In metres, which needs no search; the parallax that is its default has a test of its own.
+  static void SetBaseline(SceneGenerator* generator) {
+    FindParameter(generator->Parameters(), "parallax_deg").SetFromText("none");
+    FindParameter(generator->Parameters(), "baseline_m").SetFromText("0.005");
+  }
   template <typename Action>  // Action(generator)
   static void ForAllCamerasAndMotions(Action action) {
     for (const CameraEntry& cameras : CameraRegistry()) {
       for (const MotionEntry& motion : MotionRegistry()) {
         SCOPED_TRACE(cameras.name + ", " + motion.name);
         SceneGenerator generator(GetParam().name, cameras.name, motion.name);
+        if (motion.name == "vanishing_baseline") SetBaseline(&generator);
         action(generator);
         if (testing::Test::HasFatalFailure()) return;
       }
@@ -124,7 +130,8 @@ TEST_P(SceneContract, IsAPureFunctionOfTheStream) {
   ForAllCamerasAndMotions([&](SceneGenerator& generator) {
     FindParameter(generator.Parameters(), "num_matches").SetFromText("20");
     SceneGenerator another(GetParam().name, generator.cameras(), generator.motion());
-    FindParameter(another.Parameters(), "num_matches").SetFromText("20");
+    for (const Parameter& parameter : generator.Parameters())
+      FindParameter(another.Parameters(), parameter.name()).SetFromText(parameter.Value());
     const Scene other = Generate(generator, 8), a = Generate(generator, 7), b = Generate(another, 7);
     EXPECT_EQ(a.points_in_cam1, b.points_in_cam1);
     EXPECT_EQ(a.cam2_from_cam1_true.R, b.cam2_from_cam1_true.R);
@@ -210,7 +217,6 @@ TEST_P(SceneContract, ItIsDescribedAndItsUsualCamerasAndMotionAreKnown) {
   EXPECT_FALSE(GetParam().doc.empty());
   EXPECT_NO_THROW(FindEntry(CameraRegistry(), "cameras", GetParam().cameras));
   EXPECT_NO_THROW(FindEntry(MotionRegistry(), "motion", GetParam().motion));
-  EXPECT_GT(GetParam().make()->TypicalDepth(), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SceneContract, testing::ValuesIn(SceneRegistry()),

@@ -27,6 +27,7 @@ inline Scene SceneForOutliers(int num_matches, std::uint32_t trial = 0, const st
   SceneGenerator generator("uniform_volume", "two_pinholes", motion);
   FindParameter(generator.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
   for (const auto& [key, value] : settings) FindParameter(generator.Parameters(), key).SetFromText(value);
+  generator.FixBaseline({.purpose = 81});
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 80});
   Scene scene = generator.Generate(rng);
   scene.repeat_steps_m = {{0.1, 0.0, 0.0}, {0.0, 0.1, 0.0}};

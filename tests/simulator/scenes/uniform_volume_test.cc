@@ -53,7 +53,7 @@ std::vector<Eigen::Vector3d> DrawPointByPoint(size_t num_matches, const MotionBo
   const std::unique_ptr<MotionModel> motion_model = MakeGeneralMotion();
   FindParameter(motion_model->Parameters(), "max_rotation_deg").SetFromText(bounds.max_rotation_deg);
   FindParameter(motion_model->Parameters(), "baseline_m").SetFromText(bounds.baseline_m);
-  const Motion motion = motion_model->Draw(1.0, rng);
+  const Motion motion = motion_model->Draw(rng);
   const RelativePose& pose = motion.cam2_from_cam1;
   std::vector<Eigen::Vector3d> points;
   while (points.size() < num_matches) {

@@ -1,0 +1,28 @@
+#include "simulator/severity/parallax.h"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace rcme {
+
+std::vector<double> ParallaxesDeg(const ViewPair& view, const std::vector<Eigen::Vector3d>& points_in_cam1) {
+  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+  std::vector<double> angles_deg;
+  angles_deg.reserve(points_in_cam1.size());
+  for (const Eigen::Vector3d& point : points_in_cam1) {
+    angles_deg.push_back(kDegPerRad *
+                         AngleBetween(view.cam2_from_cam1_true.R * point, view.InCamera2(point)));
+  }
+  return angles_deg;
+}
+
+double QuantileOf(std::vector<double>& values, double probability) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(probability * (static_cast<double>(values.size()) - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+}  // namespace rcme
