@@ -35,8 +35,11 @@ def mean_cell(row):
 
 
 def median_cell(row):
-    interval = [Html("<br>"), small(f"[{float(row['lower']):.3g}, {float(row['upper']):.3g}]")]
-    return joined([f"{float(row['value']):.3g}", *(interval if row["lower"] and row["upper"] else [])])
+    """Without an interval where few trials, or looking again and again, leave none."""
+    value = f"{float(row['value']):.3g}"
+    if not row["lower"] or not row["upper"]:
+        return joined([value])
+    return joined([value, Html("<br>"), small(f"[{float(row['lower']):.3g}, {float(row['upper']):.3g}]")])
 
 
 def cell(row, num_trials):
