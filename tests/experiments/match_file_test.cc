@@ -333,6 +333,14 @@ TEST_F(MatchFolderTest, IdentityFollowsTheData) {
   EXPECT_NE(MakePlan(FolderStudy()).identity, before);
 }
 
+TEST_F(MatchFolderTest, IdentityDoesNotFollowThePath) {
+  const TempFolder other;
+  std::filesystem::copy(folder_.path(), other.Path("moved"));
+  Study moved = FolderStudy();
+  Override(&moved, "folder", other.Path("moved"));
+  EXPECT_EQ(MakePlan(moved).identity, MakePlan(FolderStudy()).identity);
+}
+
 TEST_F(MatchFolderTest, IdentityFollowsTheTruth) {
   const std::string before = MakePlan(FolderStudy()).identity;
   folder_.Write("INDEX.csv", "pair_id,t_gt_weak\na_000,1\n");

@@ -1,5 +1,6 @@
 #include "experiments/run_until.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,7 +57,8 @@ TEST_F(RunUntilTest, AddsTrialsWhereTheyAreNeeded) {
     EXPECT_TRUE(cell.interval.Contains(cell.rate));
   }
   EXPECT_EQ(cells[0].num_trials, 100);  // hardly a refusal: the first look is enough
-  EXPECT_GT(cells[1].num_trials, 200);  // +-0.06 of a rate of 0.7 takes more
+  // +-0.06 of a rate of 0.7 takes more; each look is at half as many trials more than the one before.
+  EXPECT_THAT(cells[1].num_trials, testing::AnyOf(225, 337, 505, 757));
   const Summary summary = Summarize(ResultStore::OpenForReading(folder_.Path("run")), false);
   for (const SummaryRow& row : summary.rows) {
     if (row.kind != SummaryRow::Kind::kRate) continue;
@@ -104,6 +106,18 @@ TEST_F(RunUntilTest, ARelativeTargetWhereNothingHappensEndsAtTheLimitAndSaysSo) 
   EXPECT_EQ(cells[0].num_trials, 400);
   EXPECT_TRUE(cells[1].is_reached);
   EXPECT_LE(0.5 * (cells[1].interval.upper - cells[1].interval.lower), 0.3 * cells[1].rate);
+}
+
+// One refuses always, which is soon known: the other one decides.
+TEST_F(RunUntilTest, TheEstimatorWithTheWidestIntervalDecides) {
+  Study study = EasyAndHard();
+  study.estimators[0] = study.estimators[1];
+  study.estimators[0].label = "refuses";
+  study.estimators[0].options.mu = -50.0;
+  plan_ = MakePlan(study);
+  const std::vector<CellPrecision> cells = Run("run", Until("ci=0.08"));
+  EXPECT_EQ(cells[1].estimator, 1u);
+  EXPECT_GT(cells[1].num_trials, 100);
 }
 
 TEST_F(RunUntilTest, WeightedTrialsAreRefused) {

@@ -32,7 +32,9 @@ TrialRecord Motion(std::uint32_t trial, double rotation_deg, double direction_de
   record.nees = nees;
   record.inlier_precision = 0.5;
   record.inlier_recall = 0.25;
+  record.num_matches = 40;
   record.num_support = 10 + static_cast<int>(trial);
+  record.num_explained = 20;
   record.mean_entropy = -4.0;
   record.counts.num_candidates = 3;
   record.seconds = 0.002;
@@ -140,6 +142,7 @@ TEST_F(SummarizeTest, MeansByHand) {
   ExpectMean("inlier_precision", {0.5, 0.5, 0.5, 1.0, 0.5, 0.5});
   ExpectMean("inlier_recall", {0.25, 0.25, 0.25, 0.25, 0.25, 0.25});
   ExpectMean("num_support", {10, 11, 12, 13, 14, 15});
+  ExpectMean("explained_share", {0.5, 0.5, 0.5, 0.5, 0.5, 0.5});
   ExpectMean("mean_entropy", {-4, -4, -4, -4, -4, -4});
   ExpectMean("num_candidates", {3, 3, 3, 3, 3, 3, 0, 0, 0, 0});
 }
@@ -177,7 +180,8 @@ TEST_F(SummarizeTest, AnInfiniteNeesCountsInTheMedian) {
 std::vector<TrialRecord> Covered(int num_covered, int n) {
   std::vector<TrialRecord> records;
   for (int t = 0; t < n; ++t) {
-    records.push_back(Motion(static_cast<std::uint32_t>(t), 1.0, 1.0, t < num_covered ? 1.0 : 20.0));
+    // On either side of the 95 % quantile of chi2_5, 11.0705.
+    records.push_back(Motion(static_cast<std::uint32_t>(t), 1.0, 1.0, t < num_covered ? 11.07 : 11.071));
     records.back().condition = 1;
   }
   return records;
@@ -388,32 +392,36 @@ TEST_F(SummarizeTest, EqualDataGiveEqualBytesInWhateverOrderTheyCame) {
   EXPECT_EQ(SummaryAsTable(SummaryOf("run")), SummaryAsTable(SummaryOf("reversed")));
 }
 
-// Two problems of ten: one within the bounds, one whose bound is beyond them; the others were not measured.
+// Four problems of ten, the others were not measured: within the bounds, beyond the one of the rotation (3
+// deg), beyond the one of the direction (15 deg), and between the two numbers with each of its own.
 TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
-  std::vector<ProblemRecord> problems(2);
-  problems[1].trial = 1;
-  for (ProblemRecord& problem : problems) {
-    problem.num_inliers_true = 30.0 + 10.0 * problem.trial;
-    problem.severity.crb_rotation_deg = 0.1 + 5.0 * problem.trial;  // the bound is 3 deg
-    problem.severity.crb_direction_deg = 0.5;
+  const double rotation_deg[] = {0.1, 5.1, 0.1, 2.9}, direction_deg[] = {0.5, 0.5, 15.1, 14.9};
+  std::vector<ProblemRecord> problems(4);
+  std::vector<TrialRecord> records;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    problems[i].trial = i;
+    problems[i].num_inliers_true = 30.0 + 10.0 * i;
+    problems[i].severity.crb_rotation_deg = rotation_deg[i];
+    problems[i].severity.crb_direction_deg = direction_deg[i];
+    records.push_back(Motion(i, 1.0, 1.0, 1.0));
   }
   {
     ResultStore store = ResultStore::OpenForRun(folder_.Path("severe"), MakePlan(study_));
-    store.Add(problems, {Motion(0, 1.0, 1.0, 1.0), Motion(1, 1.0, 1.0, 1.0)});
+    store.Add(problems, records);
   }
   for (const SummaryRow& row : SummaryOf("severe").rows) {
     if (row.condition != 0 || row.estimator != kSceneLabel) continue;
     if (row.quantity == "impossible") {
       EXPECT_EQ(row.value, 0.5);
     } else if (row.quantity == "num_inliers_true") {
-      EXPECT_EQ(row.value, 35.0);
+      EXPECT_EQ(row.value, 45.0);
     } else if (row.quantity == "crb_rotation_deg") {
-      EXPECT_DOUBLE_EQ(row.value, 2.6);
+      EXPECT_NEAR(row.value, 2.05, 1e-12);
     } else if (row.quantity == "planarity") {
       EXPECT_EQ(row.n, 0);  // unknown
     }
   }
-  EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [1.26, 98.74]"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [6.76, 93.24]"), std::string::npos);
 }
 
 // Three problems, the second without a bound: the matches do not determine its motion.

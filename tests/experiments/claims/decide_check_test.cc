@@ -135,6 +135,10 @@ TEST(DecideCheck, MeansAreLookedAtOnceAtTheEnd) {
   EXPECT_EQ(result.verdict, Verdict::kHolds);
   EXPECT_NEAR(result.targets[0].interval.upper - result.targets[0].measured, 1.96 / std::sqrt(1'000.0), 0.01);
 
+  // Student's 97.5 % quantile of four degrees of freedom, tabulated; that of five is 2.571.
+  const CheckResult of_five = DecideCheck(CountingCheck({MeasuredMean("mean")}, {0, 5, 5}), {});
+  EXPECT_NEAR(of_five.targets[0].interval.upper, 2.0 + 2.776 * std::sqrt(2.5 / 5.0), 1e-3);
+
   CoverageCount covered;  // a mean whose interval is Student's covers at its confidence
   check.limits = {0, 5, 5};
   for (std::uint32_t repetition = 0; repetition < 4'000; ++repetition) {

@@ -194,6 +194,17 @@ TEST(MapConditionsOf, KeepTheRatioOfTheAssumedSigma) {
   EXPECT_DOUBLE_EQ(MapConditionsOf(plan).at(0).sampler(8, 0.2)({1, 2, 3})->observed.problem.sigma_px, 0.3);
 }
 
+// Cameras of different focal lengths: exchanged, a true match would lie far off its line.
+TEST(MapOfAStudy, EachImageHasItsOwnCamera) {
+  const StudyPlan plan = PlanWith("cameras: euroc_and_office, num_matches: 40");
+  const MapSampler draw = MapConditionsOf(plan).at(0).sampler(20, 1e-4);
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    const std::optional<MapSample> sample = draw({1, 0, trial});
+    ASSERT_TRUE(sample);
+    EXPECT_LT(RunValidityTrial(*sample).fresh_point_d2, 40.0);  // of chi2_1 with probability 1 - 3e-10
+  }
+}
+
 TEST(MapOfAStudy, CountsOnlyTrialsWithASample) {
   const StudyPlan plan = PlanWith("num_matches: 20", "{motion: [general, pure_rotation]}");
   ValidityMapOptions options{.sigmas_px = {0.5},
