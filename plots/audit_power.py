@@ -51,7 +51,7 @@ def draw(options):
     handles = {}
     for letter, panel, claim in zip(style.letters(len(claims)), axes[0], claims):
         panel.set_title(f"{letter}{style.in_words(claim)}")
-        panel.set_xlabel("Error of the sigma that is told (%)")
+        panel.set_xlabel("Error of the assumed sigma (%)")
         panel.set_ylabel("Share of seeds (%)")
         panel.set_ylim(-3, 103)
         for budget, look in LOOKS.items():
