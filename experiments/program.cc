@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <iostream>
 
+#include "experiments/base/message.h"
+#include "experiments/base/scratch_folder.h"
+#include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
-#include "experiments/message.h"
-#include "experiments/scratch_folder.h"
-#include "experiments/stop_request.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 

@@ -1,5 +1,5 @@
 """Reads what `rcme report` writes for its page: a folder run_NNNN per run with run.json, summary.csv and, where there is
-more than one estimator, comparison.csv (experiments/report_data.h)."""
+more than one estimator, comparison.csv (experiments/analysis/report_data.h)."""
 
 import json
 import pathlib

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "experiments/claims/case_claim.h"
-#include "experiments/trial.h"
+#include "experiments/trial/trial.h"
 
 namespace rcme {
 

@@ -2,7 +2,7 @@
 
 #include "estimator/motion_estimator.h"
 #include "experiments/claims/case.h"
-#include "experiments/trial.h"
+#include "experiments/trial/trial.h"
 
 namespace rcme {
 

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "experiments/claims/claim.h"
-#include "experiments/simulated_data.h"
+#include "experiments/data/simulated_data.h"
 #include "simulator/scene.h"
 
 namespace rcme {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/data_source.h"
+#include "experiments/data/data_source.h"
 #include "stats/equivalence.h"
 #include "stats/random.h"
 

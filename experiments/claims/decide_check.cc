@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/for_each_index.h"
+#include "experiments/base/for_each_index.h"
 #include "stats/bounded_mean.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"

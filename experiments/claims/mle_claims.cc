@@ -8,7 +8,7 @@
 #include "experiments/claims/cramer_rao.h"
 #include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
-#include "experiments/covariance_score.h"
+#include "experiments/trial/covariance_score.h"
 
 namespace rcme {
 namespace {

@@ -6,7 +6,7 @@
 #include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/sample_statistics.h"
-#include "experiments/covariance_score.h"
+#include "experiments/trial/covariance_score.h"
 
 namespace rcme {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "experiments/claims/case_claim.h"
-#include "experiments/study_plan.h"
+#include "experiments/study/study_plan.h"
 
 namespace rcme {
 

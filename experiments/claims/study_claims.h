@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/claims/claim.h"
-#include "experiments/study_plan.h"
+#include "experiments/study/study_plan.h"
 
 namespace rcme {
 

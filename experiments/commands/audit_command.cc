@@ -3,17 +3,17 @@
 #include <memory>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/audit_output.h"
+#include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/claims/audit_output.h"
 #include "experiments/claims/case.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/claims/study_claims.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/draw_figures.h"
-#include "experiments/file_output.h"
-#include "experiments/message.h"
-#include "experiments/stop_request.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
+#include "experiments/analysis/summary_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/result_file/salvage.h"
-#include "experiments/summary_output.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

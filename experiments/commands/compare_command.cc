@@ -2,9 +2,9 @@
 
 #include <memory>
 
+#include "experiments/analysis/comparison_output.h"
+#include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
-#include "experiments/comparison_output.h"
-#include "experiments/file_output.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

@@ -5,12 +5,12 @@
 #include <numbers>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/answer_check.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/real_data/match_file.h"
-#include "experiments/trial.h"
+#include "experiments/data/match_file.h"
+#include "experiments/trial/answer_check.h"
+#include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

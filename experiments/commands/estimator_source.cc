@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "experiments/estimator_file.h"
+#include "experiments/study/estimator_file.h"
 
 namespace rcme {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/study.h"
+#include "experiments/study/study.h"
 
 namespace rcme {
 

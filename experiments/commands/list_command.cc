@@ -7,11 +7,11 @@
 #include <set>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/calibration_file.h"
+#include "experiments/analysis/summary_output.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/commands/commands.h"
-#include "experiments/study_file.h"
-#include "experiments/summary_output.h"
+#include "experiments/data/calibration_file.h"
+#include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"

@@ -4,17 +4,17 @@
 #include <filesystem>
 #include <memory>
 
+#include "experiments/base/file_output.h"
+#include "experiments/base/for_each_index.h"
+#include "experiments/base/message.h"
+#include "experiments/base/progress.h"
+#include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/file_output.h"
-#include "experiments/for_each_index.h"
-#include "experiments/message.h"
-#include "experiments/progress.h"
-#include "experiments/stop_request.h"
-#include "experiments/study_samples.h"
-#include "experiments/validity_map.h"
-#include "experiments/validity_reference.h"
+#include "experiments/validity/study_samples.h"
+#include "experiments/validity/validity_map.h"
+#include "experiments/validity/validity_reference.h"
 
 namespace rcme {
 namespace {

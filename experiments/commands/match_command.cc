@@ -2,12 +2,12 @@
 
 #include <memory>
 
+#include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/file_output.h"
-#include "experiments/message.h"
-#include "experiments/real_data/match_file.h"
-#include "experiments/real_data/match_images.h"
+#include "experiments/data/match_file.h"
+#include "experiments/data/match_images.h"
 
 namespace rcme {
 

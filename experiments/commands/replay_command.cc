@@ -5,8 +5,8 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/result_store.h"
-#include "experiments/trial_fields.h"
+#include "experiments/result_file/result_store.h"
+#include "experiments/trial/trial_fields.h"
 
 namespace rcme {
 namespace {

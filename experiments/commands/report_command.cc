@@ -5,12 +5,12 @@
 #include <memory>
 #include <sstream>
 
+#include "experiments/analysis/report_data.h"
+#include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
+#include "experiments/base/scratch_folder.h"
 #include "experiments/commands/commands.h"
-#include "experiments/draw_figures.h"
-#include "experiments/file_output.h"
-#include "experiments/message.h"
-#include "experiments/report_data.h"
-#include "experiments/scratch_folder.h"
+#include "experiments/commands/draw_figures.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

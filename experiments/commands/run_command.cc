@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <memory>
 
+#include "experiments/analysis/summary_output.h"
+#include "experiments/base/message.h"
+#include "experiments/base/progress.h"
+#include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/message.h"
-#include "experiments/progress.h"
-#include "experiments/run_until.h"
-#include "experiments/stop_request.h"
-#include "experiments/summary_output.h"
+#include "experiments/run/run_until.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

@@ -6,15 +6,15 @@
 #include <fstream>
 #include <memory>
 
+#include "experiments/analysis/trial_output.h"
+#include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
+#include "experiments/base/scratch_folder.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/draw_figures.h"
-#include "experiments/file_output.h"
-#include "experiments/message.h"
-#include "experiments/result_store.h"
-#include "experiments/scratch_folder.h"
-#include "experiments/trial_output.h"
+#include "experiments/result_file/result_store.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

@@ -6,8 +6,8 @@
 
 #include "experiments/claims/study_cases.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/estimator_file.h"
-#include "experiments/study_file.h"
+#include "experiments/study/estimator_file.h"
+#include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

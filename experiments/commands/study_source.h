@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/study_plan.h"
+#include "experiments/study/study_plan.h"
 
 namespace rcme {
 

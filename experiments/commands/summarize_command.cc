@@ -2,9 +2,9 @@
 
 #include <memory>
 
+#include "experiments/analysis/summary_output.h"
+#include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
-#include "experiments/file_output.h"
-#include "experiments/summary_output.h"
 
 namespace rcme {
 

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <memory>
 
+#include "experiments/base/file_output.h"
+#include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/draw_figures.h"
 #include "experiments/commands/tuning_source.h"
-#include "experiments/draw_figures.h"
-#include "experiments/file_output.h"
-#include "experiments/stop_request.h"
 #include "experiments/tuning/transfer_output.h"
 
 namespace rcme {

@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <memory>
 
+#include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
+#include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/tuning_source.h"
-#include "experiments/draw_figures.h"
-#include "experiments/estimator_file.h"
-#include "experiments/file_output.h"
-#include "experiments/message.h"
-#include "experiments/stop_request.h"
+#include "experiments/study/estimator_file.h"
 #include "experiments/tuning/tune_output.h"
 #include "parameters/input_error.h"
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "experiments/commands/number_option.h"
-#include "experiments/study_file.h"
-#include "experiments/tuning/tuning_file.h"
+#include "experiments/study/study_file.h"
+#include "experiments/study/tuning_file.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

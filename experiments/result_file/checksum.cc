@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "experiments/trial_fields.h"
+#include "experiments/trial/trial_fields.h"
 
 namespace rcme {
 namespace {

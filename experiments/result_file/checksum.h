@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/trial.h"
+#include "experiments/trial/trial.h"
 
 namespace rcme {
 

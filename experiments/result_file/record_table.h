@@ -11,7 +11,7 @@
 
 #include "experiments/result_file/column_range.h"
 #include "experiments/result_file/database.h"
-#include "experiments/trial_fields.h"
+#include "experiments/trial/trial_fields.h"
 
 namespace rcme {
 

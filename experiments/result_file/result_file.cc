@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/progress.h"
+#include "experiments/base/progress.h"
 #include "experiments/result_file/checksum.h"
 #include "experiments/result_file/schema.h"
 

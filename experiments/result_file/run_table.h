@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "experiments/study_plan.h"
+#include "experiments/study/study_plan.h"
 
 namespace rcme {
 

@@ -6,7 +6,7 @@
 
 #include "experiments/result_file/checksum.h"
 #include "experiments/result_file/schema.h"
-#include "experiments/study_file.h"
+#include "experiments/study/study_file.h"
 
 namespace rcme {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "experiments/result_file/result_file.h"
-#include "experiments/result_store.h"
+#include "experiments/result_file/result_store.h"
 
 namespace rcme {
 

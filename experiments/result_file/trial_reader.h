@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "experiments/result_file/trial_totals.h"
-#include "experiments/trial.h"
+#include "experiments/trial/trial.h"
 
 namespace rcme {
 

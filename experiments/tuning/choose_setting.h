@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/study/tuning.h"
 #include "experiments/tuning/setting_counts.h"
-#include "experiments/tuning/tuning.h"
 
 namespace rcme {
 

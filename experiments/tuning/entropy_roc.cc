@@ -7,10 +7,10 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/ransac_estimator.h"
-#include "experiments/for_each_index.h"
-#include "experiments/real_data/match_folder.h"
-#include "experiments/trial.h"
-#include "experiments/tuning/tuning.h"
+#include "experiments/base/for_each_index.h"
+#include "experiments/data/match_folder.h"
+#include "experiments/study/tuning.h"
+#include "experiments/trial/trial.h"
 
 namespace rcme {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/progress.h"
-#include "experiments/result_store.h"
-#include "experiments/study_plan.h"
+#include "experiments/base/progress.h"
+#include "experiments/result_file/result_store.h"
+#include "experiments/study/study_plan.h"
 #include "stats/area_under_curve.h"
 
 namespace rcme {

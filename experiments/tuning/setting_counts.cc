@@ -6,7 +6,7 @@
 #include <atomic>
 #include <map>
 
-#include "experiments/for_each_index.h"
+#include "experiments/base/for_each_index.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

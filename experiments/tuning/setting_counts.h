@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "experiments/progress.h"
-#include "experiments/result_store.h"
-#include "experiments/study_plan.h"
+#include "experiments/base/progress.h"
+#include "experiments/result_file/result_store.h"
+#include "experiments/study/study_plan.h"
 #include "experiments/tuning/setting_plan.h"
 #include "stats/risk_control.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/tuning/tuning_file.h"
+#include "experiments/study/tuning_file.h"
 
 namespace rcme {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "estimator/ransac_estimator.h"
-#include "experiments/study.h"
-#include "experiments/tuning/tuning.h"
+#include "experiments/study/study.h"
+#include "experiments/study/tuning.h"
 
 namespace rcme {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "experiments/file_output.h"
-#include "experiments/summary_output.h"
+#include "experiments/analysis/summary_output.h"
+#include "experiments/base/file_output.h"
 #include "experiments/tuning/tune_output.h"
 
 namespace rcme {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <numeric>
 
-#include "experiments/field_text.h"
-#include "experiments/file_output.h"
-#include "experiments/summary_output.h"
+#include "experiments/analysis/summary_output.h"
+#include "experiments/base/field_text.h"
+#include "experiments/base/file_output.h"
 #include "stats/intervals.h"
 
 namespace rcme {

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "experiments/for_each_index.h"
+#include "experiments/base/for_each_index.h"
 
 namespace rcme {
 namespace {

@@ -15,8 +15,8 @@
 #include "estimator/refinement/reprojection_mle.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "estimator/sample_consistency.h"
-#include "experiments/study_file.h"
-#include "experiments/trial.h"
+#include "experiments/study/study_file.h"
+#include "experiments/trial/trial.h"
 #include "stats/distributions.h"
 
 namespace rcme {

@@ -7,7 +7,7 @@
 
 #include "estimator/kernels/block_search.h"
 #include "estimator/refinement/motion_search.h"
-#include "experiments/data_source.h"
+#include "experiments/data/data_source.h"
 
 namespace rcme {
 

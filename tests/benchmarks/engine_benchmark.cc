@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "experiments/run_study.h"
-#include "experiments/summarize.h"
+#include "experiments/analysis/summarize.h"
+#include "experiments/run/run_study.h"
 #include "tests/benchmarks/engine_fixture.h"
 #include "tests/test_support/add_records.h"
 

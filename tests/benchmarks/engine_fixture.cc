@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/run_study.h"
-#include "experiments/study_file.h"
+#include "experiments/run/run_study.h"
+#include "experiments/study/study_file.h"
 
 namespace rcme {
 namespace {

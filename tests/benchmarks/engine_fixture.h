@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "experiments/study_plan.h"
+#include "experiments/study/study_plan.h"
 
 namespace rcme {
 

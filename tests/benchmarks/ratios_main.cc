@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "experiments/file_output.h"
-#include "experiments/study_file.h"
+#include "experiments/base/file_output.h"
+#include "experiments/study/study_file.h"
 #include "tests/benchmarks/arms.h"
 #include "tests/benchmarks/engine_fixture.h"
 #include "tests/benchmarks/fma_peak.h"

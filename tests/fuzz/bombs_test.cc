@@ -8,12 +8,12 @@
 
 #include <filesystem>
 
-#include "experiments/estimator_file.h"
-#include "experiments/real_data/gzip_lines.h"
-#include "experiments/real_data/match_file.h"
-#include "experiments/real_data/match_folder.h"
-#include "experiments/real_data/match_images.h"
-#include "experiments/study_file.h"
+#include "experiments/data/gzip_lines.h"
+#include "experiments/data/match_file.h"
+#include "experiments/data/match_folder.h"
+#include "experiments/data/match_images.h"
+#include "experiments/study/estimator_file.h"
+#include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/compare.h"
-#include "experiments/comparison_output.h"
+#include "experiments/analysis/compare.h"
+#include "experiments/analysis/comparison_output.h"
+#include "experiments/analysis/summary_output.h"
 #include "experiments/result_file/salvage.h"
-#include "experiments/run_study.h"
-#include "experiments/summary_output.h"
+#include "experiments/run/run_study.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 

@@ -6,10 +6,10 @@
 
 #include <filesystem>
 
-#include "experiments/estimator_file.h"
-#include "experiments/real_data/image_header.h"
-#include "experiments/real_data/match_file.h"
-#include "experiments/study_file.h"
+#include "experiments/data/image_header.h"
+#include "experiments/data/match_file.h"
+#include "experiments/study/estimator_file.h"
+#include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "tests/test_support/gzip.h"

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <string>
 
-#include "experiments/audit.h"
+#include "experiments/claims/audit.h"
 #include "experiments/claims/call_estimator.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/claims/cramer_rao.h"

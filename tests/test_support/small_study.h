@@ -5,9 +5,9 @@
 #include <string>
 #include <type_traits>
 
-#include "experiments/study_file.h"
-#include "experiments/study_plan.h"
-#include "experiments/trial_fields.h"
+#include "experiments/study/study_file.h"
+#include "experiments/study/study_plan.h"
+#include "experiments/trial/trial_fields.h"
 
 namespace rcme {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "experiments/audit.h"
+#include "experiments/claims/audit.h"
 #include "experiments/claims/case.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/claims/decide_check.h"

@@ -8,8 +8,8 @@
 #include "experiments/claims/decide_check.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/study_cases.h"
-#include "experiments/study_file.h"
-#include "experiments/study_samples.h"
+#include "experiments/study/study_file.h"
+#include "experiments/validity/study_samples.h"
 #include "tests/test_support/expect_input_error.h"
 
 namespace rcme {

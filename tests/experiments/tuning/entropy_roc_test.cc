@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/ransac_loop.h"
-#include "experiments/trial.h"
+#include "experiments/trial/trial.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "experiments/trial.h"
+#include "experiments/trial/trial.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/temp_folder.h"

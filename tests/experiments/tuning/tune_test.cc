@@ -6,7 +6,7 @@
 #include <mutex>
 #include <set>
 
-#include "experiments/trial.h"
+#include "experiments/trial/trial.h"
 #include "experiments/tuning/tune_output.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/match_text.h"

@@ -1,4 +1,4 @@
-#include "experiments/estimator_file.h"
+#include "experiments/study/estimator_file.h"
 #include "tests/fuzz/harness/only_input_error.h"
 
 // An estimator file: read, and written again.

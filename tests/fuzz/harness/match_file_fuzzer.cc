@@ -1,4 +1,4 @@
-#include "experiments/real_data/match_file.h"
+#include "experiments/data/match_file.h"
 #include "tests/fuzz/harness/file_in_memory.h"
 #include "tests/fuzz/harness/only_input_error.h"
 

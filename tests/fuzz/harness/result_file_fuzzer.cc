@@ -1,9 +1,9 @@
 #include <fstream>
 
-#include "experiments/run_study.h"
-#include "experiments/scratch_folder.h"
-#include "experiments/study_file.h"
-#include "experiments/summary_output.h"
+#include "experiments/analysis/summary_output.h"
+#include "experiments/base/scratch_folder.h"
+#include "experiments/run/run_study.h"
+#include "experiments/study/study_file.h"
 #include "tests/fuzz/harness/only_input_error.h"
 
 namespace rcme {

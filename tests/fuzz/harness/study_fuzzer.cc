@@ -1,4 +1,4 @@
-#include "experiments/study_file.h"
+#include "experiments/study/study_file.h"
 #include "tests/fuzz/harness/only_input_error.h"
 
 // A study file: read, and written again.

@@ -1,0 +1,136 @@
+#include "experiments/analysis/report_data.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "experiments/analysis/comparison_output.h"
+#include "experiments/analysis/report_findings.h"
+#include "experiments/analysis/summary_output.h"
+#include "experiments/base/file_output.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The first trials worth a replay, of one estimator in one condition.
+struct FirstTrials {
+  std::optional<std::uint32_t> failure, refusal;
+};
+
+struct ConditionProgress {
+  std::int64_t num_trials_done = 0;
+  std::int64_t trials_end = 0;     // after the last; a run that was cut off may have gaps
+  std::vector<FirstTrials> first;  // one per estimator
+};
+
+// One pass over a store whose records are known to belong to the plan.
+std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const StudyPlan& plan) {
+  std::vector<ConditionProgress> progress(plan.conditions.size(),
+                                          {0, 0, std::vector<FirstTrials>(plan.study.estimators.size())});
+  store.ForEachRecord([&](const TrialRecord& record) {
+    ConditionProgress& condition = progress.at(record.condition);
+    if (record.estimator == 0) ++condition.num_trials_done;
+    condition.trials_end = record.trial + 1;
+    FirstTrials& first = condition.first.at(record.estimator);
+    if (HasFailed(record, plan.study.failure) && !first.failure) first.failure = record.trial;
+    if (HasRefused(record) && !first.refusal) first.refusal = record.trial;
+  });
+  return progress;
+}
+
+Json TrialOrNull(const std::optional<std::uint32_t>& trial) { return trial ? Json(*trial) : Json(); }
+
+// Conditions with their levels, their progress, and per estimator the first failure and refusal.
+Json ConditionsAsJson(const ResultStore& store, const StudyPlan& plan) {
+  Json conditions = Json::array();
+  const std::vector<ConditionProgress> progress = ProgressOf(store, plan);
+  for (const Condition& condition : plan.conditions) {
+    const ConditionProgress& done = progress[condition.index];
+    Json first = Json::array();
+    for (const FirstTrials& trials : done.first) {
+      first.push_back({{"failure", TrialOrNull(trials.failure)}, {"refusal", TrialOrNull(trials.refusal)}});
+    }
+    conditions.push_back({{"index", condition.index},
+                          {"levels", condition.levels},
+                          {"trials_done", done.num_trials_done},
+                          {"trials_end", done.trials_end},
+                          {"trials_planned", condition.num_trials},
+                          {"first", first}});
+  }
+  return conditions;
+}
+
+// The study's ADEMP block as a list of [key, text]; empty without one.
+Json AdempAsJson(const Study& study) {
+  Json parts = Json::array();
+  if (!study.ademp) return parts;
+  Ademp ademp = *study.ademp;
+  for (const auto& [key, text] : Parts(ademp)) parts.push_back({key, *text});
+  return parts;
+}
+
+Json RunAsJson(const std::string& run, const ResultStore& store, const StudyPlan& plan) {
+  Json estimators = Json::array(), quantities = Json::array(), events = Json::array(), bounds = Json::array();
+  for (const EstimatorSpec& spec : plan.study.estimators) estimators.push_back(spec.label);
+  for (const QuantityHelp& q : SummaryQuantities()) {
+    quantities.push_back({{"name", q.name}, {"kind", q.kind}, {"doc", q.doc}});
+  }
+  for (const TrialEvent& event : TrialEvents()) {
+    events.push_back({{"name", event.name}, {"doc", event.doc}});
+  }
+  FailureBounds failure = plan.study.failure;
+  for (const Parameter& p : Parameters(failure)) {
+    bounds.push_back({{"name", p.name()}, {"value", p.Value()}, {"unit", p.unit()}});
+  }
+  return {{"run", run},
+          {"rcme_version", RCME_VERSION},
+          {"name", plan.study.name},
+          {"description", plan.study.description},
+          {"ademp", AdempAsJson(plan.study)},
+          {"seed", plan.study.seed},
+          {"trials_planned", plan.NumTrials()},
+          {"until", store.UntilOptionsOfAll()},
+          {"study_yaml", plan.study_yaml},
+          {"factors", plan.factor_names},
+          {"estimators", estimators},
+          {"conditions", ConditionsAsJson(store, plan)},
+          {"failure_bounds", bounds},
+          {"quantities", quantities},
+          {"events", events}};
+}
+
+void WriteFiles(const std::string& run, const std::string& against, const std::string& folder) {
+  const ResultStore store = ResultStore::OpenForReading(run);
+  const Summary summary = Summarize(store, /*with_times=*/false);
+  if (summary.num_trials_done == 0) {
+    throw InputError(fmt::format("{}: holds no trial yet; `rcme run` with --out {} adds them", run, run));
+  }
+  const Comparison comparison = Compare(store, against);
+  Json json = RunAsJson(run, store, store.Plan());
+  json["trials_done"] = summary.num_trials_done;
+  json["reference"] = comparison.reference;
+  json["caution"] = comparison.caution;
+  json["findings"] = FindingsOf(summary, comparison);
+  // Names are whatever bytes the study and the command line hold: what is no UTF-8 is replaced.
+  WriteFileWhole(folder + "/run.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));
+  if (!comparison.rows.empty()) WriteFileWhole(folder + "/comparison.csv", ComparisonAsCsv(comparison));
+}
+
+}  // namespace
+
+void WriteReportData(const std::string& run, const std::string& against, const std::string& folder) {
+  try {
+    WriteFiles(run, against, folder);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    if (message.find(run) != std::string::npos) throw;
+    throw InputError(fmt::format("{}: {}", run, message));  // one of several runs
+  }
+}
+
+}  // namespace rcme

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/analysis/compare.h"
+#include "experiments/analysis/summarize.h"
+
+namespace rcme {
+
+// What a run shows, in sentences: the range of each estimator's failure rate with its intervals and the
+// conditions at its ends; then, on the same trials, in how many conditions each fails and refuses more or
+// less often than the reference (Holm-adjusted McNemar p below 0.05). Nothing is said of what has no trials
+// or no partner.
+std::vector<std::string> FindingsOf(const Summary& summary, const Comparison& comparison);
+
+}  // namespace rcme

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/analysis/coverage_verdict.h"
+#include "experiments/result_file/result_store.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+
+// Which intervals the rates have.
+enum class IntervalKind {
+  kExact,         // Clopper-Pearson
+  kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
+  kWeighted,      // of weighted trials, with the cautious upper end (stats/weighted_rate.h)
+};
+
+// One number of one estimator in one condition, never without what says how far to trust it.
+struct SummaryRow {
+  enum class Kind { kRate, kMean, kMedian };
+
+  std::uint32_t condition = 0;
+  std::vector<std::string> levels;  // one per factor
+  std::string estimator;            // label; kSceneLabel: of the problem, whoever solves it
+  std::string quantity;
+  Kind kind = Kind::kRate;
+  double value = 0.0;  // NaN where n is 0
+  IntervalKind interval_kind = IntervalKind::kExact;
+  Interval interval;            // rates and medians: 95 %; NaN where a median's would not hold
+  double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
+  std::int64_t n = 0;           // trials that the number is of
+  std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
+};
+
+std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median"
+
+// Stands in the place of an estimator in rows about the problems themselves.
+inline constexpr const char* kSceneLabel = "scene";
+
+struct Summary {
+  std::string study;
+  std::vector<std::string> factor_names;
+  std::vector<SummaryRow> rows;
+  std::int64_t num_trials_done = 0, num_trials_planned = 0;
+};
+
+// A quantity of the summary, for `rcme list quantities`.
+struct QuantityHelp {
+  std::string name, kind, doc;
+};
+const std::vector<QuantityHelp>& SummaryQuantities();
+
+// Where the trials of a condition are weighted, only the rates of all trials are given: of a part of the
+// trials they would be ratios of estimates.
+//
+// Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
+// one pass, in memory that does not grow with the trials. Times (which no two runs share) only if asked for.
+Summary Summarize(const ResultStore& store, bool with_times);
+
+}  // namespace rcme

@@ -1,0 +1,220 @@
+#include "experiments/analysis/summary_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "experiments/base/field_text.h"
+
+namespace rcme {
+namespace {
+
+// "12.34 % [10.10, 14.80]", "1.23 +- 0.04" or "1.23 [1.20, 1.31]"; with its n where that is not all of the
+// trials, and a coverage with its verdict.
+std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
+  if (row.n == 0) return "-";
+  const std::string of = row.n == num_trials ? "" : fmt::format(" (n {})", row.n);
+  if (row.interval_kind == IntervalKind::kWeighted) {
+    return fmt::format("{:.3g} % +- {:.2g} [{:.2g}, {:.2g}]{}", 100.0 * row.value, 100.0 * row.standard_error,
+                       100.0 * row.interval.lower, 100.0 * row.interval.upper, of);
+  }
+  if (row.kind == SummaryRow::Kind::kRate) {
+    const std::string verdict =
+        row.coverage_verdict ? ": " + CoverageVerdictInWords(*row.coverage_verdict) : "";
+    return fmt::format("{:.2f} % [{:.2f}, {:.2f}]{}{}", 100.0 * row.value, 100.0 * row.interval.lower,
+                       100.0 * row.interval.upper, of, verdict);
+  }
+  if (row.kind == SummaryRow::Kind::kMedian) {
+    const bool is_bounded = std::isfinite(row.interval.lower) && std::isfinite(row.interval.upper);
+    return is_bounded ? fmt::format("{:.3g} [{:.3g}, {:.3g}]{}", row.value, row.interval.lower,
+                                    row.interval.upper, of)
+                      : fmt::format("{:.3g}{}", row.value, of);
+  }
+  if (std::isnan(row.standard_error))
+    return fmt::format("{:.3g}{}", row.value, of);  // of one trial, or infinite
+  return fmt::format("{:.3g} +- {:.2g}{}", row.value, row.standard_error, of);
+}
+
+// One word.
+std::string IntervalKindName(IntervalKind kind) {
+  switch (kind) {
+    case IntervalKind::kExact:
+      return "exact";
+    case IntervalKind::kAnytimeValid:
+      return "anytime_valid";
+    case IntervalKind::kWeighted:
+      return "weighted";
+  }
+  return "";
+}
+
+// For people.
+std::string IntervalKindInWords(IntervalKind kind) {
+  switch (kind) {
+    case IntervalKind::kExact:
+      return "exact 95 % (Clopper-Pearson)";
+    case IntervalKind::kAnytimeValid:
+      return "anytime-valid 95 % (confidence sequence)";
+    case IntervalKind::kWeighted:
+      return "weighted 95 % (Fay-Feuer, cautious upper end)";
+  }
+  return "";
+}
+
+// "exact 95 % (Clopper-Pearson)", or several kinds.
+std::string IntervalKindsIn(const Summary& summary) {
+  std::set<std::string> kinds;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.kind == SummaryRow::Kind::kRate) kinds.insert(IntervalKindInWords(row.interval_kind));
+  }
+  return fmt::format("{}", fmt::join(kinds, " and "));
+}
+
+// Empty where the end is unknown or infinite.
+std::string CsvFinite(double x) { return std::isfinite(x) ? CsvNumber(x) : ""; }
+
+// The last two columns: the verdict of a coverage, and how many trials would decide it.
+std::string VerdictFields(const SummaryRow& row) {
+  if (!row.coverage_verdict) return ",";
+  const bool is_undecided = row.coverage_verdict->verdict == Verdict::kUndecided;
+  return CoverageVerdictName(row.coverage_verdict->verdict) + "," +
+         (is_undecided ? CsvFinite(row.coverage_verdict->trials_to_decide) : "");
+}
+
+// How hard the problems were: one row per condition. Empty where nothing was measured.
+std::string SeverityAsTable(const Summary& summary) {
+  const std::vector<std::string> shown = {"impossible",          "image_coverage",   "inlier_clark_evans",
+                                          "parallax_median_deg", "homography_share", "crb_rotation_deg",
+                                          "crb_direction_deg"};
+  std::vector<std::vector<std::string>> rows = {summary.factor_names};
+  rows[0].insert(rows[0].end(), shown.begin(), shown.end());
+  std::int64_t num_measured = 0;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.estimator != kSceneLabel) continue;
+    if (row.quantity == "impossible") {  // the first of each condition
+      rows.push_back(row.levels);
+      num_measured += row.n;
+    }
+    if (std::count(shown.begin(), shown.end(), row.quantity) > 0) rows.back().push_back(Cell(row, row.n));
+  }
+  if (num_measured == 0) return "";
+  return fmt::format("The problems themselves (impossible: Cramer-Rao bound beyond a failure bound)\n\n{}\n",
+                     FormatColumns(rows));
+}
+
+}  // namespace
+
+std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<size_t> widths;
+  for (const std::vector<std::string>& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (size_t r = 0; r < rows.size(); ++r) {
+    std::string line;
+    for (size_t c = 0; c < rows[r].size(); ++c) line += fmt::format("{:<{}}  ", rows[r][c], widths[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+    if (r > 0) continue;
+    for (const size_t width : widths) text += std::string(width, '-') + "  ";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string SummaryAsTable(const Summary& summary) {
+  const std::vector<std::string> shown = {
+      "failure",     "no_candidate",       "other_refusal",       "kappa_flag", "nees_coverage",
+      "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"};
+  std::vector<std::vector<std::string>> rows = {summary.factor_names};
+  rows[0].insert(rows[0].end(), {"estimator", "n"});
+  const auto is_present = [&](const std::string& quantity) {
+    return std::any_of(summary.rows.begin(), summary.rows.end(),
+                       [&](const SummaryRow& row) { return row.quantity == quantity; });
+  };
+  for (const std::string& quantity : shown) {
+    if (is_present(quantity)) rows[0].push_back(quantity);
+  }
+  std::int64_t num_trials = 0;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.quantity == "not_scored") {  // the first quantity of each condition and estimator
+      num_trials = row.n;
+      rows.push_back(row.levels);
+      rows.back().insert(rows.back().end(), {row.estimator, fmt::format("{}", row.n)});
+    }
+    if (std::count(shown.begin(), shown.end(), row.quantity) > 0 && row.estimator != kSceneLabel)
+      rows.back().push_back(Cell(row, num_trials));
+  }
+  std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study,
+                                 summary.num_trials_done, summary.num_trials_planned, FormatColumns(rows));
+  text += SeverityAsTable(summary);
+  text += fmt::format(
+      "Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n"
+      "medians with distribution-free 95 % intervals\n",
+      IntervalKindsIn(summary));
+  text +=
+      "(n ...) where a number is not of all trials: without a known truth a motion neither fails nor "
+      "succeeds.\n"
+      "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
+      "flag.\n"
+      "nees_coverage: truth inside the reported 95 % region; covers: the whole interval within 95 +- 1 %, "
+      "does\n"
+      "not cover: wholly outside. nees_median: 4.35 expected. All quantities: --format csv or json.\n";
+  return text;
+}
+
+std::string SummaryAsCsv(const Summary& summary) {
+  std::string text = "study,condition,";
+  for (const std::string& factor : summary.factor_names) text += CsvField(factor) + ",";
+  text += "estimator,quantity,kind,value,lower,upper,standard_error,n,interval,verdict,trials_to_decide\n";
+  for (const SummaryRow& row : summary.rows) {
+    text += fmt::format("{},{},", CsvField(summary.study), row.condition);
+    for (const std::string& level : row.levels) text += CsvField(level) + ",";
+    const bool is_rate = row.kind == SummaryRow::Kind::kRate;
+    const bool has_interval = row.kind != SummaryRow::Kind::kMean;
+    const bool has_standard_error = is_rate ? row.interval_kind == IntervalKind::kWeighted : !has_interval;
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity,
+                        KindName(row.kind), CsvNumber(row.value),
+                        has_interval ? CsvFinite(row.interval.lower) : "",
+                        has_interval ? CsvFinite(row.interval.upper) : "",
+                        has_standard_error ? CsvNumber(row.standard_error) : "", row.n,
+                        is_rate ? IntervalKindName(row.interval_kind) : "", VerdictFields(row));
+  }
+  return text;
+}
+
+std::string SummaryAsJson(const Summary& summary) {
+  nlohmann::ordered_json json = {{"study", summary.study},
+                                 {"trials_done", summary.num_trials_done},
+                                 {"trials_planned", summary.num_trials_planned},
+                                 {"rows", nlohmann::ordered_json::array()}};
+  for (const SummaryRow& row : summary.rows) {
+    nlohmann::ordered_json entry = {{"condition", row.condition}};
+    for (size_t f = 0; f < row.levels.size(); ++f) entry["levels"][summary.factor_names[f]] = row.levels[f];
+    entry["estimator"] = row.estimator;
+    entry["quantity"] = row.quantity;
+    entry["value"] = JsonNumber(row.value);
+    entry["kind"] = KindName(row.kind);
+    if (row.kind == SummaryRow::Kind::kMean) {
+      entry["standard_error"] = JsonNumber(row.standard_error);
+    } else {
+      entry["interval"] = {JsonNumber(row.interval.lower), JsonNumber(row.interval.upper)};
+    }
+    if (row.kind == SummaryRow::Kind::kRate) entry["interval_kind"] = IntervalKindName(row.interval_kind);
+    entry["n"] = row.n;
+    if (row.coverage_verdict) {
+      entry["verdict"] = CoverageVerdictName(row.coverage_verdict->verdict);
+      entry["trials_to_decide"] = row.coverage_verdict->verdict == Verdict::kUndecided
+                                      ? JsonNumber(row.coverage_verdict->trials_to_decide)
+                                      : nlohmann::ordered_json();
+    }
+    json["rows"].push_back(std::move(entry));
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace rcme

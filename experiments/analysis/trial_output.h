@@ -1,0 +1,41 @@
+// One trial for people: the data of its picture, and a short summary.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/study/study_plan.h"
+#include "experiments/trial/trial.h"
+
+namespace rcme {
+
+// The estimator worth looking at where nobody chose one: the first that failed or refused, else the first.
+size_t MostTelling(const StudyPlan& plan, const TrialResult& result);
+
+// What plots/show_trial.py draws, as one JSON object. Lists over matches have the matches' order; matrices
+// are row-major lists of nine; what is unknown or not defined is null.
+//
+//   study, seed, condition, trial, trials_planned, origin, sigma_px (told)
+//   factors, parts     [name, level] each; parts are scene, cameras, motion, noise, outliers
+//   bounds, severity   by name
+//   cameras            the true ones, image 1 first
+//   matches            [x1, y1, x2, y2] each, px
+//   kinds              "inlier", "outlier", or "undetectable": wrong, but on the true epipolar line
+//   points_in_cam1_m   the point each match is of, or was of
+//   views              per camera: its centre_in_cam1_m, and edges_in_cam1: the rays of the left, right,
+//                      upper and lower edge of the image, straight beside the principal point
+//   truth              R, t, baseline_m, F; t and F are null where the direction is not known
+//   selected           up to eight matches, spread over image 1, whose epipolar lines are drawn
+//   drawn              numbers of the estimators to draw, in this order
+//   estimators         all of them: label, status, message, outcome (success, failed, refused, not_scored),
+//                      errors, inliers, R, t, F, and centre2_in_cam1_m: where it puts camera 2, at the true
+//                      baseline's length
+//
+// Real pairs have no kinds, points and views. F of the truth is between the true cameras, F of an estimate
+// between those the estimators are told.
+std::string TrialAsJson(const StudyPlan& plan, const TrialResult& result, const std::vector<size_t>& drawn);
+
+// The condition, how hard the problem is, and a row per estimator.
+std::string TrialAsText(const StudyPlan& plan, const TrialResult& result);
+
+}  // namespace rcme

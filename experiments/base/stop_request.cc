@@ -1,0 +1,43 @@
+#include "experiments/base/stop_request.h"
+
+#include <atomic>
+
+namespace rcme {
+namespace {
+
+std::atomic<int> stop_signal = 0;  // 0: none has come
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may use nothing else");
+
+void Note(int signal) { stop_signal = signal; }
+
+void Handle(int signal, struct sigaction* before) {
+  sigaction(signal, nullptr, before);
+  if (before->sa_handler == SIG_IGN) return;
+  struct sigaction action {};
+  action.sa_handler = Note;
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  sigaction(signal, &action, nullptr);
+}
+
+}  // namespace
+
+StopOnSignals::StopOnSignals() {
+  stop_signal = 0;
+  Handle(SIGINT, &interrupt_before_);
+  Handle(SIGTERM, &terminate_before_);
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &ignore, &pipe_before_);
+}
+
+StopOnSignals::~StopOnSignals() {
+  sigaction(SIGINT, &interrupt_before_, nullptr);
+  sigaction(SIGTERM, &terminate_before_, nullptr);
+  sigaction(SIGPIPE, &pipe_before_, nullptr);
+}
+
+bool IsStopRequested() { return stop_signal != 0; }
+
+int StopExitCode() { return 128 + stop_signal; }
+
+}  // namespace rcme

@@ -1,0 +1,119 @@
+#include "experiments/claims/audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "experiments/base/for_each_index.h"
+#include "experiments/base/message.h"
+#include "experiments/base/progress.h"
+#include "experiments/claims/decide_check.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+// FNV-1a of the claim's id and the check's number: the condition that names the check's random streams.
+std::uint32_t StreamCondition(const std::string& id, size_t check) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : fmt::format("{} {}", id, check)) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  }
+  return hash;
+}
+
+int CountTargets(const std::vector<Claim>& claims) {
+  int count = 0;
+  for (const Claim& claim : claims) {
+    for (const Check& check : claim.checks) {
+      count += static_cast<int>(std::count_if(check.targets.begin(), check.targets.end(),
+                                              [](const Target& t) { return t.IsClaimed(); }));
+    }
+  }
+  return count;
+}
+
+bool IsNamed(const Claim& claim, const std::string& name) {
+  return claim.id == name || claim.id.starts_with(name + ".");
+}
+
+// Seconds on all threads that the check takes if no verdict stops it.
+double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
+  if (!check.not_possible.empty()) return 0.0;
+  constexpr std::uint32_t kLeastTimed = 4;
+  constexpr double kLeastSeconds = 0.002, kMostSeconds = 0.1;
+  const auto start = std::chrono::steady_clock::now();
+  std::uint32_t num_timed = 0;
+  std::chrono::duration<double> elapsed{};
+  while ((num_timed < kLeastTimed || elapsed.count() < kLeastSeconds) && elapsed.count() < kMostSeconds) {
+    check.trial({run.seed, run.condition, num_timed++, 0});
+    elapsed = std::chrono::steady_clock::now() - start;
+  }
+  const double threads = check.is_timed ? 1.0 : num_threads;
+  return elapsed.count() / num_timed * static_cast<double>(check.limits.Max(run.budget)) / threads;
+}
+
+// Work of each check of the claims, in their order.
+std::vector<double> WorkPerCheck(const std::vector<Claim>& claims, const AuditOptions& options) {
+  std::vector<double> work;
+  for (const Claim& claim : claims) {
+    for (size_t i = 0; i < claim.checks.size(); ++i) {
+      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, 0.0};
+      work.push_back(WorkOf(claim.checks[i], run, NumThreads(options.num_threads)));
+    }
+  }
+  return work;
+}
+
+}  // namespace
+
+std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector<std::string>& only) {
+  for (const std::string& name : only) {
+    if (std::none_of(all.begin(), all.end(), [&](const Claim& claim) { return IsNamed(claim, name); })) {
+      throw InputError(fmt::format("--only: '{}' is not allowed; `rcme list claims` shows the ids", name));
+    }
+  }
+  std::vector<Claim> selected;
+  for (const Claim& claim : all) {
+    const auto names_it = [&](const std::string& name) { return IsNamed(claim, name); };
+    if (only.empty() || std::any_of(only.begin(), only.end(), names_it)) selected.push_back(claim);
+  }
+  return selected;
+}
+
+Audit PlanAudit(const std::vector<Claim>& all, const AuditOptions& options) {
+  Audit audit{options, CountTargets(all), 0.0, SelectClaims(all, options.only), {}};
+  audit.confidence = 1.0 - kAuditErrorRate / std::max(audit.num_targets, 1);
+  return audit;
+}
+
+Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
+  Audit audit = PlanAudit(all, options);
+  const std::vector<double> work = WorkPerCheck(audit.claims, options);
+  double total_work = 0.0;
+  for (const double seconds : work) total_work += seconds;
+  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
+               audit.claims.size(), work.size(), DurationInWords(total_work),
+               NumThreads(options.num_threads));
+  Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
+  double done_work = 0.0;
+  size_t next = 0;
+  for (const Claim& claim : audit.claims) {
+    ClaimResult result;
+    for (size_t i = 0; i < claim.checks.size(); ++i) {
+      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, audit.confidence,
+                         options.num_threads};
+      result.checks.push_back(DecideCheck(claim.checks[i], run));
+      const auto seconds_before = static_cast<std::int64_t>(done_work);
+      done_work += work[next++];
+      progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
+    }
+    JudgeClaim(claim, &result);
+    audit.results.push_back(std::move(result));
+  }
+  return audit;
+}
+
+}  // namespace rcme

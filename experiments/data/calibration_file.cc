@@ -1,0 +1,72 @@
+#include "experiments/data/calibration_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/data/match_file.h"
+#include "parameters/input_error.h"
+#include "simulator/camera_registry.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char* kCameras = "own_intrinsics";
+
+// The last value of a key; empty: there is none.
+std::string ValueOf(const Settings& settings, const std::string& key) {
+  std::string last;
+  for (const auto& [name, value] : settings) {
+    if (name == key) last = value;
+  }
+  return last;
+}
+
+void AddIntrinsics(const std::string& number, const Camera& camera, Settings* settings) {
+  const std::pair<std::string, double> values[] = {
+      {"fx" + number + "_px", camera.fx},          {"fy" + number + "_px", camera.fy},
+      {"cx" + number + "_px", camera.cx},          {"cy" + number + "_px", camera.cy},
+      {"image" + number + "_width", camera.width}, {"image" + number + "_height", camera.height}};
+  for (const auto& [key, value] : values) settings->emplace_back(key, fmt::format("{}", value));
+}
+
+Settings IntrinsicsIn(const std::string& path) {
+  const MatchFile file = ReadMatchFile(path);
+  Settings intrinsics;
+  AddIntrinsics("1", file.camera1, &intrinsics);
+  AddIntrinsics("2", file.camera2, &intrinsics);
+  const auto model = FindEntry(CameraRegistry(), "cameras", kCameras).make();
+  const std::vector<Parameter> parameters = model->Parameters();
+  try {
+    for (const auto& [key, value] : intrinsics) FindParameter(parameters, key).SetFromText(value);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", path, error.what()));
+  }
+  return intrinsics;
+}
+
+}  // namespace
+
+SettingHelp CalibrationHelp() {
+  return {kCalibrationKey, "", "",
+          "a file with the header lines of a match file: # size1: w h, # K1_fx_fy_cx_cy: ..., and 2",
+          "whose cameras, relative to the working directory"};
+}
+
+Settings WithCalibration(const Settings& settings) {
+  if (ValueOf(settings, "cameras") != kCamerasFromFile) return settings;
+  const std::string path = ValueOf(settings, kCalibrationKey);
+  if (path.empty()) {
+    throw InputError(fmt::format("cameras: {} needs the key '{}': {}", kCamerasFromFile, kCalibrationKey,
+                                 CalibrationHelp().allowed));
+  }
+  Settings expanded = {{"cameras", kCameras}};
+  for (const Settings& part : {IntrinsicsIn(path), settings}) {
+    std::ranges::copy_if(part, std::back_inserter(expanded), [](const auto& setting) {
+      return setting.first != "cameras" && setting.first != kCalibrationKey;
+    });
+  }
+  return expanded;
+}
+
+}  // namespace rcme

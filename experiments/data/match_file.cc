@@ -1,0 +1,208 @@
+#include "experiments/data/match_file.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+
+#include "estimator/problem_check.h"
+#include "experiments/base/file_output.h"
+#include "experiments/data/gzip_lines.h"
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
+constexpr size_t kMaxColumns = 1000;
+constexpr size_t kMaxSceneBytes = 200;
+constexpr std::array<std::string_view, 7> kHeaderKeys = {
+    "size1", "size2", "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit", "scene"};
+
+std::string_view Trim(std::string_view text) {
+  const size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> Split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (true) {
+    const size_t end = text.find(separator);
+    const std::string_view part = Trim(text.substr(0, end));
+    if (separator != ' ' || !part.empty()) parts.emplace_back(part);
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+// The values of the known header keys with the lines they stand on.
+class Header {
+ public:
+  explicit Header(std::string path) : path_(std::move(path)) {}
+
+  void AddLine(std::string_view line, const GzipLines& lines) {
+    const size_t colon = line.find(':');
+    if (colon == std::string_view::npos) return;  // a comment
+    const std::string key(Trim(line.substr(1, colon - 1)));
+    if (std::ranges::find(kHeaderKeys, key) == kHeaderKeys.end()) return;
+    const Entry entry{std::string(Trim(line.substr(colon + 1))), lines.line_number()};
+    if (!entries_.emplace(key, entry).second) lines.Fail(fmt::format("key '{}' stands twice", key));
+  }
+
+  bool Has(const std::string& key) const { return entries_.count(key) > 0; }
+  std::string Text(const std::string& key) const { return entries_.at(key).text; }
+
+  // The `count` numbers of a key that must be there.
+  std::vector<double> Numbers(const std::string& key, size_t count) const {
+    if (!Has(key)) throw InputError(fmt::format("{}: header key '# {}: ...' is missing", path_, key));
+    std::vector<double> numbers;
+    for (const std::string& word : Split(entries_.at(key).text, ' ')) {
+      double number = 0.0;
+      if (!ParseReal(word, &number)) Fail(key, fmt::format("{} is not a finite number", Quoted(word)));
+      numbers.push_back(number);
+    }
+    if (numbers.size() != count)
+      Fail(key, fmt::format("has {} numbers; {} are needed", numbers.size(), count));
+    return numbers;
+  }
+
+  [[noreturn]] void Fail(const std::string& key, const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}: {}", path_, entries_.at(key).line_number, key, what));
+  }
+
+ private:
+  struct Entry {
+    std::string text;
+    int line_number = 0;
+  };
+  std::string path_;
+  std::map<std::string, Entry> entries_;
+};
+
+Camera CameraFrom(const Header& header, const std::string& size_key, const std::string& k_key) {
+  const std::vector<double> size = header.Numbers(size_key, 2);
+  for (const double length : size) {
+    if (length >= 1.0 && length <= 1e6 && length == std::floor(length)) continue;
+    header.Fail(size_key, "width and height must be whole numbers in [1, 1e6] px");
+  }
+  const std::vector<double> k = header.Numbers(k_key, 4);
+  const Camera camera{k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1])};
+  if (!camera.IsValid()) header.Fail(k_key, "K is singular or mirrored; fx and fy must be > 0");
+  return camera;
+}
+
+std::optional<RelativePose> TruePoseFrom(const Header& header) {
+  if (!header.Has("R_rowmajor") && !header.Has("t_unit")) return std::nullopt;
+  const std::vector<double> r = header.Numbers("R_rowmajor", 9);
+  const std::vector<double> t = header.Numbers("t_unit", 3);
+  RelativePose pose;
+  pose.R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+  pose.t << t[0], t[1], t[2];
+  const double misfit = (pose.R * pose.R.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (!(misfit < 1e-4) || pose.R.determinant() < 0.0) header.Fail("R_rowmajor", "is not a rotation matrix");
+  if (!(std::abs(pose.t.norm() - 1.0) < 1e-4)) header.Fail("t_unit", "is not of unit length");
+  pose.t.normalize();
+  return pose;
+}
+
+bool AreColumnNames(const std::vector<std::string>& fields) {
+  return std::ranges::find_first_of(fields, kColumns) != fields.end();
+}
+
+bool HasColumnsFirst(const std::vector<std::string>& fields) {
+  return fields.size() >= kColumns.size() && std::equal(kColumns.begin(), kColumns.end(), fields.begin());
+}
+
+// A name that tables, pages and JSON show.
+std::string SceneFrom(const Header& header) {
+  if (!header.Has("scene")) return MatchFile().scene;
+  const std::string scene = header.Text("scene");
+  if (FindNotPlain(scene) != std::string::npos)
+    header.Fail("scene",
+                fmt::format("{} is not allowed; give UTF-8 without control characters", Quoted(scene)));
+  if (scene.size() > kMaxSceneBytes)
+    header.Fail("scene", fmt::format("the name is too long; at most {} bytes are allowed", kMaxSceneBytes));
+  return scene;
+}
+
+Correspondence MatchFrom(const std::vector<std::string>& fields, const GzipLines& lines) {
+  if (fields.size() < kColumns.size())
+    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", fields.size()));
+  std::array<double, 4> x{};
+  for (size_t i = 0; i < x.size(); ++i) {
+    if (ParseReal(fields[i], &x[i]) && std::abs(x[i]) <= kMaxCoordinatePx) continue;
+    lines.Fail(fmt::format("{}: {} is not a finite number in [{}, {}] px", kColumns[i], Quoted(fields[i]),
+                           -kMaxCoordinatePx, kMaxCoordinatePx));
+  }
+  return {{x[0], x[1]}, {x[2], x[3]}};
+}
+
+// A match, or the names of the columns, which stand before the first match.
+void AddRow(std::string_view line, const GzipLines& lines, std::vector<Correspondence>* matches) {
+  if (std::ranges::count(line, ',') >= static_cast<std::ptrdiff_t>(kMaxColumns))
+    lines.Fail(fmt::format("too many columns; at most {} are allowed", kMaxColumns));
+  const std::vector<std::string> fields = Split(line, ',');
+  if (!AreColumnNames(fields)) {
+    if (matches->size() == kMaxMatchesPerFile)
+      lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
+    matches->push_back(MatchFrom(fields, lines));
+  } else if (!matches->empty() || !HasColumnsFirst(fields)) {
+    lines.Fail(fmt::format("column names {} are not allowed; give {}[,...], before the first match, or none",
+                           Quoted(line), fmt::join(kColumns, ",")));
+  }
+}
+
+}  // namespace
+
+MatchFile ReadMatchFile(const std::string& path) {
+  MatchFile file;
+  file.path = path;
+  Header header(path);
+  GzipLines lines(path, {"match file", "a match file"});
+  for (std::string_view line; lines.Next(&line);) {
+    if (lines.line_number() == 1 && line.starts_with(kByteOrderMark))
+      line.remove_prefix(kByteOrderMark.size());
+    line = Trim(line);
+    if (line.empty()) continue;
+    if (line.front() == '#') {
+      header.AddLine(line, lines);
+    } else {
+      AddRow(line, lines, &file.matches);
+    }
+  }
+  file.camera1 = CameraFrom(header, "size1", "K1_fx_fy_cx_cy");
+  file.camera2 = CameraFrom(header, "size2", "K2_fx_fy_cx_cy");
+  file.cam2_from_cam1_true = TruePoseFrom(header);
+  file.scene = SceneFrom(header);
+  return file;
+}
+
+void WriteMatchFile(const MatchFile& file, const std::string& path) {
+  std::string text = fmt::format("# scene: {}\n", file.scene);
+  int index = 1;
+  for (const Camera& camera : {file.camera1, file.camera2}) {
+    text += fmt::format("# size{}: {} {}\n", index, camera.width, camera.height);
+    text +=
+        fmt::format("# K{}_fx_fy_cx_cy: {} {} {} {}\n", index++, camera.fx, camera.fy, camera.cx, camera.cy);
+  }
+  if (const std::optional<RelativePose>& pose = file.cam2_from_cam1_true) {
+    const Eigen::Matrix3d R_rows = pose->R.transpose();
+    text += fmt::format("# R_rowmajor: {}\n", fmt::join(R_rows.data(), R_rows.data() + 9, " "));
+    text += fmt::format("# t_unit: {}\n", fmt::join(pose->t.data(), pose->t.data() + 3, " "));
+  }
+  text += "x1,y1,x2,y2\n";
+  for (const Correspondence& m : file.matches) {
+    text += fmt::format("{},{},{},{}\n", m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y());
+  }
+  WriteFileWhole(path, text);
+}
+
+}  // namespace rcme

@@ -1,0 +1,155 @@
+#include "experiments/data/match_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "experiments/data/gzip_lines.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+namespace fs = std::filesystem;
+
+// All pairs of a folder are held in memory.
+constexpr size_t kMaxPairs = 100'000;
+constexpr size_t kMaxMatches = 10'000'000;
+
+std::vector<fs::path> MatchFilesIn(const std::string& folder) {
+  if (!fs::is_directory(folder)) {
+    throw InputError(
+        fmt::format("folder: '{}' is not a folder, seen from {}; give one with *.csv or *.csv.gz match files",
+                    folder, fs::current_path().string()));
+  }
+  std::vector<fs::path> paths;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "INDEX.csv" || !(name.ends_with(".csv") || name.ends_with(".csv.gz"))) continue;
+    if (FindNotPlain(name) != std::string::npos) {
+      throw InputError(
+          fmt::format("folder: '{}' holds {}; give the file a name of UTF-8 without control characters",
+                      folder, Quoted(name)));
+    }
+    if (paths.size() == kMaxPairs) {
+      throw InputError(
+          fmt::format("folder: '{}' holds too many pairs; at most {} are allowed", folder, kMaxPairs));
+    }
+    paths.push_back(entry.path());
+  }
+  if (paths.empty())
+    throw InputError(fmt::format("folder: '{}' holds no *.csv or *.csv.gz match files", folder));
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+// The name of a pair in the index.
+std::string PairId(const fs::path& match_file) {
+  const std::string name = match_file.filename().string();
+  return name.substr(0, name.find(".csv"));
+}
+
+std::vector<std::string> Fields(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  std::vector<std::string> fields;
+  std::string field;
+  for (std::istringstream row{std::string(line)}; std::getline(row, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+// Adds the pairs of `ids` whose true direction the index calls weak.
+void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<std::string>* weak) {
+  GzipLines lines(index.string(), {"index", "an index of pairs"});
+  std::string_view line;
+  if (!lines.Next(&line)) return;
+  const std::vector<std::string> names = Fields(line);
+  const auto id = static_cast<size_t>(std::ranges::find(names, "pair_id") - names.begin());
+  const auto is_weak = static_cast<size_t>(std::ranges::find(names, "t_gt_weak") - names.begin());
+  if (id == names.size() || is_weak == names.size()) return;
+  while (lines.Next(&line)) {
+    const std::vector<std::string> fields = Fields(line);
+    if (fields.size() > std::max(id, is_weak) && fields[is_weak] == "1" && ids.count(fields[id]) > 0)
+      weak->insert(fields[id]);
+  }
+}
+
+std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
+                                             const std::vector<fs::path>& files) {
+  // Without a slash at the end, so that 'x/' too has its parent above it.
+  const fs::path folder = (fs::absolute(given_folder) / "").lexically_normal().parent_path();
+  std::set<std::string> ids, weak;
+  for (const fs::path& file : files) ids.insert(PairId(file));
+  for (const fs::path& index : {folder / "INDEX.csv", folder.parent_path() / "INDEX.csv"}) {
+    if (fs::exists(index)) AddWeak(index, ids, &weak);
+  }
+  return weak;
+}
+
+// FNV-1a over the numbers of a pair and its truth: changed data are another study.
+std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64_t hash) {
+  const auto add = [&hash](double x) { hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3ULL; };
+  for (const Camera& c : {file.camera1, file.camera2}) {
+    for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) add(x);
+  }
+  for (const Correspondence& m : file.matches) {
+    for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) add(x);
+  }
+  if (const std::optional<RelativePose>& pose = file.cam2_from_cam1_true) {
+    for (const double x : pose->R.reshaped()) add(x);
+    for (const double x : pose->t) add(x);
+    add(is_direction_known ? 1.0 : 0.0);
+  }
+  return hash;
+}
+
+}  // namespace
+
+int MatchFolderData::NumTrials(int trials) const {
+  const auto product = static_cast<std::int64_t>(trials) * static_cast<std::int64_t>(pairs_.size());
+  if (product <= std::numeric_limits<int>::max()) return static_cast<int>(product);
+  throw InputError(fmt::format("trials: {} passes over {} pairs are more trials than {}", trials,
+                               pairs_.size(), std::numeric_limits<int>::max()));
+}
+
+std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatchFolder(
+    const MatchFolderSettings& settings) {
+  struct Group {
+    std::vector<TrialData> pairs;
+    std::uint64_t digest = 0xcbf29ce484222325ULL;
+  };
+  const std::vector<fs::path> paths = MatchFilesIn(settings.folder);
+  const std::set<std::string> weak = PairsWithWeakDirection(settings.folder, paths);
+  std::map<std::string, Group> groups;
+  size_t num_matches = 0;
+  for (const fs::path& path : paths) {
+    MatchFile file = ReadMatchFile(path.string());
+    num_matches += file.matches.size();
+    if (num_matches > kMaxMatches) {
+      throw InputError(fmt::format("folder: '{}' holds too many matches; at most {} are allowed",
+                                   settings.folder, kMaxMatches));
+    }
+    Group& group = groups[file.scene];
+    TrialData data;
+    data.origin = path.filename().string();
+    data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
+    data.truth.is_direction_known = weak.count(PairId(path)) == 0;
+    group.digest = Digest(file, data.truth.is_direction_known, group.digest);
+    data.problem = {std::move(file.matches), file.camera1, file.camera2, settings.sigma_px};
+    group.pairs.push_back(std::move(data));
+  }
+  std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;
+  for (auto& [scene, group] : groups) {
+    const std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
+    sources.emplace_back(scene, std::make_shared<MatchFolderData>(scene, std::move(group.pairs), identity));
+  }
+  return sources;
+}
+
+}  // namespace rcme

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/data/data_source.h"
+#include "experiments/data/match_file.h"
+
+namespace rcme {
+
+// What a `data:` block says of a folder of match files.
+struct MatchFolderSettings {
+  std::string folder;     // relative to the working directory
+  double sigma_px = 0.5;  // the noise level that the estimators are told
+};
+
+// The pairs of one scene of a folder of match files; trial t is file t mod (number of files), each pass with
+// its own random samples. Pairs of one scene share images: they are not independent.
+class MatchFolderData : public DataSource {
+ public:
+  MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::string identity)
+      : scene_(std::move(scene)), pairs_(std::move(pairs)), identity_(std::move(identity)) {}
+
+  int NumTrials(int trials) const override;
+  TrialData Make(const StreamName& trial_name) const override {
+    return pairs_[trial_name.trial % pairs_.size()];
+  }
+  std::string Identity() const override { return identity_; }
+  const std::string& scene() const { return scene_; }
+
+ private:
+  std::string scene_;
+  std::vector<TrialData> pairs_;
+  std::string identity_;
+};
+
+// Reads every *.csv and *.csv.gz of the folder in the order of names, grouped by the header's scene. An
+// INDEX.csv in the folder or above it may mark pairs whose true direction is not to be scored (columns
+// pair_id, t_gt_weak = 1).
+std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatchFolder(
+    const MatchFolderSettings& settings);
+
+}  // namespace rcme

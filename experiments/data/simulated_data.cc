@@ -1,0 +1,79 @@
+#include "experiments/data/simulated_data.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "simulator/noise_registry.h"
+#include "simulator/outlier_registry.h"
+
+namespace rcme {
+namespace {
+
+Choices WithDefaults(Choices choices) {
+  if (choices.noise.empty()) choices.noise = "gaussian";
+  if (choices.outliers.empty()) choices.outliers = "uniform";
+  return choices;
+}
+
+}  // namespace
+
+SimulatedData::SimulatedData(const Choices& choices)
+    : choices_(WithDefaults(choices)),
+      scenes_(choices.scene, choices.cameras, choices.motion),
+      noise_(FindEntry(NoiseRegistry(), "noise", choices_.noise).make()),
+      outliers_(FindEntry(OutlierRegistry(), "outliers", choices_.outliers).make()) {
+  choices_.cameras = scenes_.cameras();
+  choices_.motion = scenes_.motion();
+}
+
+std::vector<Parameter> SimulatedData::Parameters() {
+  std::vector<Parameter> all = scenes_.Parameters();
+  for (const std::vector<Parameter>& more :
+       {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(told_)}) {
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  all.push_back(Parameter::Choice<bool>("severity", &measures_severity_,
+                                        {{"measured", true}, {"skipped", false}},
+                                        "whether each trial's severity is measured and stored"));
+  return all;
+}
+
+void SimulatedData::FixBaseline() {
+  // Scenes of a condition that no study has (kMaxConditions), whatever the study's seed.
+  constexpr std::uint32_t kPilotCondition = std::numeric_limits<std::uint32_t>::max();
+  scenes_.FixBaseline({0, kPilotCondition, 0, static_cast<std::uint32_t>(StreamPurpose::kScene)});
+}
+
+std::string SimulatedData::Identity() const {
+  const double baseline_m = scenes_.BaselineOfParallax();
+  return std::isnan(baseline_m) ? "" : fmt::format("baseline_m {:.6g}", baseline_m);
+}
+
+Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
+  RandomStream scene_rng = StreamFor(trial_name, StreamPurpose::kScene);
+  return scenes_.Generate(scene_rng);
+}
+
+TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_name) const {
+  RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise);
+  RandomStream outlier_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
+  Observation observation = Observe(scene, *noise_, outliers_, noise_rng, outlier_rng);
+
+  TrialData data;
+  if (measures_severity_) {
+    RandomStream severity_rng = StreamFor(trial_name, StreamPurpose::kSeverity);
+    data.severity = MeasureSeverity(scene, observation, noise_->sigma_px(), severity_rng);
+  }
+  data.problem = {std::move(observation.matches), told_.CameraTold(scene.camera1),
+                  told_.CameraTold(scene.camera2), told_.SigmaTold(noise_->sigma_px())};
+  data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
+                std::move(observation.is_undetectable)};
+  data.origin = "simulated";
+  data.weight = observation.weight;
+  data.scene_point = std::move(observation.point);
+  return data;
+}
+
+}  // namespace rcme

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+
+#include "experiments/data/data_source.h"
+#include "simulator/calibration_error.h"
+#include "simulator/noise_model.h"
+#include "simulator/observe.h"
+#include "simulator/outlier_model.h"
+#include "simulator/scene_generator.h"
+
+namespace rcme {
+
+// What a study chooses by name; each choice brings parameters of its own. Empty: the scene's usual cameras
+// and motion, gaussian noise, uniform outliers.
+struct Choices {
+  std::string scene, cameras, motion, noise, outliers;
+};
+
+// Simulated pairs: a scene, noise, outliers. The estimators are told sigma and the cameras, and nothing else.
+class SimulatedData : public DataSource {
+ public:
+  // Throws InputError that lists what is allowed.
+  explicit SimulatedData(const Choices& choices);
+  const Choices& choices() const { return choices_; }  // none empty
+  std::vector<Parameter> Parameters();
+
+  // To be called once all parameters are set; see SceneGenerator.
+  void FixBaseline();
+  // The baseline, where it was found from a parallax.
+  std::string Identity() const override;
+
+  int NumTrials(int trials) const override { return trials; }
+  TrialData Make(const StreamName& trial_name) const override {
+    return MakeFrom(DrawScene(trial_name), trial_name);
+  }
+
+  // The two halves of Make: the exact scene, and what the images give of it.
+  Scene DrawScene(const StreamName& trial_name) const;
+  TrialData MakeFrom(const Scene& scene, const StreamName& trial_name) const;
+
+ private:
+  Choices choices_;
+  SceneGenerator scenes_;
+  std::unique_ptr<NoiseModel> noise_;
+  OutlierModel outliers_;
+  CalibrationError told_;
+  bool measures_severity_ = true;
+};
+
+// Simulated data for the settings, `scene` among them. Throws InputError that names key and value.
+std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings);
+
+}  // namespace rcme

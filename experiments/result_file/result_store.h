@@ -1,0 +1,97 @@
+// The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and
+// again. The tables stand in result_file/schema.h, the columns of records in trial_fields.h; unknown numbers
+// are NULL.
+//
+// Opening a file checks all of it, every checksum included, so that no command takes a damaged file for a
+// sound one. Damage is an InputError; `rcme check` (check_result_file.h) says more.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/study/study_plan.h"
+#include "experiments/trial/trial.h"
+
+namespace rcme {
+
+// The trials first, ..., end - 1.
+struct TrialRange {
+  std::uint32_t first = 0, end = 0;
+};
+
+// Who computes trials: last bits may depend on it.
+struct TrialOrigin {
+  std::string program;          // with its version
+  std::string instruction_set;  // estimator/instruction_set.h
+};
+TrialOrigin ThisProgram();
+
+// One thread at a time may call it.
+class ResultStore {
+ public:
+  // Opens the file of this plan's study, or makes it; what earlier runs asked for is still asked for: the
+  // study keeps the greatest number of trials. Throws InputError if the path cannot be written, is no result
+  // file or a damaged one, is in use by another run, or holds another study (the message says what differs).
+  static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan);
+  // Opens an existing file to read. Throws InputError if it is none, or damaged.
+  static ResultStore OpenForReading(const std::string& path);
+
+  ResultStore(ResultStore&&) noexcept;
+  ~ResultStore();  // commits what has been added
+
+  // The plan of the study in the file; a condition's trials are those that runs asked for, under a stopping
+  // rule those that it took. Throws InputError if its data (a folder of pairs) are gone or have
+  // changed.
+  StudyPlan Plan() const;
+
+  // Those of the first `num_trials` trials of a condition that are not in the file, ascending.
+  std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials);
+
+  // Of all conditions.
+  std::int64_t NumTrials() const;
+
+  // Adds whole trials, to each problem one record per estimator, in the problems' order; they reach the disk
+  // within about half a second, all records of a call or none. Throws InputError if a trial is there already,
+  // std::logic_error if it is not whole or not of the study.
+  void Add(const std::vector<ProblemRecord>& problems, const std::vector<TrialRecord>& records);
+  // Writes what has been added.
+  void Commit();
+
+  // How many trials a condition has may depend on their outcomes (run_until.h). Noted before the first trial
+  // of such a run and for good: intervals that look once no longer hold.
+  void NoteStoppingRule(const std::string& rule);
+  // Empty: the number of trials was fixed beforehand.
+  std::string StoppingRule() const;
+  // Options of `rcme run` that alone give the trials in the file, `num_trials` in all.
+  void NoteUntilOptions(const std::string& options, std::int64_t num_trials);
+  // Empty: not known, or the file holds other trials since.
+  std::string UntilOptionsOfAll() const;
+
+  // Noted before trials are added. Returns a sentence of warning if trials in the file are of another program
+  // or instruction set, else nothing.
+  std::string NoteOrigin(const TrialOrigin& origin);
+  // Of all trials in the file; several names are separated by commas, none known is empty.
+  TrialOrigin Origin() const;
+
+  // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
+  void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;
+  // Calls `visit` for every trial, ordered by condition and trial; its records are ordered by estimator. Only
+  // the trials of one condition, if it is given.
+  void ForEachTrial(const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&)>& visit,
+                    std::optional<std::uint32_t> condition = std::nullopt) const;
+  // The records of one trial, ordered by estimator.
+  std::vector<TrialRecord> RecordsOf(std::uint32_t condition, std::uint32_t trial) const;
+
+ private:
+  struct Connection;
+  void Set(const std::map<std::string, std::string>& values);
+  explicit ResultStore(std::unique_ptr<Connection> connection);
+  std::unique_ptr<Connection> connection_;
+};
+
+}  // namespace rcme

@@ -1,0 +1,139 @@
+#include "experiments/run/run_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include "experiments/base/for_each_index.h"
+#include "experiments/base/message.h"
+#include "experiments/base/progress.h"
+#include "experiments/base/stop_request.h"
+
+namespace rcme {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The trials of the plan that are not in the store, in the plan's order.
+class TrialsToRun {
+ public:
+  TrialsToRun(const StudyPlan& plan, ResultStore* store) {
+    for (const Condition& condition : plan.conditions) {
+      const auto num_trials = static_cast<std::uint32_t>(condition.num_trials);
+      for (const TrialRange& range : store->MissingTrials(condition.index, num_trials)) {
+        parts_.push_back({size_, &condition, range.first});
+        size_ += range.end - range.first;
+      }
+    }
+  }
+
+  std::int64_t size() const { return size_; }
+
+  std::pair<const Condition*, std::uint32_t> operator[](std::int64_t index) const {
+    const Part& part = *std::prev(std::ranges::upper_bound(parts_, index, {}, &Part::first_index));
+    return {part.condition, part.first_trial + static_cast<std::uint32_t>(index - part.first_index)};
+  }
+
+ private:
+  struct Part {
+    std::int64_t first_index;
+    const Condition* condition;
+    std::uint32_t first_trial;
+  };
+  std::vector<Part> parts_;
+  std::int64_t size_ = 0;
+};
+
+// Collects the records of finished trials; from time to time one thread writes them, while the others go on.
+class RecordBuffer {
+ public:
+  explicit RecordBuffer(ResultStore* store) : store_(store) {}
+
+  // The records of a whole trial.
+  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    const Clock::time_point now = Clock::now();
+    size_t num_waiting = 0;
+    {
+      const std::lock_guard lock(waiting_mutex_);
+      waiting_.problems.push_back(problem);
+      waiting_.trials.insert(waiting_.trials.end(), records.begin(), records.end());
+      num_waiting = waiting_.trials.size();
+      if (now < next_write_ && num_waiting < kMaxWaiting) return;
+    }
+    std::unique_lock writing(writing_mutex_, std::try_to_lock);
+    if (!writing && num_waiting < kMaxWaiting) return;  // another thread writes
+    if (!writing) writing.lock();                       // ... but not fast enough
+    Write();
+  }
+
+  // Writes what is left.
+  void Flush() {
+    const std::lock_guard writing(writing_mutex_);
+    Write();
+    store_->Commit();
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kWriteInterval{50};
+  static constexpr size_t kMaxWaiting = 4'000;
+
+  void Write() {
+    {
+      const std::lock_guard lock(waiting_mutex_);
+      written_.problems.clear();
+      written_.trials.clear();
+      std::swap(written_, waiting_);
+      next_write_ = Clock::now() + kWriteInterval;
+    }
+    store_->Add(written_.problems, written_.trials);
+  }
+
+  struct Records {
+    std::vector<ProblemRecord> problems;
+    std::vector<TrialRecord> trials;
+  };
+
+  ResultStore* store_;
+  std::mutex waiting_mutex_;  // of waiting_ and next_write_
+  Records waiting_;
+  Clock::time_point next_write_ = Clock::now() + kWriteInterval;
+  std::mutex writing_mutex_;  // of written_
+  Records written_;
+};
+
+}  // namespace
+
+RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
+  const Clock::time_point start = Clock::now();
+  const TrialsToRun trials(plan, store);
+  if (trials.size() > 0) {
+    const std::string warning = store->NoteOrigin(ThisProgram());
+    if (!warning.empty()) PrintMessage("warning: {}\n", warning);
+  }
+  Progress progress("trials", plan.NumTrials(), plan.NumTrials() - trials.size());
+  RecordBuffer buffer(store);
+  std::atomic<std::int64_t> num_done = plan.NumTrials() - trials.size();
+  try {
+    ForEachIndex(trials.size(), num_threads, [&](std::int64_t index) {
+      const auto [condition, trial] = trials[index];
+      const TrialResult result = RunTrial(plan, *condition, trial);
+      buffer.Add(result.problem, result.records);
+      ++num_done;
+      progress.Advance(1);
+    });
+  } catch (const Stopped&) {
+    buffer.Flush();
+    throw Stopped(fmt::format("stopped, {} trials kept; the same command resumes", num_done.load()));
+  } catch (...) {
+    buffer.Flush();  // the trials before the error are good
+    throw;
+  }
+  buffer.Flush();
+  const std::chrono::duration<double> elapsed = Clock::now() - start;
+  return {plan.NumTrials(), trials.size(), elapsed.count()};
+}
+
+}  // namespace rcme

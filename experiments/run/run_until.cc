@@ -1,0 +1,104 @@
+#include "experiments/run/run_until.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/base/message.h"
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "stats/confidence_sequence.h"
+
+namespace rcme {
+namespace {
+
+constexpr std::int64_t kFirstLook = 100;
+
+std::int64_t NextLook(std::int64_t num_trials) { return num_trials + num_trials / 2; }
+
+// How far an interval is from the target: at most 1 where it is reached.
+double Excess(const PrecisionTarget& target, double rate, const Interval& interval) {
+  const double half_width = 0.5 * (interval.upper - interval.lower);
+  const double allowed =
+      target.kind == PrecisionTarget::Kind::kHalfWidth ? target.value : target.value * rate;
+  return half_width / allowed;  // infinite for a relative target where nothing has happened yet
+}
+
+// The first `num_trials` trials of the condition, exactly: what a run that was cut off has beyond them is
+// left out.
+CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64_t num_trials,
+                   const UntilOptions& options, const ResultStore& store) {
+  std::vector<std::int64_t> num_events(plan.estimators.size(), 0);
+  store.ForEachTrial(
+      [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+        if (problem.trial >= num_trials) return;
+        if (problem.weight != 1.0)
+          throw InputError(
+              "--until: the trials of this study are weighted (tilted_to); give --trials instead");
+        for (size_t e = 0; e < records.size(); ++e) {
+          if (options.event.needs_truth && !IsScored(records[e])) {
+            throw InputError("--until: the truth of this study's pairs is not known; give --trials instead");
+          }
+          num_events[e] += options.event.has_happened(records[e], plan.study.failure);
+        }
+      },
+      condition.index);
+  CellPrecision worst;
+  worst.condition = condition.index;
+  worst.num_trials = num_trials;
+  double worst_excess = -1.0;
+  for (size_t e = 0; e < num_events.size(); ++e) {
+    const double rate = static_cast<double>(num_events[e]) / static_cast<double>(num_trials);
+    const Interval interval = ConfidenceSequence(num_events[e], num_trials);
+    const double excess = Excess(options.target, rate, interval);
+    if (excess <= worst_excess) continue;
+    worst_excess = excess;
+    worst.estimator = e;
+    worst.rate = rate;
+    worst.interval = interval;
+  }
+  worst.is_reached = worst_excess <= 1.0;
+  return worst;
+}
+
+}  // namespace
+
+PrecisionTarget PrecisionTarget::Parse(const std::string& text) {
+  PrecisionTarget target;
+  const size_t equals = std::min(text.find('='), text.size());
+  const std::string name = text.substr(0, equals);
+  const bool is_number =
+      equals < text.size() && ParseReal(text.substr(equals + 1), &target.value) && target.value > 0.0;
+  target.kind = name == "rel" ? Kind::kRelative : Kind::kHalfWidth;
+  if ((name != "ci" && name != "rel") || !is_number || target.value > 1.0 || target.value < 1e-6) {
+    throw InputError(
+        fmt::format("--until: '{}' is not allowed; give ci=W (half width of the 95 % interval, as a rate) or "
+                    "rel=S (half width "
+                    "as a share of the rate), a number in [1e-6, 1]",
+                    text));
+  }
+  return target;
+}
+
+std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& options, ResultStore* store) {
+  store->NoteStoppingRule("a rate's interval is narrow enough");
+  std::vector<CellPrecision> cells(plan.conditions.size());
+  std::vector<std::uint32_t> open;
+  for (const Condition& condition : plan.conditions) open.push_back(condition.index);
+  StudyPlan growing = plan;
+  for (Condition& condition : growing.conditions) condition.num_trials = 0;
+  for (std::int64_t look = kFirstLook; !open.empty(); look = NextLook(look)) {
+    const std::int64_t num_trials = std::min(look, options.max_trials);
+    for (const std::uint32_t c : open) growing.conditions[c].num_trials = static_cast<int>(num_trials);
+    PrintMessage("{} of {} conditions to {} trials each\n", open.size(), cells.size(), num_trials);
+    RunStudy(growing, options.num_threads, store);
+    for (const std::uint32_t c : open)
+      cells[c] = Look(growing, growing.conditions[c], num_trials, options, *store);
+    std::erase_if(open,
+                  [&](std::uint32_t c) { return cells[c].is_reached || num_trials == options.max_trials; });
+  }
+  return cells;
+}
+
+}  // namespace rcme

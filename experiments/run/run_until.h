@@ -1,0 +1,48 @@
+// Precision on demand: trials are added to each condition until the interval of a rate is narrow enough.
+//
+// A condition is looked at after 100, 150, 225, ... trials, whatever they were run by and however often the
+// run was cut off, so that the number of its trials is a function of the study alone. Stopping when an
+// interval is narrow is a decision that depends on the outcomes: the intervals are confidence sequences,
+// which hold at every look.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/run/run_study.h"
+#include "experiments/trial/trial_event.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+
+struct PrecisionTarget {
+  enum class Kind { kHalfWidth, kRelative };
+  Kind kind = Kind::kHalfWidth;
+  double value = 0.01;  // half width of the 95 % interval: as a rate, or as a share of the estimate
+
+  // "ci=0.002" or "rel=0.1". Throws InputError.
+  static PrecisionTarget Parse(const std::string& text);
+};
+
+// What one condition took.
+struct CellPrecision {
+  std::uint32_t condition = 0;
+  std::int64_t num_trials = 0;
+  size_t estimator = 0;  // the one whose interval is farthest from the target
+  double rate = 0.0;
+  Interval interval;
+  bool is_reached = false;
+};
+
+struct UntilOptions {
+  PrecisionTarget target;
+  TrialEvent event = TrialEvents().front();  // failure
+  std::int64_t max_trials = 1'000'000;       // per condition
+  int num_threads = 0;
+};
+
+// Every estimator of a condition has to reach the target. Notes in the store that the number of trials
+// depends on the outcomes. Throws InputError if trials are weighted: their intervals hold for one look only.
+std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& options, ResultStore* store);
+
+}  // namespace rcme

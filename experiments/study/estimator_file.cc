@@ -1,0 +1,40 @@
+#include "experiments/study/estimator_file.h"
+
+#include "experiments/study/estimator_entry.h"
+
+namespace rcme {
+namespace {
+
+const FileKind& EstimatorFileKind() {
+  static const FileKind kind = {"estimator file", "an estimator file"};
+  return kind;
+}
+
+constexpr const char* kHowToUse =
+    "# How to use it: in a study `estimators: [{file: tuned.yaml}]`, `rcme run STUDY --add-estimator "
+    "tuned.yaml`, `rcme estimate MATCHES --estimator-file tuned.yaml`\n";
+
+}  // namespace
+
+EstimatorSpec LoadEstimatorFile(const std::string& path) {
+  return ParseEstimatorFile(ReadInputText(path, EstimatorFileKind()), path);
+}
+
+EstimatorSpec ParseEstimatorFile(const std::string& yaml, const std::string& path) {
+  return ReadEstimatorEntry(Place(path), ParseYaml(yaml, path, EstimatorFileKind()), "estimator");
+}
+
+std::string EstimatorFileText(const EstimatorSpec& spec, const Provenance& provenance) {
+  YAML::Emitter out;
+  out << YAML::BeginMap;
+  WriteEstimatorKeys(spec, &out);
+  if (!provenance.empty()) {
+    out << YAML::Key << "provenance" << YAML::Value << YAML::BeginMap;
+    for (const auto& [key, text] : provenance) out << YAML::Key << key << YAML::Value << text;
+    out << YAML::EndMap;
+  }
+  out << YAML::EndMap;
+  return kHowToUse + std::string(out.c_str()) + "\n";
+}
+
+}  // namespace rcme

@@ -1,0 +1,285 @@
+#include "experiments/study/study_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "estimator/estimator_registry.h"
+#include "experiments/study/estimator_entry.h"
+#include "experiments/study/estimator_file.h"
+#include "experiments/study/tuning_file.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kMaxTrials = 2'000'000'000;
+constexpr size_t kMaxEstimators = 100;
+
+const FileKind& StudyFileKind() {
+  static const FileKind kind = {"study file", "a study"};
+  return kind;
+}
+
+long long WholeNumber(const Place& place, const YAML::Node& node, const std::string& key, long long min,
+                      long long max) {
+  const std::string text = Scalar(place, node, key);
+  long long value = 0;
+  if (!ParseInteger(text, &value) || value < min || value > max) {
+    place.Fail(node, fmt::format("{}: {} is not allowed; give a whole number in [{}, {}]", key, Quoted(text),
+                                 min, max));
+  }
+  return value;
+}
+
+void ReadFactors(const Place& place, const YAML::Node& node, Study* study) {
+  for (const auto& [key, levels] : Entries(place, node, "factors", {})) {
+    Factor factor{key, {}};
+    if (!levels.IsSequence() || levels.size() == 0) {
+      place.Fail(levels, fmt::format("factors: {}: a list of at least one level is needed", key));
+    }
+    for (const YAML::Node& level : levels) factor.levels.push_back(Scalar(place, level, key));
+    study->factors.push_back(std::move(factor));
+  }
+}
+
+Parameter DesignParameter(Design* design) {
+  return Parameter::Choice<Design>(
+      "design", design, {{"full_factorial", Design::kFullFactorial}, {"one_at_a_time", Design::kOneAtATime}},
+      "which combinations of the factors' levels are run");
+}
+
+// An entry of the list of estimators; {file: tuned.yaml} is that file's, seen from the study's folder.
+EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
+  if (!node.IsMap() || !node["file"]) return ReadEstimatorEntry(place, node, "estimators", {"file"});
+  EstimatorSpec spec;
+  std::string label;
+  for (const auto& [key, value] : Entries(place, node, "estimators: file", {"file", "label"})) {
+    const std::string text = Scalar(place, value, key);
+    if (key == "label") label = Name(place, value, key);
+    if (key != "file") continue;
+    const std::filesystem::path path = std::filesystem::path(place.path()).parent_path() / text;
+    place.At(value, [&] { spec = LoadEstimatorFile(path.string()); });
+  }
+  if (!label.empty()) spec.label = label;
+  return spec;
+}
+
+void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
+  if (!node.IsSequence() || node.size() == 0) {
+    place.Fail(node, "estimators: a list of at least one estimator is needed");
+  }
+  if (node.size() > kMaxEstimators)
+    place.Fail(node, fmt::format("estimators: {} are too many; at most {} are allowed", node.size(),
+                                 kMaxEstimators));
+  for (const YAML::Node& entry : node) {
+    EstimatorSpec spec = ReadEstimator(place, entry);
+    for (const EstimatorSpec& other : study->estimators) {
+      if (other.label == spec.label) {
+        place.Fail(entry, fmt::format("estimators: label '{}' stands twice; give each a label of its own",
+                                      spec.label));
+      }
+    }
+    study->estimators.push_back(std::move(spec));
+  }
+}
+
+// A study's settings with the first level of every factor: enough to know which keys there are.
+Settings FirstSettings(const Study& study) {
+  std::vector<std::string> levels;
+  for (const Factor& factor : study.factors) levels.push_back(factor.levels.front());
+  return SettingsOf(study, levels);
+}
+
+// The value of a setting as its parameter writes it, so that equal values are equal texts.
+std::string Canonical(Settings settings, const std::string& key, const std::string& value) {
+  settings.emplace_back(key, value);
+  const Settings resolved = ResolveSettings(settings);
+  return std::ranges::find(resolved, key, &Settings::value_type::first)->second;
+}
+
+// Data settings are checked one by one, each with the study's choices, so that an error names its line; then
+// each level of each factor. All become canonical.
+void SettleData(const Place& place, const YAML::Node& root, Study* of) {
+  Study& study = *of;
+  place.At(root["factors"] ? root["factors"] : root,
+           [&] { DesignRows(study); });  // before the work per level
+  const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
+    const YAML::Node map = root[block];
+    return map && map.IsMap() && map[key] ? map[key] : root;
+  };
+  const Settings first = FirstSettings(study);
+  const auto scene = std::ranges::find(first, "scene", &Settings::value_type::first);
+  if (scene == first.end()) place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
+  Settings choices;
+  for (const auto& choice : first) {
+    if (!IsChoice(choice.first)) continue;
+    choices.push_back(choice);
+    place.At(line_of(root["data"][choice.first] ? "data" : "factors", choice.first), [&] {
+      ResolveSettings({*scene, choice});
+    });
+  }
+  for (auto& [key, value] : study.data) {
+    place.At(line_of("data", key),
+             [&, &key = key, &value = value] { value = Canonical(choices, key, value); });
+  }
+  for (Factor& factor : study.factors) {
+    const YAML::Node line = line_of("factors", factor.key);
+    std::set<std::string> seen;
+    for (std::string& level : factor.levels) {
+      if (factor.key == "scene" && level == kMatchFilesScene)
+        place.Fail(line,
+                   "factors: scene: match_files is no simulated scene; write a study of its own for it");
+      const std::string given = level;
+      place.At(line, [&] { level = Canonical(IsChoice(factor.key) ? first : choices, factor.key, given); });
+      if (!seen.insert(level).second)
+        place.Fail(line, fmt::format("factors: {}: level '{}' stands twice", factor.key, given));
+    }
+  }
+}
+
+Ademp ReadAdemp(const Place& place, const YAML::Node& node) {
+  Ademp ademp;
+  std::set<std::string> known;
+  for (const auto& [key, text] : Parts(ademp)) known.insert(key);
+  const auto entries = Entries(place, node, "ademp", known);
+  for (const auto& [key, text] : Parts(ademp)) {
+    const auto entry = std::ranges::find(entries, key, &std::pair<std::string, YAML::Node>::first);
+    if (entry == entries.end()) place.Fail(node, fmt::format("ademp: key '{}' is missing", key));
+    *text = Scalar(place, entry->second, key);
+  }
+  return ademp;
+}
+
+Design ReadDesign(const Place& place, const YAML::Node& node) {
+  Design design = Design::kFullFactorial;
+  place.At(node, [&] { DesignParameter(&design).SetFromText(Scalar(place, node, "design")); });
+  return design;
+}
+
+// Every data parameter with its value; where a factor chooses a part of the simulation, so that the
+// parameters differ from condition to condition, only those that were given.
+Settings WrittenData(const Study& study) {
+  if (std::ranges::none_of(study.factors, IsChoice, &Factor::key)) return ResolveSettings(study.data);
+  return study.data;
+}
+
+}  // namespace
+
+Study LoadStudy(const std::string& path) { return ParseStudy(ReadInputText(path, StudyFileKind()), path); }
+
+Study ParseStudy(const std::string& yaml, const std::string& path) {
+  const Place place(path);
+  const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
+  Study study;
+  study.name = std::filesystem::path(path).stem().string();
+  for (const auto& [key, node] : Entries(place, root, "study",
+                                         {"name", "description", "ademp", "seed", "trials", "data", "design",
+                                          "factors", "estimators", "failure", "tune"})) {
+    if (key == "name") study.name = Name(place, node, key);
+    if (key == "description") study.description = Scalar(place, node, key);
+    if (key == "seed") {
+      study.seed =
+          static_cast<std::uint64_t>(WholeNumber(place, node, key, 0, std::numeric_limits<long long>::max()));
+    }
+    if (key == "trials") study.trials = static_cast<int>(WholeNumber(place, node, key, 1, kMaxTrials));
+    if (key == "data") {
+      for (const auto& [setting, value] : Entries(place, node, "data", {})) {
+        study.data.emplace_back(setting, Scalar(place, value, setting));
+      }
+    }
+    if (key == "ademp") study.ademp = ReadAdemp(place, node);
+    if (key == "design") study.design = ReadDesign(place, node);
+    if (key == "factors") ReadFactors(place, node, &study);
+    if (key == "estimators") ReadEstimators(place, node, &study);
+    if (key == "failure") {
+      for (const auto& [bound, value] : Entries(place, node, "failure", {})) {
+        place.At(value, [&, bound = bound, value = value] {
+          FindParameter(Parameters(study.failure), bound).SetFromText(Scalar(place, value, bound));
+        });
+      }
+    }
+  }
+  if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
+  if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
+  SettleData(place, root, &study);
+  if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
+  return study;
+}
+
+void Override(Study* study, const std::string& key, const std::string& value) {
+  RansacOptions option_names;
+  FailureBounds bound_names;
+  const auto is_in = [](const std::vector<Parameter>& parameters, const std::string& name) {
+    return std::any_of(parameters.begin(), parameters.end(),
+                       [&](const Parameter& p) { return p.name() == name; });
+  };
+  const size_t dot = key.find('.');
+  const std::string option = dot == std::string::npos ? key : key.substr(dot + 1);
+  if (is_in(Parameters(option_names), option)) {
+    bool is_used = false;
+    for (EstimatorSpec& spec : study->estimators) {
+      if (dot != std::string::npos && spec.label != key.substr(0, dot)) continue;
+      FindParameter(Parameters(spec.options), option).SetFromText(value);
+      FindEstimator(spec.name).make(spec.options);
+      is_used = true;
+    }
+    if (!is_used)
+      throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
+  } else if (is_in(Parameters(bound_names), key)) {
+    FindParameter(Parameters(study->failure), key).SetFromText(value);
+  } else if (dot != std::string::npos) {
+    FindParameter(Parameters(option_names), option);  // throws: it is no option
+  } else {
+    const auto is_key = [&](const auto& setting) { return setting.first == key; };
+    const std::string canonical = Canonical(FirstSettings(*study), key, value);
+    std::erase_if(study->data, is_key);
+    study->data.emplace_back(key, canonical);
+    std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
+  }
+}
+
+std::string ToYaml(const Study& study) {
+  YAML::Emitter out;
+  out.SetSeqFormat(YAML::Flow);
+  out << YAML::BeginMap;
+  out << YAML::Key << "name" << YAML::Value << study.name;
+  out << YAML::Key << "description" << YAML::Value << study.description;
+  if (study.ademp) {
+    Ademp ademp = *study.ademp;
+    out << YAML::Key << "ademp" << YAML::Value << YAML::BeginMap;
+    for (const auto& [key, text] : Parts(ademp)) out << YAML::Key << key << YAML::Value << *text;
+    out << YAML::EndMap;
+  }
+  out << YAML::Key << "seed" << YAML::Value << study.seed;
+  out << YAML::Key << "trials" << YAML::Value << study.trials;
+  out << YAML::Key << "data" << YAML::Value << YAML::BeginMap;
+  for (const auto& [key, value] : WrittenData(study)) out << YAML::Key << key << YAML::Value << value;
+  out << YAML::EndMap;
+  if (study.design != Design::kFullFactorial) {
+    Design design = study.design;
+    out << YAML::Key << "design" << YAML::Value << DesignParameter(&design).Value();
+  }
+  if (!study.factors.empty()) {
+    out << YAML::Key << "factors" << YAML::Value << YAML::BeginMap;
+    for (const Factor& factor : study.factors) out << YAML::Key << factor.key << YAML::Value << factor.levels;
+    out << YAML::EndMap;
+  }
+  out << YAML::Key << "estimators" << YAML::Value << YAML::Block << YAML::BeginSeq;
+  for (const EstimatorSpec& spec : study.estimators) {
+    out << YAML::BeginMap;
+    WriteEstimatorKeys(spec, &out);
+    out << YAML::EndMap;
+  }
+  out << YAML::EndSeq;
+  FailureBounds bounds = study.failure;
+  out << YAML::Key << "failure" << YAML::Value << YAML::BeginMap;
+  for (const Parameter& p : Parameters(bounds)) out << YAML::Key << p.name() << YAML::Value << p.Value();
+  out << YAML::EndMap;
+  out << YAML::EndMap;
+  return std::string(out.c_str()) + "\n";
+}
+
+}  // namespace rcme

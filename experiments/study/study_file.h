@@ -1,0 +1,46 @@
+// Studies as YAML files:
+//
+//   name: failure_vs_outliers
+//   description: one sentence or more
+//   ademp: {aims: ..., data: ..., estimands: ..., methods: ..., performance: ...}
+//   seed: 1
+//   trials: 400                       # per condition
+//   data: {scene: uniform_volume, num_matches: 500, sigma_px: 0.5}
+//   design: full_factorial            # or one_at_a_time; see study.h
+//   factors:
+//     outlier_ratio: [0.0, 0.2, 0.4]  # any data key, also cameras, motion, noise, outliers, scene
+//   estimators:
+//     - {name: standard}
+//     - {name: rcme, label: rcme_rank_aware, options: {reading: rank_aware}}
+//     - {file: tuned.yaml, label: other}  # of estimator_file.h, beside the study; the label is optional
+//   failure: {max_rotation_error_deg: 3, max_direction_error_deg: 15}
+//   tune: {estimator: rcme_rank_aware, options: {mu: [3, 6, 9]}}    # see tuning/tuning_file.h
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "experiments/study/study.h"
+
+namespace rcme {
+
+// Reads and validates a study, and the estimator files it names, seen from its own folder. Throws InputError
+// with file, line, key and what is allowed for anything that is not: unknown or repeated keys, wrong types,
+// values out of range, empty factors, unknown scenes and estimators.
+Study LoadStudy(const std::string& path);
+
+// The same from text; `path` is what the messages call it.
+Study ParseStudy(const std::string& yaml, const std::string& path);
+
+// One `--set key=value`: a data key; an estimator option, for all estimators (`mu`) or one (`rcme.mu`); or a
+// failure bound. A factor that is set becomes that one level. Throws InputError, also where the options of an
+// estimator then contradict each other.
+void Override(Study* study, const std::string& key, const std::string& value);
+
+// The study with every parameter written out, defaults and the estimators of files included: ParseStudy gives
+// the same study back but for its tuning, on which no run depends. Two runs may share a result file if this
+// text, trials and description aside, is the same.
+std::string ToYaml(const Study& study);
+
+}  // namespace rcme

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimator/motion_estimator.h"
+#include "experiments/study/study.h"
+
+namespace rcme {
+
+// One cell of the design.
+struct Condition {
+  std::uint32_t index = 0;
+  std::vector<std::string> levels;  // one per factor of the plan
+  std::shared_ptr<const DataSource> source;
+  int num_trials = 0;
+};
+
+// A study made ready to run: its conditions in a fixed order (first factor slowest), its estimators built.
+struct StudyPlan {
+  Study study;
+  std::vector<std::string> factor_names;
+  std::vector<Condition> conditions;
+  std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // as study.estimators
+  std::string study_yaml;                                          // the study in full (study_file.h)
+  std::string identity;  // equal for two runs that may share a result file
+
+  std::int64_t NumTrials() const;
+};
+
+// Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions.
+StudyPlan MakePlan(const Study& study);
+// The same for the study of a file, which the message then names.
+StudyPlan PlanOf(const Study& study, const std::string& path);
+
+}  // namespace rcme

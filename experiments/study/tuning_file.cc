@@ -1,0 +1,172 @@
+#include "experiments/study/tuning_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+
+#include "estimator/estimator_registry.h"
+
+namespace rcme {
+namespace {
+
+// How many decimal places a number has in its shortest form: 3 for 0.125.
+int DecimalPlaces(double value) {
+  char text[32];
+  const char* end = std::to_chars(text, text + sizeof(text), value, std::chars_format::scientific).ptr;
+  const char* e = std::find<const char*>(text, end, 'e');  // d[.ddd]e[+-]dd
+  const auto num_digits = std::max<std::ptrdiff_t>(e - text - (text[0] == '-') - 2, 0);
+  return std::max(static_cast<int>(num_digits) - std::atoi(std::string(e + 1, end).c_str()), 0);
+}
+
+// Levels from, from + step, ..., to.
+struct Steps {
+  double from = 0.0, to = 0.0, step = 0.0;
+
+  bool IsTooFine() const { return !((to - from) / step < static_cast<double>(kMaxTunedSettings)); }
+  // A sum of decimals has no more places than its terms: rounded to them, 0.1 + 2 * 0.1 is 0.3.
+  std::vector<std::string> Levels() const {
+    const int places = std::max(DecimalPlaces(from), DecimalPlaces(step));
+    std::vector<std::string> levels;
+    for (size_t i = 0; i <= kMaxTunedSettings; ++i) {
+      const std::string text = fmt::format("{:.{}f}", from + static_cast<double>(i) * step, places);
+      double level = 0.0;
+      if (!ParseReal(text, &level) || level > to) break;
+      levels.push_back(fmt::format("{}", level));
+    }
+    return levels;
+  }
+};
+
+std::vector<Parameter> Parameters(Steps& steps) {
+  return {Parameter::Real("from", &steps.from, {}, "", "the first level"),
+          Parameter::Real("to", &steps.to, {}, "", "no level is greater"),
+          Parameter::Real("step", &steps.step, {}, "", "from level to level")};
+}
+
+std::vector<std::string> SteppedLevels(const Place& place, const YAML::Node& node, const std::string& name) {
+  Steps steps;
+  const auto entries = Entries(place, node, name, {"from", "to", "step"});
+  for (const auto& [key, value] : entries) {
+    place.At(value, [&, key = key, value = value] {
+      FindParameter(Parameters(steps), key).SetFromText(Scalar(place, value, key));
+    });
+  }
+  if (entries.size() < 3) place.Fail(node, fmt::format("{}: keys from, to and step are needed", name));
+  if (!(steps.step > 0.0)) {
+    place.Fail(node["step"],
+               fmt::format("{}: step: '{}' is not allowed; give a number > 0", name, node["step"].Scalar()));
+  }
+  if (steps.from > steps.to) {
+    place.Fail(node, fmt::format("{}: from: '{}' is not allowed; give a number <= to, which is {}", name,
+                                 node["from"].Scalar(), node["to"].Scalar()));
+  }
+  if (steps.IsTooFine()) {
+    place.Fail(node["step"], fmt::format("{}: step: '{}' makes more than {} levels; give a greater one", name,
+                                         node["step"].Scalar(), kMaxTunedSettings));
+  }
+  return steps.Levels();
+}
+
+// The text of each level with its node, which is the whole map for levels by steps.
+std::vector<std::pair<std::string, YAML::Node>> GivenLevels(const Place& place, const YAML::Node& node,
+                                                            const std::string& name) {
+  std::vector<std::pair<std::string, YAML::Node>> levels;
+  if (node.IsMap()) {
+    for (const std::string& level : SteppedLevels(place, node, name)) levels.emplace_back(level, node);
+    return levels;
+  }
+  if (!node.IsSequence() || node.size() == 0) {
+    place.Fail(node, fmt::format("{}: a list of at least one level is needed, or {{from: 0, to: 12, step: "
+                                 "0.5}}",
+                                 name));
+  }
+  for (const YAML::Node& level : node) levels.emplace_back(Scalar(place, level, name), level);
+  return levels;
+}
+
+// The levels as the option itself writes them, so that equal values are equal texts.
+TunedOption ReadOption(const Place& place, const YAML::Node& node, const std::string& option) {
+  TunedOption tuned{option, {}};
+  const std::string name = "tune: options: " + option;
+  RansacOptions options;
+  const std::vector<Parameter> parameters = Parameters(options);
+  place.At(node, [&] { FindParameter(parameters, option); });
+  const Parameter& parameter = FindParameter(parameters, option);
+  std::set<std::string> seen;
+  for (const auto& [text, line] : GivenLevels(place, node, name)) {
+    place.At(line, [&, text = text] { parameter.SetFromText(text); });
+    if (!seen.insert(parameter.Value()).second)
+      place.Fail(line, fmt::format("{}: level '{}' stands twice", name, text));
+    tuned.levels.push_back(parameter.Value());
+  }
+  return tuned;
+}
+
+std::vector<TunedOption> ReadOptions(const Place& place, const YAML::Node& node) {
+  std::vector<TunedOption> options;
+  size_t num_settings = 1;
+  for (const auto& [option, levels] : Entries(place, node, "tune: options", {})) {
+    options.push_back(ReadOption(place, levels, option));
+    num_settings *= options.back().levels.size();
+    if (num_settings > kMaxTunedSettings) {
+      place.Fail(levels, fmt::format("tune: options: more than {} combinations of levels; give fewer levels",
+                                     kMaxTunedSettings));
+    }
+  }
+  if (options.empty()) place.Fail(node, "tune: options: at least one option with its levels is needed");
+  return options;
+}
+
+}  // namespace
+
+const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators) {
+  std::vector<std::string> labels;
+  for (const EstimatorSpec& spec : estimators) {
+    if (spec.label == tuning.estimator) return spec;
+    labels.push_back(spec.label);
+  }
+  throw InputError(fmt::format("tune: estimator: '{}' is no label of the study; give one of: {}",
+                               tuning.estimator, fmt::join(labels, ", ")));
+}
+
+Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<EstimatorSpec>& estimators) {
+  Tuning tuning;
+  const std::vector<Parameter> parameters = Parameters(tuning);
+  std::set<std::string> known = {"options"};
+  for (const Parameter& p : parameters) known.insert(p.name());
+  for (const auto& [key, value] : Entries(place, node, "tune", known)) {
+    if (key == "options") {
+      tuning.options = ReadOptions(place, value);
+      continue;
+    }
+    place.At(value, [&, key = key, value = value] {
+      FindParameter(parameters, key).SetFromText(Scalar(place, value, "tune: " + key));
+    });
+  }
+  for (const char* key : {"estimator", "options"}) {
+    if (!node[key]) place.Fail(node, fmt::format("tune: key '{}' is missing", key));
+  }
+  place.At(node["estimator"], [&] { TunedEstimator(tuning, estimators); });
+  place.At(node["options"], [&] { CheckCombinations(tuning, estimators); });
+  return tuning;
+}
+
+void CheckCombinations(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators) {
+  const EstimatorSpec& spec = TunedEstimator(tuning, estimators);
+  const EstimatorEntry& entry = FindEstimator(spec.name);
+  for (size_t i = 0; i < NumSettings(tuning); ++i) {
+    const std::vector<std::string> levels = LevelsOfSetting(tuning, i);
+    try {
+      entry.make(WithLevels(tuning, levels, spec.options));
+    } catch (const InputError& error) {
+      std::vector<std::string> names;
+      for (size_t o = 0; o < levels.size(); ++o) names.push_back(tuning.options[o].name + ": " + levels[o]);
+      throw InputError(fmt::format("tune: options: {}: the combination {{{}}} contradicts itself: {}",
+                                   spec.label, fmt::join(names, ", "), error.what()));
+    }
+  }
+}
+
+}  // namespace rcme

@@ -1,0 +1,124 @@
+#include "experiments/trial/answer_check.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace rcme {
+namespace {
+
+using Description = std::optional<std::string>;  // of what is wrong; nothing: all is well
+
+bool IsKnown(MotionStatus status) {
+  const std::vector<MotionStatus>& all = AllStatuses();
+  return std::find(all.begin(), all.end(), status) != all.end();
+}
+
+Description FaultOfInliers(const std::vector<int>& inliers, size_t num_matches) {
+  std::vector<bool> is_taken(num_matches);
+  for (const int index : inliers) {
+    if (index < 0 || static_cast<size_t>(index) >= num_matches)
+      return fmt::format("inlier {} is none of the {} matches", index, num_matches);
+    if (is_taken[static_cast<size_t>(index)]) return fmt::format("inlier {} is there twice", index);
+    is_taken[static_cast<size_t>(index)] = true;
+  }
+  return std::nullopt;
+}
+
+Description FaultOfCounts(const MotionEstimate& e, size_t num_matches) {
+  const LoopCounts& c = e.counts;
+  for (const auto& [name, count] : {std::pair{"num_support", e.num_support},
+                                    {"num_consistent_before", e.num_consistent_before},
+                                    {"num_consistent_after", e.num_consistent_after},
+                                    {"num_explained", e.num_explained}}) {
+    if (count < 0 || static_cast<size_t>(count) > num_matches)
+      return fmt::format("{} is {} of {} matches", name, count, num_matches);
+  }
+  for (const int count : {c.num_hypotheses, c.num_degenerate_samples, c.num_inconsistent_samples,
+                          c.num_poor_inlier_sets, c.num_too_small_inlier_sets, c.num_candidates}) {
+    if (count < 0) return fmt::format("the number of hypotheses of one kind is {}", count);
+  }
+  return std::nullopt;
+}
+
+// Everything but the motion and its covariance.
+Description FaultOfAccount(const MotionEstimate& estimate, size_t num_matches) {
+  if (!IsKnown(estimate.status)) return fmt::format("status {} is none", static_cast<int>(estimate.status));
+  const Description inliers = FaultOfInliers(estimate.inliers, num_matches);
+  return inliers ? inliers : FaultOfCounts(estimate, num_matches);
+}
+
+Description FaultOfMotion(const MotionEstimate& estimate) {
+  const Eigen::Matrix3d& R = estimate.cam2_from_cam1.R;
+  const Eigen::Vector3d& t = estimate.cam2_from_cam1.t;
+  const bool has_direction = estimate.status == MotionStatus::kOk;
+  if (!has_direction && estimate.status != MotionStatus::kDirectionNotObservable) return std::nullopt;
+  if (!IsRotation(R)) {
+    return fmt::format("R is no rotation: largest entry of |R'R - I| {:.3g}, det R {:.3g}",
+                       (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(),
+                       R.determinant());
+  }
+  if (has_direction && !IsUnitVector(t)) return fmt::format("t is no unit vector: |t| = {:.9g}", t.norm());
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool IsRotation(const Eigen::Matrix3d& R) {
+  const Eigen::Matrix3d deviation = R.transpose() * R - Eigen::Matrix3d::Identity();
+  return R.allFinite() && deviation.cwiseAbs().maxCoeff() <= kMaxMotionRounding && R.determinant() > 0.0;
+}
+
+bool IsUnitVector(const Eigen::Vector3d& t) {
+  return t.allFinite() && std::abs(t.norm() - 1.0) <= kMaxMotionRounding;
+}
+
+bool IsCovariance(const Matrix5d& covariance) {
+  if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0.0) return false;
+  const Vector5d sd = covariance.diagonal().cwiseSqrt();
+  Matrix5d correlation = Matrix5d::Identity();
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      if (i == j) continue;
+      // |C_ij| <= sd_i sd_j in every covariance: what is known exactly covaries with nothing.
+      const bool is_exact = sd(i) == 0.0 || sd(j) == 0.0;
+      if (is_exact && covariance(i, j) != 0.0) return false;
+      correlation(i, j) = is_exact ? 0.0 : covariance(i, j) / sd(i) / sd(j);
+    }
+  }
+  if (!correlation.allFinite()) return false;
+  if ((correlation - correlation.transpose()).cwiseAbs().maxCoeff() > kMaxCovarianceRounding) return false;
+  // Eigenvalues >= -tolerance: raised by the tolerance, the matrix is positive definite.
+  correlation.diagonal().array() += kMaxCovarianceRounding;
+  return Eigen::LLT<Matrix5d>(correlation).info() == Eigen::Success;
+}
+
+std::optional<AnswerFault> FindFault(const MotionEstimate& estimate, size_t num_matches) {
+  if (const Description fault = FaultOfAccount(estimate, num_matches))
+    return AnswerFault{MotionStatus::kInvalidMotion, *fault};
+  if (const Description fault = FaultOfMotion(estimate))
+    return AnswerFault{MotionStatus::kInvalidMotion, *fault};
+  if (estimate.status != MotionStatus::kOk || IsCovariance(estimate.pose_cov)) return std::nullopt;
+  return AnswerFault{MotionStatus::kInvalidCovariance,
+                     "the covariance is not finite, symmetric and positive semidefinite"};
+}
+
+MotionEstimate Judged(MotionEstimate estimate, size_t num_matches) {
+  const std::optional<AnswerFault> fault = FindFault(estimate, num_matches);
+  if (!fault) return estimate;
+  if (FaultOfAccount(estimate, num_matches)) {
+    MotionEstimate bare;
+    bare.cam2_from_cam1 = estimate.cam2_from_cam1;
+    bare.pose_cov = estimate.pose_cov;
+    estimate = std::move(bare);
+  }
+  estimate.status = fault->status;
+  estimate.message = fault->message;
+  return estimate;
+}
+
+}  // namespace rcme

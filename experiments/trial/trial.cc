@@ -1,0 +1,139 @@
+#include "experiments/trial/trial.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "experiments/trial/answer_check.h"
+#include "stats/consistency.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+// Whether the status comes with a rotation, or a whole motion, that is known to be one.
+bool HasMotion(MotionStatus status) {
+  return status == MotionStatus::kOk || status == MotionStatus::kInvalidCovariance;
+}
+bool HasRotation(MotionStatus status) {
+  return HasMotion(status) || status == MotionStatus::kDirectionNotObservable;
+}
+
+// An answer that is not valid covers nothing.
+double NeesOf(const MotionEstimate& estimate, const RelativePose& pose_true) {
+  if (estimate.status != MotionStatus::kOk) return kInfinity;
+  const double nees =
+      NormalizedErrorSquared(LocalCoordinates(estimate.cam2_from_cam1, pose_true), estimate.pose_cov);
+  return std::isnan(nees) ? kInfinity : nees;  // beyond the range of numbers: Sigma as good as zero
+}
+
+void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
+  if (!truth.cam2_from_cam1_true) return;
+  const RelativePose& pose_true = *truth.cam2_from_cam1_true;
+  if (HasRotation(estimate.status)) {
+    record->rotation_error_deg = kDegPerRad * RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R);
+  }
+  if (!truth.is_direction_known) return;
+  if (HasMotion(estimate.status))
+    record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
+  if (!HasRefused(*record)) record->nees = NeesOf(estimate, pose_true);
+}
+
+void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
+  if (estimate.status != MotionStatus::kOk || truth.is_inlier_true.empty()) return;
+  int num_found = 0, num_wrong = 0, num_true = 0;
+  for (const int index : estimate.inliers) {
+    const auto i = static_cast<size_t>(index);
+    num_found += truth.is_inlier_true[i];
+    const bool can_be_told = truth.is_undetectable.empty() || !truth.is_undetectable[i];
+    num_wrong += !truth.is_inlier_true[i] && can_be_told;
+  }
+  for (const bool is_inlier : truth.is_inlier_true) num_true += is_inlier;
+  if (num_found + num_wrong > 0) record->inlier_precision = 1.0 * num_found / (num_found + num_wrong);
+  if (num_true > 0) record->inlier_recall = 1.0 * num_found / num_true;
+}
+
+ProblemRecord Describe(const TrialData& data, const StreamName& name) {
+  const std::vector<bool>& is_inlier = data.truth.is_inlier_true;
+  const double num_inliers =
+      is_inlier.empty() ? kNaN : static_cast<double>(std::count(is_inlier.begin(), is_inlier.end(), true));
+  return {name.condition, name.trial, data.weight, num_inliers, data.severity};
+}
+
+TrialRecord ScoreJudged(const MotionEstimate& judged, const TrialData& data, double seconds) {
+  TrialRecord record;
+  record.status = judged.status;
+  record.rotation_error_deg = record.direction_error_deg = record.nees = kNaN;
+  record.inlier_precision = record.inlier_recall = kNaN;
+  record.num_matches = static_cast<int>(data.problem.matches.size());
+  record.num_inliers = static_cast<int>(judged.inliers.size());
+  record.num_support = judged.num_support;
+  record.mean_entropy = judged.num_support > 0 ? judged.mean_entropy : kNaN;
+  record.z_statistic = judged.num_support > 0 ? judged.z_statistic : kNaN;
+  record.num_consistent_before = judged.num_consistent_before;
+  record.num_consistent_after = judged.num_consistent_after;
+  record.failed_by_kappa = judged.failed_by_kappa;
+  record.num_explained = judged.num_explained;
+  record.counts = judged.counts;
+  record.seconds = seconds;
+  ScoreMotion(judged, data.truth, &record);
+  ScoreInliers(judged, data.truth, &record);
+  return record;
+}
+
+}  // namespace
+
+bool IsInvalid(const TrialRecord& record) {
+  return record.status == MotionStatus::kInvalidMotion || record.status == MotionStatus::kInvalidCovariance;
+}
+
+bool HasRefused(const TrialRecord& record) {
+  return record.status != MotionStatus::kOk && !IsInvalid(record);
+}
+
+bool IsScored(const TrialRecord& record) {
+  return record.status != MotionStatus::kOk || !std::isnan(record.rotation_error_deg);
+}
+
+bool HasFailed(const TrialRecord& record, const FailureBounds& bounds) {
+  if (IsInvalid(record)) return true;
+  return record.status == MotionStatus::kOk && (record.rotation_error_deg > bounds.max_rotation_error_deg ||
+                                                record.direction_error_deg > bounds.max_direction_error_deg);
+}
+
+bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds) {
+  return record.status == MotionStatus::kOk && IsScored(record) && !HasFailed(record, bounds);
+}
+
+TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double seconds) {
+  return ScoreJudged(Judged(estimate, data.problem.matches.size()), data, seconds);
+}
+
+TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
+  const StreamName name{plan.study.seed, condition.index, trial, 0};
+  TrialResult result;
+  result.data = condition.source->Make(name);
+  result.problem = Describe(result.data, name);
+  result.estimates.reserve(plan.estimators.size());
+  result.records.reserve(plan.estimators.size());
+  for (size_t e = 0; e < plan.estimators.size(); ++e) {
+    RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
+    const auto start = std::chrono::steady_clock::now();
+    MotionEstimate estimate = plan.estimators[e]->Estimate(result.data.problem, sampling_rng);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    result.estimates.push_back(Judged(std::move(estimate), result.data.problem.matches.size()));
+    TrialRecord record = ScoreJudged(result.estimates.back(), result.data, elapsed.count());
+    record.condition = condition.index;
+    record.trial = trial;
+    record.estimator = static_cast<std::uint32_t>(e);
+    result.records.push_back(record);
+  }
+  return result;
+}
+
+}  // namespace rcme

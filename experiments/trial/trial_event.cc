@@ -1,0 +1,22 @@
+#include "experiments/trial/trial_event.h"
+
+namespace rcme {
+namespace {
+
+bool Refused(const TrialRecord& record, const FailureBounds&) { return HasRefused(record); }
+
+bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) {
+  return HasRefused(record) || HasFailed(record, bounds);
+}
+
+}  // namespace
+
+const std::vector<TrialEvent>& TrialEvents() {
+  static const std::vector<TrialEvent> events = {
+      {"failure", "a motion beyond a failure bound, or an answer that is not valid", HasFailed, true},
+      {"refusal", "no motion, for whatever reason", Refused, false},
+      {"failure_or_refusal", "one of the two", HasFailedOrRefused, true}};
+  return events;
+}
+
+}  // namespace rcme

@@ -1,0 +1,501 @@
+#include "experiments/analysis/summarize.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "experiments/analysis/summary_output.h"
+#include "stats/confidence_sequence.h"
+#include "tests/test_support/add_records.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TrialRecord Motion(std::uint32_t trial, double rotation_deg, double direction_deg, double nees) {
+  TrialRecord record;
+  record.trial = trial;
+  record.status = MotionStatus::kOk;
+  record.rotation_error_deg = rotation_deg;
+  record.direction_error_deg = direction_deg;
+  record.nees = nees;
+  record.inlier_precision = 0.5;
+  record.inlier_recall = 0.25;
+  record.num_matches = 40;
+  record.num_support = 10 + static_cast<int>(trial);
+  record.num_explained = 20;
+  record.mean_entropy = -4.0;
+  record.counts.num_candidates = 3;
+  record.seconds = 0.002;
+  return record;
+}
+
+TrialRecord NoMotion(std::uint32_t trial, MotionStatus status) {
+  TrialRecord record;
+  record.trial = trial;
+  record.status = status;
+  record.rotation_error_deg = record.direction_error_deg = record.nees = kNaN;
+  record.inlier_precision = record.inlier_recall = record.mean_entropy = record.z_statistic = kNaN;
+  record.seconds = 0.004;
+  return record;
+}
+
+// Condition 0, estimator 0 ("standard"), ten trials: four successes, two failures, four without a motion.
+std::vector<TrialRecord> HandMadeRecords() {
+  std::vector<TrialRecord> records = {
+      Motion(0, 1.0, 2.0, 4.0),
+      Motion(1, 2.0, 4.0, 6.0),
+      Motion(2, 3.0, 15.0, 20.0),  // at both bounds: a success; outside of the 95 % region (11.07)
+      Motion(3, 2.0, 3.0, 2.0),
+      Motion(4, 3.5, 1.0, 30.0),  // fails by its rotation
+      Motion(5, 1.0, 40.0, 3.0),  // fails by its direction
+      NoMotion(6, MotionStatus::kNoCandidate),
+      NoMotion(7, MotionStatus::kNoCandidate),
+      NoMotion(8, MotionStatus::kRefinementDiverged),
+      NoMotion(9, MotionStatus::kTooFewMatches),
+  };
+  records[5].failed_by_kappa = true;
+  records[3].inlier_precision = 1.0;
+  return records;
+}
+
+class SummarizeTest : public testing::Test {
+ protected:
+  SummarizeTest() {
+    study_.estimators.resize(1);  // "standard"
+    Write("run", HandMadeRecords());
+  }
+
+  void Write(const std::string& name, const std::vector<TrialRecord>& records) {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path(name), MakePlan(study_));
+    AddRecords(store, records);
+  }
+  Summary SummaryOf(const std::string& name, bool with_times = false) {
+    return Summarize(ResultStore::OpenForReading(folder_.Path(name)), with_times);
+  }
+  SummaryRow Row(const std::string& quantity, std::uint32_t condition = 0,
+                 const std::string& estimator = "standard") {
+    for (const SummaryRow& row : SummaryOf("run", true).rows) {
+      if (row.quantity == quantity && row.condition == condition && row.estimator == estimator) return row;
+    }
+    ADD_FAILURE() << "no row of " << quantity;
+    return {};
+  }
+  void ExpectRate(const std::string& quantity, std::int64_t count, std::int64_t n) {
+    const SummaryRow row = Row(quantity);
+    EXPECT_EQ(row.kind, SummaryRow::Kind::kRate) << quantity;
+    EXPECT_EQ(row.n, n) << quantity;
+    EXPECT_DOUBLE_EQ(row.value, static_cast<double>(count) / static_cast<double>(n)) << quantity;
+    EXPECT_EQ(row.interval.lower, ExactBinomialInterval(count, n).lower) << quantity;
+    EXPECT_EQ(row.interval.upper, ExactBinomialInterval(count, n).upper) << quantity;
+  }
+  void ExpectMean(const std::string& quantity, const std::vector<double>& values) {
+    double mean = 0.0, sum_squares = 0.0;
+    const double n = static_cast<double>(values.size());
+    for (const double value : values) mean += value / n;
+    for (const double value : values) sum_squares += (value - mean) * (value - mean);
+    const SummaryRow row = Row(quantity);
+    EXPECT_EQ(row.kind, SummaryRow::Kind::kMean) << quantity;
+    EXPECT_EQ(row.n, static_cast<std::int64_t>(values.size())) << quantity;
+    EXPECT_NEAR(row.value, mean, 1e-12) << quantity;
+    EXPECT_NEAR(row.standard_error, std::sqrt(sum_squares / (n - 1.0) / n), 1e-12) << quantity;
+  }
+
+  TempFolder folder_;
+  Study study_ = SmallStudy();
+};
+
+TEST_F(SummarizeTest, RatesByHand) {
+  ExpectRate("success", 4, 10);
+  ExpectRate("failure", 2, 10);
+  ExpectRate("no_candidate", 2, 10);
+  ExpectRate("too_few_matches", 1, 10);
+  ExpectRate("degenerate_matches", 0, 10);
+  ExpectRate("refinement_diverged", 1, 10);
+  ExpectRate("invalid_input", 0, 10);
+  ExpectRate("other_refusal", 2, 10);  // too_few_matches and refinement_diverged
+  ExpectRate("kappa_flag", 1, 6);      // of the six returned motions
+  ExpectRate("nees_coverage", 4, 6);   // 4, 6, 2, 3 of 4, 6, 20, 2, 30, 3
+}
+
+TEST_F(SummarizeTest, AKnownInterval) {
+  // Clopper-Pearson of 4 of 10, e.g. R: binom.test(4, 10)$conf.int.
+  EXPECT_NEAR(Row("success").interval.lower, 0.1215523, 1e-7);
+  EXPECT_NEAR(Row("success").interval.upper, 0.7376219, 1e-7);
+}
+
+TEST_F(SummarizeTest, MeansByHand) {
+  ExpectMean("nees", {4, 6, 20, 2});
+  ExpectMean("rotation_error_deg", {1, 2, 3, 2});
+  ExpectMean("direction_error_deg", {2, 4, 15, 3});
+  ExpectMean("inlier_precision", {0.5, 0.5, 0.5, 1.0, 0.5, 0.5});
+  ExpectMean("inlier_recall", {0.25, 0.25, 0.25, 0.25, 0.25, 0.25});
+  ExpectMean("num_support", {10, 11, 12, 13, 14, 15});
+  ExpectMean("explained_share", {0.5, 0.5, 0.5, 0.5, 0.5, 0.5});
+  ExpectMean("mean_entropy", {-4, -4, -4, -4, -4, -4});
+  ExpectMean("num_candidates", {3, 3, 3, 3, 3, 3, 0, 0, 0, 0});
+}
+
+// Every returned motion counts, failures too: their NEES are 4, 6, 20, 2, 30, 3.
+TEST_F(SummarizeTest, MediansByHand) {
+  const SummaryRow nees = Row("nees_median"), time = Row("time_ms");
+  EXPECT_EQ(nees.kind, SummaryRow::Kind::kMedian);
+  EXPECT_EQ(nees.n, 6);
+  EXPECT_EQ(nees.value, 4.0);
+  EXPECT_EQ(nees.interval.lower, 2.0);  // the least and the greatest: 1 - 2 / 2^6 = 0.969
+  EXPECT_EQ(nees.interval.upper, 30.0);
+  EXPECT_EQ(time.n, 10);
+  EXPECT_EQ(time.value, 2.0);
+  EXPECT_EQ(time.interval.lower, 2.0);  // the second and the ninth of ten: 0.979
+  EXPECT_EQ(time.interval.upper, 4.0);
+}
+
+// A covariance that is not positive definite has an infinite NEES, which a median survives and a mean does
+// not.
+TEST_F(SummarizeTest, AnInfiniteNeesCountsInTheMedian) {
+  std::vector<TrialRecord> records;
+  for (std::uint32_t t = 0; t < 9; ++t) {
+    records.push_back(Motion(t, 1.0, 1.0, t < 3 ? std::numeric_limits<double>::infinity() : 1.0 * t));
+    records.back().condition = 1;
+  }
+  Write("run", records);
+  EXPECT_EQ(Row("nees_median", 1).n, 9);
+  EXPECT_EQ(Row("nees_median", 1).value, 7.0);  // of 3 .. 8 and three infinite ones
+  EXPECT_NE(SummaryAsCsv(SummaryOf("run")).find(",nees_median,median,7,4,,,9,,,\n"), std::string::npos)
+      << "an infinite end is empty";
+}
+
+// So many motions of which so many are within the region.
+std::vector<TrialRecord> Covered(int num_covered, int n) {
+  std::vector<TrialRecord> records;
+  for (int t = 0; t < n; ++t) {
+    // On either side of the 95 % quantile of chi2_5, 11.0705.
+    records.push_back(Motion(static_cast<std::uint32_t>(t), 1.0, 1.0, t < num_covered ? 11.07 : 11.071));
+    records.back().condition = 1;
+  }
+  return records;
+}
+
+// Exact 95 % intervals against 0.95 +- 0.01. Catches a verdict by the point alone, or by "contains 0.95".
+TEST_F(SummarizeTest, CoverageHasAVerdictAndWhatWouldDecide) {
+  const auto verdict_of = [&](const std::string& name, int num_covered, int n) {
+    Write(name, Covered(num_covered, n));
+    for (const SummaryRow& row : SummaryOf(name).rows) {
+      if (row.condition == 1 && row.quantity == "nees_coverage") return row.coverage_verdict.value();
+    }
+    return CoverageVerdict();
+  };
+  EXPECT_EQ(verdict_of("covers", 4760, 5000).verdict, Verdict::kHolds);          // [.9457, .9577]
+  EXPECT_EQ(verdict_of("undecided", 95, 100).verdict, Verdict::kUndecided);      // [.887, .984]
+  EXPECT_EQ(verdict_of("near", 4700, 5000).verdict, Verdict::kUndecided);        // .940 [.933, .946]
+  EXPECT_EQ(verdict_of("too few", 180, 200).verdict, Verdict::kDoesNotHold);     // [.850, .938]
+  EXPECT_EQ(verdict_of("too many", 1990, 2000).verdict, Verdict::kDoesNotHold);  // [.991, .998]
+  EXPECT_NEAR(verdict_of("undecided", 0, 0).trials_to_decide, TrialsToDecide(0.95, {0.94, 0.96}), 1e-9);
+  EXPECT_NE(SummaryAsTable(SummaryOf("covers")).find(": covers"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummaryOf("too few")).find(": does not cover"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummaryOf("undecided")).find(": undecided, about 6200 trials would do"),
+            std::string::npos)
+      << SummaryAsTable(SummaryOf("undecided"));
+  EXPECT_NE(SummaryAsCsv(SummaryOf("too few")).find(",200,exact,does not cover,\n"), std::string::npos);
+  EXPECT_FALSE(Row("success").coverage_verdict) << "a rate that nothing is claimed of";
+  EXPECT_FALSE(Row("nees_coverage", 1).coverage_verdict) << "no trials";
+}
+
+// Half of the trials return a motion: twice as many trials are needed as motions.
+TEST_F(SummarizeTest, TrialsThatDecideCountRefusalsToo) {
+  std::vector<TrialRecord> records = Covered(95, 100);
+  for (std::uint32_t t = 100; t < 200; ++t) {
+    records.push_back(NoMotion(t, MotionStatus::kNoCandidate));
+    records.back().condition = 1;
+  }
+  Write("run", records);
+  EXPECT_NEAR(Row("nees_coverage", 1).coverage_verdict.value().trials_to_decide,
+              2.0 * TrialsToDecide(0.95, {0.94, 0.96}), 1e-9);
+}
+
+TEST_F(SummarizeTest, EveryTrialHasExactlyOneOutcome) {
+  double sum = 0.0;
+  std::set<std::string> outcomes = {"success", "failure"};
+  for (const MotionStatus status : AllStatuses()) {
+    TrialRecord record;
+    record.status = status;
+    if (HasRefused(record)) outcomes.insert(StatusName(status));
+  }
+  for (const std::string& outcome : outcomes) sum += Row(outcome).value;
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST_F(SummarizeTest, EmptyCellsSayThatNothingIsKnown) {
+  for (const char* quantity : {"success", "nees_coverage"}) {
+    const SummaryRow row = Row(quantity, 1);
+    EXPECT_EQ(row.n, 0);
+    EXPECT_TRUE(std::isnan(row.value));
+    EXPECT_EQ(row.interval.lower, 0.0);
+    EXPECT_EQ(row.interval.upper, 1.0);
+  }
+  EXPECT_TRUE(std::isnan(Row("nees", 1).value));
+  EXPECT_TRUE(std::isnan(Row("nees", 1).standard_error));
+}
+
+TEST_F(SummarizeTest, RowsAreComplete) {
+  const Summary summary = SummaryOf("run", true);
+  EXPECT_EQ(summary.study, "small");
+  EXPECT_EQ(summary.factor_names, std::vector<std::string>{"outlier_ratio"});
+  EXPECT_EQ(summary.num_trials_done, 10);
+  EXPECT_EQ(summary.num_trials_planned, 12);
+  EXPECT_EQ(summary.rows.size(), 2 * SummaryQuantities().size());
+  EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0"});
+  EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
+  for (const SummaryRow& row : SummaryOf("run").rows)
+    EXPECT_NE(row.quantity, "time_ms") << "times were not asked for";
+}
+
+TEST_F(SummarizeTest, UnknownTruthIsNotCounted) {
+  TrialRecord unknown = Motion(0, kNaN, kNaN, kNaN);
+  unknown.condition = 1;
+  TrialRecord no_direction = Motion(1, 1.0, kNaN, kNaN);
+  no_direction.condition = 1;
+  Write("run", {unknown, no_direction});
+  EXPECT_EQ(Row("rotation_error_deg", 1).n, 1);
+  EXPECT_EQ(Row("direction_error_deg", 1).n, 0);
+  EXPECT_EQ(Row("nees_coverage", 1).n, 0);
+  EXPECT_EQ(Row("num_support", 1).n, 2);
+}
+
+// What is not known is neither a success nor "no failure".
+TEST_F(SummarizeTest, AMotionWithoutAKnownTruthNeitherFailsNorSucceeds) {
+  std::vector<TrialRecord> records = {Motion(0, kNaN, kNaN, kNaN), Motion(1, kNaN, kNaN, kNaN),
+                                      Motion(2, 9.0, 1.0, 30.0), NoMotion(3, MotionStatus::kNoCandidate)};
+  for (TrialRecord& record : records) record.condition = 1;
+  Write("run", records);
+  EXPECT_EQ(Row("not_scored", 1).value, 0.5);
+  EXPECT_EQ(Row("not_scored", 1).n, 4);
+  EXPECT_EQ(Row("failure", 1).value, 0.5);
+  EXPECT_EQ(Row("failure", 1).n, 2);
+  EXPECT_EQ(Row("success", 1).n, 2);
+  EXPECT_EQ(Row("no_candidate", 1).n, 4);
+}
+
+// An answer that is not valid is a failure with or without a truth, and covers nothing: none leaves an n.
+TEST_F(SummarizeTest, InvalidAnswersAreFailuresInEveryCount) {
+  TrialRecord no_motion = NoMotion(0, MotionStatus::kInvalidMotion);
+  no_motion.nees = std::numeric_limits<double>::infinity();
+  TrialRecord no_covariance = Motion(1, 0.5, 0.5, std::numeric_limits<double>::infinity());
+  no_covariance.status = MotionStatus::kInvalidCovariance;
+  std::vector<TrialRecord> records = {no_motion, no_covariance, Motion(2, 0.5, 0.5, 4.0),
+                                      NoMotion(3, MotionStatus::kInvalidMotion)};  // no truth
+  for (TrialRecord& record : records) record.condition = 1;
+  Write("run", records);
+  const auto expect = [&](const std::string& quantity, double value, std::int64_t n) {
+    EXPECT_EQ(Row(quantity, 1).n, n) << quantity;
+    EXPECT_DOUBLE_EQ(Row(quantity, 1).value, value) << quantity;
+  };
+  expect("failure", 0.75, 4);
+  expect("success", 0.25, 4);
+  expect("invalid_motion", 0.5, 4);
+  expect("invalid_covariance", 0.25, 4);
+  expect("other_refusal", 0.0, 4);
+  expect("not_scored", 0.0, 4);
+  expect("nees_coverage", 1.0 / 3.0, 3);
+  expect("nees_median", std::numeric_limits<double>::infinity(), 3);  // 4 and twice infinity
+  expect("rotation_error_deg", 0.5, 1);                               // of successes
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(SummarizeTest, Csv) {
+  const std::vector<std::string> lines = Lines(SummaryAsCsv(SummaryOf("run")));
+  ASSERT_EQ(lines.size(), 1 + SummaryOf("run").rows.size());
+  EXPECT_EQ(lines[0],
+            "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n,"
+            "interval,verdict,"
+            "trials_to_decide");
+  EXPECT_EQ(lines[2], "small,0,0,standard,success,rate,0.4,0.12155226,0.73762192,,10,exact,,");
+  const auto has_line = [&](const std::string& line) {
+    return std::count(lines.begin(), lines.end(), line) == 1;
+  };
+  EXPECT_TRUE(has_line("small,0,0,standard,rotation_error_deg,mean,2,,,0.40824829,4,,,"));  // sqrt(2 / 3 / 4)
+  EXPECT_TRUE(has_line("small,1,0.3,standard,success,rate,,0,1,,0,exact,,"));
+  EXPECT_TRUE(has_line("small,1,0.3,standard,nees,mean,,,,,0,,,"));
+  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 13) << line;
+}
+
+TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
+  study_.name = "a, \"b\"";
+  study_.estimators[0].label = "line\nbreak";
+  Write("quoted", {});
+  const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"line\nbreak\",success,rate,,0,1,,0,exact,,\n"),
+            std::string::npos)
+      << csv;
+}
+
+TEST_F(SummarizeTest, JsonHoldsTheSameRows) {
+  const Summary summary = SummaryOf("run");
+  const nlohmann::json json = nlohmann::json::parse(SummaryAsJson(summary));
+  EXPECT_EQ(json["study"], "small");
+  EXPECT_EQ(json["trials_done"], 10);
+  EXPECT_EQ(json["trials_planned"], 12);
+  ASSERT_EQ(json["rows"].size(), summary.rows.size());
+  for (size_t i = 0; i < summary.rows.size(); ++i) {
+    const SummaryRow& row = summary.rows[i];
+    const nlohmann::json& entry = json["rows"][i];
+    EXPECT_EQ(entry["condition"], row.condition);
+    EXPECT_EQ(entry["levels"]["outlier_ratio"], row.levels[0]);
+    EXPECT_EQ(entry["estimator"], row.estimator);
+    EXPECT_EQ(entry["quantity"], row.quantity);
+    EXPECT_EQ(entry["n"], row.n);
+    EXPECT_EQ(entry["value"].is_null(), row.n == 0);
+    if (row.n > 0) {
+      EXPECT_EQ(entry["value"], row.value);
+    }
+    EXPECT_EQ(entry["kind"], KindName(row.kind));
+    EXPECT_EQ(entry.contains("verdict"), row.coverage_verdict.has_value());
+    if (row.kind == SummaryRow::Kind::kRate) {
+      EXPECT_EQ(entry["interval"], nlohmann::json({row.interval.lower, row.interval.upper}));
+    } else if (row.kind == SummaryRow::Kind::kMean) {
+      EXPECT_EQ(entry["standard_error"].is_null(), std::isnan(row.standard_error));
+    }
+  }
+}
+
+TEST_F(SummarizeTest, TableShowsIntervalsAndCounts) {
+  const std::string table = SummaryAsTable(SummaryOf("run"));
+  EXPECT_NE(table.find("Study small: 10 of 12 trials done"), std::string::npos) << table;
+  EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;  // failure, 2 of 10
+  EXPECT_NE(table.find("Clopper-Pearson"), std::string::npos) << table;
+}
+
+TEST_F(SummarizeTest, EqualDataGiveEqualBytesInWhateverOrderTheyCame) {
+  std::vector<TrialRecord> reversed = HandMadeRecords();
+  std::reverse(reversed.begin(), reversed.end());
+  for (TrialRecord& record : reversed) record.seconds *= 7.0;
+  Write("reversed", reversed);
+  EXPECT_EQ(SummaryAsCsv(SummaryOf("run")), SummaryAsCsv(SummaryOf("reversed")));
+  EXPECT_EQ(SummaryAsJson(SummaryOf("run")), SummaryAsJson(SummaryOf("reversed")));
+  EXPECT_EQ(SummaryAsTable(SummaryOf("run")), SummaryAsTable(SummaryOf("reversed")));
+}
+
+// Four problems of ten, the others were not measured: within the bounds, beyond the one of the rotation (3
+// deg), beyond the one of the direction (15 deg), and between the two numbers with each of its own.
+TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
+  const double rotation_deg[] = {0.1, 5.1, 0.1, 2.9}, direction_deg[] = {0.5, 0.5, 15.1, 14.9};
+  std::vector<ProblemRecord> problems(4);
+  std::vector<TrialRecord> records;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    problems[i].trial = i;
+    problems[i].num_inliers_true = 30.0 + 10.0 * i;
+    problems[i].severity.crb_rotation_deg = rotation_deg[i];
+    problems[i].severity.crb_direction_deg = direction_deg[i];
+    records.push_back(Motion(i, 1.0, 1.0, 1.0));
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("severe"), MakePlan(study_));
+    store.Add(problems, records);
+  }
+  for (const SummaryRow& row : SummaryOf("severe").rows) {
+    if (row.condition != 0 || row.estimator != kSceneLabel) continue;
+    if (row.quantity == "impossible") {
+      EXPECT_EQ(row.value, 0.5);
+    } else if (row.quantity == "num_inliers_true") {
+      EXPECT_EQ(row.value, 45.0);
+    } else if (row.quantity == "crb_rotation_deg") {
+      EXPECT_NEAR(row.value, 2.05, 1e-12);
+    } else if (row.quantity == "planarity") {
+      EXPECT_EQ(row.n, 0);  // unknown
+    }
+  }
+  EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [6.76, 93.24]"), std::string::npos);
+}
+
+// Three problems, the second without a bound: the matches do not determine its motion.
+TEST_F(SummarizeTest, AMeanWithInfiniteNumbersIsInfiniteEverywhere) {
+  std::vector<ProblemRecord> problems(3);
+  std::vector<TrialRecord> records;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    problems[i].trial = i;
+    problems[i].severity.crb_rotation_deg = i == 1 ? std::numeric_limits<double>::infinity() : 0.5;
+    records.push_back(Motion(i, 1.0, 1.0, 1.0));
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("infinite"), MakePlan(study_));
+    store.Add(problems, records);
+  }
+  const Summary summary = SummaryOf("infinite");
+  const auto row = std::ranges::find_if(
+      summary.rows, [](const SummaryRow& r) { return r.condition == 0 && r.quantity == "crb_rotation_deg"; });
+  ASSERT_NE(row, summary.rows.end());
+  EXPECT_EQ(row->value, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(row->n, 3);
+  EXPECT_TRUE(std::isnan(row->standard_error));
+  EXPECT_NE(SummaryAsCsv(summary).find("small,0,0,scene,crb_rotation_deg,mean,inf,,,,3,,,\n"),
+            std::string::npos);
+  const std::string table = SummaryAsTable(summary);
+  EXPECT_NE(table.find("  inf"), std::string::npos) << table;
+  EXPECT_EQ(table.find("nan"), std::string::npos) << table;
+  const nlohmann::json entry =
+      nlohmann::json::parse(SummaryAsJson(summary))["rows"][row - summary.rows.begin()];
+  EXPECT_EQ(entry["quantity"], "crb_rotation_deg");
+  EXPECT_TRUE(entry["value"].is_null());  // JSON has no infinity
+  EXPECT_TRUE(entry["standard_error"].is_null());
+}
+
+TEST_F(SummarizeTest, TrialsThatStoppedByTheirOutcomesHaveAnytimeValidIntervals) {
+  ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_)).NoteStoppingRule("a reason");
+  const SummaryRow row = Row("failure");
+  EXPECT_EQ(row.interval_kind, IntervalKind::kAnytimeValid);
+  EXPECT_EQ(row.interval.lower, ConfidenceSequence(2, 10).lower);
+  EXPECT_EQ(row.interval.upper, ConfidenceSequence(2, 10).upper);
+  EXPECT_LT(row.interval.lower, ExactBinomialInterval(2, 10).lower);
+}
+
+// Failures of weight 0.5 and 0.25 in four trials: (0.5 + 0.25) / 4.
+TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
+  std::vector<ProblemRecord> problems(4);
+  const double weights[] = {0.5, 0.25, 2.0, 1.25};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    problems[i].trial = i;
+    problems[i].weight = weights[i];
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("weighted"), MakePlan(study_));
+    store.Add(problems, {Motion(0, 9.0, 1.0, 1.0), Motion(1, 9.0, 1.0, 1.0), Motion(2, 1.0, 1.0, 1.0),
+                         NoMotion(3, MotionStatus::kNoCandidate)});
+  }
+  for (const SummaryRow& row : SummaryOf("weighted").rows) {
+    if (row.condition != 0 || row.estimator != "standard") continue;
+    EXPECT_EQ(row.interval_kind, IntervalKind::kWeighted);
+    if (row.quantity == "failure") {
+      EXPECT_DOUBLE_EQ(row.value, 0.1875);
+      EXPECT_GT(row.standard_error, 0.0);
+      EXPECT_LT(row.interval.lower, 0.1875);
+      EXPECT_EQ(row.interval.upper, 1.0);  // four trials bound nothing
+    } else if (row.quantity == "kappa_flag" || row.quantity == "rotation_error_deg") {
+      EXPECT_EQ(row.n, 0);  // of a part of the trials
+    }
+  }
+}
+
+TEST(FormatColumns, PadsToTheWidestCell) {
+  EXPECT_EQ(FormatColumns({{"a", "bcd"}, {"long", "x"}, {"", "y"}}),
+            "a     bcd\n----  ---  \nlong  x\n      y\n");
+}
+
+}  // namespace
+}  // namespace rcme

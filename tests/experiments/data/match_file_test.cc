@@ -1,0 +1,407 @@
+#include "experiments/data/match_file.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/data/match_folder.h"
+#include "experiments/study/study_file.h"
+#include "experiments/study/study_plan.h"
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/gzip.h"
+#include "tests/test_support/match_text.h"
+#include "tests/test_support/paths.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+const std::string kRealFolder = SourceFolder() + "/../shared/real/dev";
+
+// A small file with everything in it; `replace` puts one piece of text in place of another.
+std::string FullText() {
+  return "# pair_id: a_000\n"
+         "# scene: a\n"
+         "# size1: 640 480\n"
+         "# size2: 800 600\n"
+         "# K1_fx_fy_cx_cy: 600 610 320 240\n"
+         "# K2_fx_fy_cx_cy: 700 710 400 300\n"
+         "# R_rowmajor: 0 -1 0 1 0 0 0 0 1\n"
+         "# t_unit: 0 0.6 -0.8\n"
+         "# a comment without a key\n"
+         "x1,y1,x2,y2,ratio\n"
+         "14.5,496.25,192.5,795.125,0.7\n"
+         "-0.5,1e2,0,3\n";
+}
+
+std::string Edited(const std::string& from, const std::string& to) {
+  std::string text = FullText();
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+void ExpectFull(const MatchFile& file) {
+  EXPECT_EQ(file.scene, "a");
+  EXPECT_EQ(file.camera1.width, 640);
+  EXPECT_EQ(file.camera1.height, 480);
+  EXPECT_EQ(file.camera2.width, 800);
+  EXPECT_EQ(file.camera2.height, 600);
+  EXPECT_EQ(file.camera1.fx, 600.0);
+  EXPECT_EQ(file.camera1.fy, 610.0);
+  EXPECT_EQ(file.camera1.cx, 320.0);
+  EXPECT_EQ(file.camera1.cy, 240.0);
+  EXPECT_EQ(file.camera2.fx, 700.0);
+  EXPECT_EQ(file.camera2.cy, 300.0);
+  ASSERT_TRUE(file.cam2_from_cam1_true.has_value());
+  EXPECT_EQ(file.cam2_from_cam1_true->R(0, 1), -1.0);  // row-major
+  EXPECT_EQ(file.cam2_from_cam1_true->R(1, 0), 1.0);
+  EXPECT_DOUBLE_EQ(file.cam2_from_cam1_true->t.z(), -0.8);
+  ASSERT_EQ(file.matches.size(), 2u);
+  EXPECT_EQ(file.matches[0].x1_px, Eigen::Vector2d(14.5, 496.25));
+  EXPECT_EQ(file.matches[0].x2_px, Eigen::Vector2d(192.5, 795.125));
+  EXPECT_EQ(file.matches[1].x1_px, Eigen::Vector2d(-0.5, 100.0));
+  EXPECT_EQ(file.matches[1].x2_px, Eigen::Vector2d(0.0, 3.0));
+}
+
+class MatchFileTest : public testing::Test {
+ protected:
+  MatchFile Read(const std::string& bytes, const std::string& name = "pair.csv") {
+    return ReadMatchFile(folder_.Write(name, bytes));
+  }
+  testing::AssertionResult Refuses(const std::string& bytes, std::vector<std::string> fragments) {
+    const std::string path = folder_.Write("bad.csv", bytes);
+    fragments.push_back(path);
+    return ThrowsInputError([&] { ReadMatchFile(path); }, fragments);
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(MatchFileTest, Plain) { ExpectFull(Read(FullText())); }
+
+TEST_F(MatchFileTest, Gzip) {
+  ExpectFull(Read(Gzip(FullText()), "pair.csv.gz"));
+  ExpectFull(Read(Gzip(FullText()), "misnamed.csv"));  // the bytes decide, not the name
+  ExpectFull(Read(FullText(), "also_misnamed.csv.gz"));
+}
+
+TEST_F(MatchFileTest, WindowsLineEndsBlankLinesAndNoLastLineEnd) {
+  std::string text;
+  for (const char c : FullText()) text += c == '\n' ? std::string("\r\n\r\n") : std::string(1, c);
+  ExpectFull(Read(text));
+  text = FullText();
+  text.pop_back();
+  ExpectFull(Read(text));
+}
+
+TEST_F(MatchFileTest, SpacesAndExtraColumns) {
+  ExpectFull(Read(Edited("14.5,496.25,192.5,795.125,0.7", " 14.5 , 496.25,192.5,\t795.125,0.7,more,,nan")));
+  ExpectFull(Read(Edited("# size1: 640 480", "#size1:640    480  ")));
+}
+
+TEST_F(MatchFileTest, ByteOrderMark) { ExpectFull(Read("\xEF\xBB\xBF" + FullText())); }
+
+TEST_F(MatchFileTest, ColumnNames) {
+  for (const char* names : {"x1,y1,x2,y2", " x1 ,\ty1, x2,y2 ", "x1,y1,x2,y2,ratio,,scale"}) {
+    ExpectFull(Read(Edited("x1,y1,x2,y2,ratio", names)));
+  }
+}
+
+TEST_F(MatchFileTest, OtherColumnNames) {
+  for (const std::string names : {"x1,x2,y1,y2", "y1,x1,y2,x2", "x2,y2,x1,y1", "x1,y1,x2",
+                                  "ratio,x1,y1,x2,y2", "x1,hello", "x1;y1,x2,y2"}) {
+    EXPECT_TRUE(Refuses(Edited("x1,y1,x2,y2,ratio", names),
+                        {":10: column names '" + names + "'", "give x1,y1,x2,y2[,...], before the first"}))
+        << names;
+  }
+  EXPECT_TRUE(Refuses(FullText() + "x1,y1,x2,y2\n", {":13: column names 'x1,y1,x2,y2'", "before the first"}));
+  EXPECT_TRUE(Refuses(FullText() + "x1,nonsense\n", {":13: column names 'x1,nonsense'"}));
+}
+
+TEST_F(MatchFileTest, WithoutColumnNamesSceneOrTruePose) {
+  const MatchFile file = Read(MatchHeader() + "1,2,3,4\n");
+  EXPECT_EQ(file.scene, "unnamed");
+  EXPECT_FALSE(file.cam2_from_cam1_true.has_value());
+  EXPECT_EQ(file.matches.size(), 1u);
+}
+
+TEST_F(MatchFileTest, NoMatchesIsAnAnswerNotAnError) { EXPECT_TRUE(Read(MatchHeader()).matches.empty()); }
+
+TEST_F(MatchFileTest, TruePoseIsMadeUnitLength) {
+  const MatchFile file = Read(Edited("0 0.6 -0.8", "0 0.60003 -0.80004"));
+  EXPECT_NEAR(file.cam2_from_cam1_true->t.norm(), 1.0, 1e-15);
+}
+
+TEST_F(MatchFileTest, DamagedGzip) {
+  const std::string whole = Gzip(MatchHeader() + MatchRows(200));
+  for (const size_t size : {size_t{3}, size_t{10}, whole.size() / 2, whole.size() - 8, whole.size() - 1}) {
+    EXPECT_TRUE(Refuses(whole.substr(0, size), {"damaged or truncated gzip"})) << size << " bytes";
+  }
+  std::string wrong_sum = whole;
+  wrong_sum[wrong_sum.size() - 6] ^= 1;
+  EXPECT_TRUE(Refuses(wrong_sum, {"damaged or truncated gzip"}));
+}
+
+TEST_F(MatchFileTest, PathsThatAreNoFile) {
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ReadMatchFile(folder_.Path("none.csv")); }, {"none.csv", "no such match file"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ReadMatchFile(folder_.path()); }, {folder_.path(), "is a folder"}));
+}
+
+TEST_F(MatchFileTest, MissingHeaderKeys) {
+  for (const char* key : {"size1", "size2", "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy"}) {
+    EXPECT_TRUE(
+        Refuses(Edited(std::string("# ") + key, "# other"), {std::string("'# ") + key, "is missing"}));
+  }
+  EXPECT_TRUE(Refuses(Edited("# t_unit", "# t"), {"t_unit", "is missing"}));
+  EXPECT_TRUE(Refuses(Edited("# R_rowmajor", "# R"), {"R_rowmajor", "is missing"}));
+  EXPECT_TRUE(Refuses("", {"size1", "is missing"}));
+}
+
+TEST_F(MatchFileTest, RepeatedHeaderKey) {
+  EXPECT_TRUE(Refuses(Edited("# size2: 800 600", "# size1: 640 480"), {":4:", "'size1'", "twice"}));
+}
+
+TEST_F(MatchFileTest, BadSizes) {
+  for (const char* size : {"0 480", "-640 480", "640.5 480", "1e7 480"}) {
+    EXPECT_TRUE(Refuses(Edited("640 480", size), {":3:", "size1", "must be whole numbers in [1, 1e6] px"}))
+        << size;
+  }
+  EXPECT_TRUE(Refuses(Edited("640 480", "640"), {":3:", "size1", "has 1 numbers; 2 are needed"}));
+  EXPECT_TRUE(Refuses(Edited("640 480", "640 nan"), {":3:", "size1", "'nan' is not a finite number"}));
+}
+
+TEST_F(MatchFileTest, SingularOrMirroredK) {
+  EXPECT_TRUE(Refuses(Edited("600 610 320 240", "0 610 320 240"), {":5:", "K1_fx_fy_cx_cy", "singular"}));
+  EXPECT_TRUE(Refuses(Edited("700 710 400 300", "700 -710 400 300"), {":6:", "K2_fx_fy_cx_cy", "> 0"}));
+  EXPECT_TRUE(Refuses(Edited("600 610 320 240", "600 610 320"), {":5:", "K1_fx_fy_cx_cy", "4 are needed"}));
+  EXPECT_TRUE(Refuses(Edited("600 610 320 240", "inf 610 320 240"), {":5:", "'inf' is not a finite number"}));
+}
+
+TEST_F(MatchFileTest, MotionsThatAreNone) {
+  EXPECT_TRUE(
+      Refuses(Edited("0 -1 0 1 0 0 0 0 1", "0 -1 0 1 0 0 0 0 1.1"), {":7:", "R_rowmajor", "not a rotation"}));
+  EXPECT_TRUE(
+      Refuses(Edited("0 -1 0 1 0 0 0 0 1", "0 1 0 1 0 0 0 0 1"), {":7:", "not a rotation"}));  // det = -1
+  EXPECT_TRUE(Refuses(Edited("0 -1 0 1 0 0 0 0 1", "0 -1 0 1 0 0 0 0"), {":7:", "9 are needed"}));
+  EXPECT_TRUE(Refuses(Edited("0 0.6 -0.8", "0 0 0"), {":8:", "t_unit", "unit length"}));
+  EXPECT_TRUE(Refuses(Edited("0 0.6 -0.8", "0 3 -4"), {":8:", "t_unit", "unit length"}));
+}
+
+TEST_F(MatchFileTest, BadRows) {
+  for (const char* word : {"nan", "NaN", "inf", "-inf", "1e999", "", "1.2.3", "0x10", "1 2"}) {
+    EXPECT_TRUE(Refuses(Edited("192.5", word), {":11: x2", "is not a finite number"})) << word;
+  }
+  for (const char* word : {"1e308", "-1e308", "1000000.1", "-1000000.1"}) {
+    EXPECT_TRUE(Refuses(Edited("192.5", word), {std::string(":11: x2: '") + word + "' is not a finite number",
+                                                "in [-1000000, 1000000] px"}));
+  }
+  EXPECT_EQ(Read(Edited("192.5", "-1e6")).matches[0].x2_px.x(), -1e6);
+  EXPECT_TRUE(Refuses(Edited("-0.5,1e2,0,3", "-0.5,1e2,0"), {":12:", "3 columns; x1,y1,x2,y2 are needed"}));
+  EXPECT_TRUE(Refuses(Edited("-0.5,1e2,0,3", "hello"), {":12:", "1 columns"}));
+  EXPECT_TRUE(Refuses(std::string("\0\1\2\xFF\xFE", 5), {":1:"}));
+}
+
+TEST_F(MatchFileTest, WriteRoundTrip) {
+  MatchFile file = Read(MatchHeader() + TruePoseHeader() + MatchRows(20));
+  file.scene = "somewhere";
+  file.camera1.fx = 600.0 + 1.0 / 3.0;
+  file.cam2_from_cam1_true->R = RotationFromVector({0.1, -0.2, 0.3});
+  file.matches[0].x1_px.x() = 0.1 + 0.2;
+  const std::string path = folder_.Path("written.csv");
+  WriteMatchFile(file, path);
+  const MatchFile again = ReadMatchFile(path);
+  EXPECT_EQ(again.scene, file.scene);
+  EXPECT_EQ(again.camera1.K(), file.camera1.K());
+  EXPECT_EQ(again.camera2.K(), file.camera2.K());
+  EXPECT_EQ(again.cam2_from_cam1_true->R, file.cam2_from_cam1_true->R);
+  EXPECT_LT((again.cam2_from_cam1_true->t - file.cam2_from_cam1_true->t).norm(), 1e-15);
+  ASSERT_EQ(again.matches.size(), file.matches.size());
+  for (size_t i = 0; i < file.matches.size(); ++i) {
+    EXPECT_EQ(again.matches[i].x1_px, file.matches[i].x1_px);
+    EXPECT_EQ(again.matches[i].x2_px, file.matches[i].x2_px);
+  }
+  WriteMatchFile(again, path);  // over the old one
+  EXPECT_EQ(ReadMatchFile(path).matches.size(), 20u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 2)
+      << "left a part file behind";
+}
+
+TEST_F(MatchFileTest, WriteErrors) {
+  const MatchFile file = Read(FullText());
+  EXPECT_TRUE(ThrowsInputError([&] { WriteMatchFile(file, folder_.Path("none/x.csv")); },
+                               {"none/x.csv", "cannot be"}));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { WriteMatchFile(file, folder_.path()); }, {folder_.path(), "cannot be written"}));
+  if (std::filesystem::exists("/dev/full")) {
+    EXPECT_TRUE(ThrowsInputError([&] { WriteMatchFile(file, "/dev/full"); }, {"/dev/full", "No space left"}));
+  }
+}
+
+// A folder with two scenes: a (two pairs, one packed) and b (one pair).
+class MatchFolderTest : public testing::Test {
+ protected:
+  MatchFolderTest() {
+    const std::string rest = MatchHeader() + TruePoseHeader();
+    folder_.Write("a_001.csv", "# scene: a\n" + rest + MatchRows(12, 1));
+    folder_.Write("a_000.csv.gz", Gzip("# scene: a\n" + rest + MatchRows(11, 2)));
+    folder_.Write("b_000.csv", "# scene: b\n" + MatchHeader() + MatchRows(13, 3));
+    folder_.Write("notes.txt", "no match file");
+  }
+  Study FolderStudy() const {
+    return ParseStudy("data: {scene: match_files, folder: '" + folder_.path() +
+                          "', sigma_px: 0.7}\nestimators: [{name: standard}]\ntrials: 3\n",
+                      "folder.yaml");
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(MatchFolderTest, GroupsByScene) {
+  const StudyPlan plan = MakePlan(FolderStudy());
+  EXPECT_EQ(plan.factor_names, std::vector<std::string>{"pair_scene"});
+  ASSERT_EQ(plan.conditions.size(), 2u);
+  EXPECT_EQ(plan.conditions[0].levels, std::vector<std::string>{"a"});
+  EXPECT_EQ(plan.conditions[1].levels, std::vector<std::string>{"b"});
+  EXPECT_EQ(plan.conditions[0].num_trials, 6);  // three passes over two pairs
+  EXPECT_EQ(plan.conditions[1].num_trials, 3);
+  EXPECT_EQ(plan.NumTrials(), 9);
+}
+
+TEST_F(MatchFolderTest, TrialsWalkThroughThePairsInTheOrderOfNames) {
+  const StudyPlan plan = MakePlan(FolderStudy());
+  const auto made = [&](size_t condition, std::uint32_t trial) {
+    return plan.conditions[condition].source->Make({1, static_cast<std::uint32_t>(condition), trial, 0});
+  };
+  EXPECT_EQ(made(0, 0).origin, "a_000.csv.gz");
+  EXPECT_EQ(made(0, 0).problem.matches.size(), 11u);
+  EXPECT_EQ(made(0, 1).origin, "a_001.csv");
+  EXPECT_EQ(made(0, 2).origin, "a_000.csv.gz");
+  EXPECT_EQ(made(0, 0).problem.sigma_px, 0.7);
+  EXPECT_TRUE(made(0, 0).truth.cam2_from_cam1_true.has_value());
+  EXPECT_TRUE(made(0, 0).truth.is_direction_known);
+  EXPECT_TRUE(made(0, 0).truth.is_inlier_true.empty());
+  EXPECT_FALSE(made(1, 0).truth.cam2_from_cam1_true.has_value());
+}
+
+TEST_F(MatchFolderTest, WeakDirectionsOfTheIndex) {
+  folder_.Write("INDEX.csv", "pair_id,scene,t_gt_weak,note\na_000,a,1,x\na_001,a,0,y\nb_000,b\n");
+  const StudyPlan plan = MakePlan(FolderStudy());
+  EXPECT_EQ(plan.conditions.size(), 2u) << "the index was read as a match file";
+  EXPECT_FALSE(plan.conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
+  EXPECT_TRUE(plan.conditions[0].source->Make({1, 0, 1, 0}).truth.is_direction_known);
+  EXPECT_TRUE(plan.conditions[1].source->Make({1, 1, 0, 0}).truth.is_direction_known);
+  folder_.Write("INDEX.csv", "pair_id,t_gt_weak\r\na_000,0\r\na_001,1\r\n");  // Windows line ends
+  const StudyPlan again = MakePlan(FolderStudy());
+  EXPECT_TRUE(again.conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
+  EXPECT_FALSE(again.conditions[0].source->Make({1, 0, 1, 0}).truth.is_direction_known);
+}
+
+TEST_F(MatchFolderTest, TheIndexMayStandAboveTheFolder) {
+  const TempFolder above;
+  above.Write("INDEX.csv", "pair_id,t_gt_weak\np,1\n");
+  std::filesystem::create_directory(above.Path("pairs"));
+  above.Write("pairs/p.csv", MatchHeader() + TruePoseHeader() + MatchRows(10));
+  for (const std::string name : {"pairs", "pairs/", "pairs/.", "pairs/../pairs"}) {
+    const auto sources = LoadMatchFolder({above.Path(name), 0.5});
+    EXPECT_FALSE(sources.at(0).second->Make({1, 0, 0, 0}).truth.is_direction_known) << name;
+  }
+}
+
+TEST_F(MatchFolderTest, AnIndexWithoutTheColumnsSaysNothing) {
+  folder_.Write("INDEX.csv", "name,weak\na_000,1\n");
+  EXPECT_TRUE(MakePlan(FolderStudy()).conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
+}
+
+TEST_F(MatchFolderTest, IdentityFollowsTheData) {
+  const std::string before = MakePlan(FolderStudy()).identity;
+  EXPECT_EQ(MakePlan(FolderStudy()).identity, before);
+  const std::string text = ReadBytes(folder_.Path("b_000.csv"));
+  std::string changed = text;
+  const size_t last_digit = changed.find_last_of("0123456789");
+  changed[last_digit] = changed[last_digit] == '1' ? '2' : '1';  // the last digit of the last coordinate
+  folder_.Write("b_000.csv", changed);
+  EXPECT_NE(MakePlan(FolderStudy()).identity, before);
+  folder_.Write("b_000.csv", text + "# a comment changes nothing\n");
+  EXPECT_EQ(MakePlan(FolderStudy()).identity, before);
+  folder_.Write("b_001.csv", text);
+  EXPECT_NE(MakePlan(FolderStudy()).identity, before);
+}
+
+TEST_F(MatchFolderTest, IdentityDoesNotFollowThePath) {
+  const TempFolder other;
+  std::filesystem::copy(folder_.path(), other.Path("moved"));
+  Study moved = FolderStudy();
+  Override(&moved, "folder", other.Path("moved"));
+  EXPECT_EQ(MakePlan(moved).identity, MakePlan(FolderStudy()).identity);
+}
+
+TEST_F(MatchFolderTest, IdentityFollowsTheTruth) {
+  const std::string before = MakePlan(FolderStudy()).identity;
+  folder_.Write("INDEX.csv", "pair_id,t_gt_weak\na_000,1\n");
+  EXPECT_NE(MakePlan(FolderStudy()).identity, before) << "scores change, so the study does";
+  std::filesystem::remove(folder_.Path("INDEX.csv"));
+  folder_.Write("b_000.csv", "# scene: b\n" + MatchHeader() + TruePoseHeader() + MatchRows(13, 3));
+  EXPECT_NE(MakePlan(FolderStudy()).identity, before);
+}
+
+TEST_F(MatchFolderTest, Errors) {
+  const auto load = [](const std::string& path) { LoadMatchFolder({path, 0.5}); };
+  EXPECT_TRUE(ThrowsInputError([&] { load(folder_.Path("none")); }, {"folder", "none", "is not a folder"}));
+  EXPECT_TRUE(ThrowsInputError([&] { load(folder_.Path("a_001.csv")); }, {"folder", "is not a folder"}));
+  const TempFolder empty;
+  EXPECT_TRUE(ThrowsInputError([&] { load(empty.path()); }, {empty.path(), "holds no *.csv"}));
+  folder_.Write("c_000.csv", MatchHeader() + "1,2,3,nan\n");
+  EXPECT_TRUE(ThrowsInputError([&] { load(folder_.path()); }, {"c_000.csv:5: y2", "'nan'"}));
+}
+
+TEST_F(MatchFolderTest, MoreTrialsThanCanBeCounted) {
+  Study study = FolderStudy();
+  study.trials = 2'000'000'000;
+  EXPECT_TRUE(ThrowsInputError([&] { MakePlan(study); }, {"trials", "2000000000 passes over 2 pairs"}));
+}
+
+TEST(RealPairs, AreAllRead) {
+  if (!std::filesystem::is_directory(kRealFolder))
+    GTEST_SKIP() << "the real pairs are not beside the project";
+  int num_files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kRealFolder)) {
+    const MatchFile file = ReadMatchFile(entry.path().string());
+    ++num_files;
+    EXPECT_GE(file.matches.size(), 8u) << file.path;
+    EXPECT_NE(file.scene, "unnamed") << file.path;
+    ASSERT_TRUE(file.cam2_from_cam1_true.has_value()) << file.path;
+    const RelativePose& pose = *file.cam2_from_cam1_true;
+    EXPECT_LT((pose.R * pose.R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9) << file.path;
+    EXPECT_NEAR(pose.R.determinant(), 1.0, 1e-9) << file.path;
+    EXPECT_NEAR(pose.t.norm(), 1.0, 1e-12) << file.path;
+    for (const Correspondence& match : file.matches) {
+      // Undistorted points may lie outside the image, but not far.
+      EXPECT_LT(match.x1_px.cwiseAbs().maxCoeff(), 2.0 * file.camera1.width) << file.path;
+      EXPECT_LT(match.x2_px.cwiseAbs().maxCoeff(), 2.0 * file.camera2.width) << file.path;
+    }
+  }
+  EXPECT_EQ(num_files, 148);
+}
+
+TEST(RealPairs, WeakDirectionsAreThoseOfTheIndex) {
+  if (!std::filesystem::is_directory(kRealFolder))
+    GTEST_SKIP() << "the real pairs are not beside the project";
+  int num_pairs = 0, num_weak = 0;
+  for (const auto& [scene, source] : LoadMatchFolder({kRealFolder, 0.5})) {
+    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(source->NumTrials(1));
+         ++trial, ++num_pairs) {
+      num_weak += source->Make({1, 0, trial, 0}).truth.is_direction_known ? 0 : 1;
+    }
+  }
+  EXPECT_EQ(num_pairs, 148);
+  EXPECT_EQ(num_weak, 11);  // six of tum_fr1_rpy, five of tum_fr1_xyz
+}
+
+}  // namespace
+}  // namespace rcme
