@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <limits>
 
 #include "stats/distributions.h"
 
@@ -26,6 +27,14 @@ Interval WilsonInterval(std::int64_t successes, std::int64_t n, double confidenc
   const double half = scale * z * std::sqrt(rate * (1.0 - rate) / trials + 0.25 * z * z / (trials * trials));
   return {successes == 0 ? 0.0 : std::max(0.0, center - half),
           successes == n ? 1.0 : std::min(1.0, center + half)};
+}
+
+Interval StudentInterval(const Moments& moments, double confidence) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (moments.n() < 2) return {-kInfinity, kInfinity};
+  const double quantile = StudentQuantile(static_cast<int>(moments.n() - 1), 0.5 * (1.0 + confidence));
+  const double half_width = quantile * moments.standard_error();
+  return {moments.mean() - half_width, moments.mean() + half_width};
 }
 
 }  // namespace rcme

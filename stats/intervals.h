@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "stats/moments.h"
+
 namespace rcme {
 
 struct Interval {
@@ -17,5 +19,8 @@ Interval ExactBinomialInterval(std::int64_t successes, std::int64_t n, double co
 // coverage is close to `confidence` on average over p, but near 0 and 1 it falls below for some p: for
 // drawing and for planning; a verdict takes the exact one.
 Interval WilsonInterval(std::int64_t successes, std::int64_t n, double confidence = 0.95);
+
+// Of the mean of independent normal numbers: mean +- t_(n-1) s / sqrt(n). Unbounded below two numbers.
+Interval StudentInterval(const Moments& moments, double confidence = 0.95);
 
 }  // namespace rcme

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "experiments/analysis/summary_output.h"
+#include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
 
 namespace rcme {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
 
 namespace rcme {
@@ -106,25 +107,6 @@ std::string SeverityAsTable(const Summary& summary) {
 }
 
 }  // namespace
-
-std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<size_t> widths;
-  for (const std::vector<std::string>& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()), 0);
-    for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  std::string text;
-  for (size_t r = 0; r < rows.size(); ++r) {
-    std::string line;
-    for (size_t c = 0; c < rows[r].size(); ++c) line += fmt::format("{:<{}}  ", rows[r][c], widths[c]);
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-    if (r > 0) continue;
-    for (const size_t width : widths) text += std::string(width, '-') + "  ";
-    text += "\n";
-  }
-  return text;
-}
 
 std::string SummaryAsTable(const Summary& summary) {
   const std::vector<std::string> shown = {

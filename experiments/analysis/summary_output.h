@@ -18,7 +18,4 @@ std::string SummaryAsCsv(const Summary& summary);
 // numbers are null.
 std::string SummaryAsJson(const Summary& summary);
 
-// Rows of text as columns padded to equal width, the first row underlined.
-std::string FormatColumns(const std::vector<std::vector<std::string>>& rows);
-
 }  // namespace rcme

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimator/geometry/essential_matrix.h"
-#include "experiments/analysis/summary_output.h"
+#include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
 #include "experiments/data/simulated_data.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "experiments/claims/design.h"
+#include "experiments/data/make_data.h"
 #include "stats/coverage.h"
 #include "stats/distributions.h"
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiments/data/data_source.h"
+#include "experiments/data/settings.h"
 #include "stats/equivalence.h"
 #include "stats/random.h"
 

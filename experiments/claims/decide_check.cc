@@ -46,13 +46,6 @@ struct Tally {
   }
 };
 
-Interval StudentInterval(const Moments& moments, double confidence) {
-  if (moments.n() < 2)
-    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  const double quantile = StudentQuantile(static_cast<int>(moments.n() - 1), 0.5 * (1.0 + confidence));
-  return Around(moments.mean(), quantile * moments.standard_error());
-}
-
 // n, the measured number and its interval.
 TargetResult Measure(const Target& target, const Tally& tally, double confidence) {
   TargetResult result;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "experiments/data/simulated_data.h"
+#include "experiments/data/make_data.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/analysis/summary_output.h"
+#include "experiments/base/columns.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/result_file/salvage.h"

@@ -7,10 +7,12 @@
 #include <set>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/analysis/summary_output.h"
+#include "experiments/analysis/summarize.h"
+#include "experiments/base/columns.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/commands/commands.h"
 #include "experiments/data/calibration_file.h"
+#include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "simulator/camera_registry.h"

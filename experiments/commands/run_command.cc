@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "experiments/analysis/summary_output.h"
+#include "experiments/base/columns.h"
 #include "experiments/base/message.h"
 #include "experiments/base/progress.h"
 #include "experiments/base/stop_request.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/commands/number_option.h"
+#include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/tuning_file.h"
 #include "parameters/input_error.h"

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "experiments/data/make_data.h"
 #include "simulator/scene_registry.h"
 
 namespace rcme {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "experiments/data/data_source.h"
+#include "experiments/data/settings.h"
 
 namespace rcme {
 

@@ -56,34 +56,4 @@ class DataSource {
   virtual std::string Identity() const { return {}; }
 };
 
-using Settings = std::vector<std::pair<std::string, std::string>>;  // key, value as text; later ones override
-
-// One data source, or several: a folder of real pairs makes one per scene it holds, with the level that names
-// it.
-struct DataSources {
-  std::string implied_factor;  // name of the factor that tells the sources apart; empty: there is only one
-  std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;  // level, source
-};
-
-// The sources for the settings of a condition, `scene` among them. Throws InputError that names key and
-// value.
-DataSources MakeDataSources(const Settings& settings);
-
-// Every parameter of the scene with its value, `scene` first. Throws InputError that names key and value.
-Settings ResolveSettings(const Settings& settings);
-
-// The keys of a `data:` block that choose a part of the simulation by name; the choice decides which other
-// keys there are.
-bool IsChoice(const std::string& key);
-
-// Every key a `data:` block with these settings may hold, with its value, as `name, value, allowed, doc`
-// rows.
-struct SettingHelp {
-  std::string name, value, unit, allowed, doc;
-};
-std::vector<SettingHelp> DescribeSettings(const Settings& settings);
-
-// The scene name that stands for a folder of match files.
-inline constexpr const char* kMatchFilesScene = "match_files";
-
 }  // namespace rcme

@@ -48,7 +48,4 @@ class SimulatedData : public DataSource {
   bool measures_severity_ = true;
 };
 
-// Simulated data for the settings, `scene` among them. Throws InputError that names key and value.
-std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings);
-
 }  // namespace rcme

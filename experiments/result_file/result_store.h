@@ -16,13 +16,9 @@
 
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial.h"
+#include "experiments/trial/trial_range.h"
 
 namespace rcme {
-
-// The trials first, ..., end - 1.
-struct TrialRange {
-  std::uint32_t first = 0, end = 0;
-};
 
 // Who computes trials: last bits may depend on it.
 struct TrialOrigin {

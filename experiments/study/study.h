@@ -7,6 +7,7 @@
 
 #include "estimator/ransac_options.h"
 #include "experiments/data/data_source.h"
+#include "experiments/data/settings.h"
 #include "experiments/study/tuning.h"
 
 namespace rcme {

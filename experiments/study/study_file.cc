@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/data/make_data.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/tuning_file.h"

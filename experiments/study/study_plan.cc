@@ -6,6 +6,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/data/calibration_file.h"
+#include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "experiments/base/progress.h"
-#include "experiments/result_file/result_store.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/trial/trial_range.h"
 #include "stats/area_under_curve.h"
 
 namespace rcme {

@@ -7,6 +7,8 @@
 #include <map>
 
 #include "experiments/base/for_each_index.h"
+#include "experiments/data/make_data.h"
+#include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

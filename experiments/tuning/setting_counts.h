@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "experiments/base/progress.h"
-#include "experiments/result_file/result_store.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/trial/trial_range.h"
 #include "experiments/tuning/setting_plan.h"
 #include "stats/risk_control.h"
 

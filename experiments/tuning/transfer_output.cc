@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "experiments/analysis/summary_output.h"
+#include "experiments/base/columns.h"
 #include "experiments/base/file_output.h"
 #include "experiments/tuning/tune_output.h"
 

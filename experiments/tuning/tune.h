@@ -1,6 +1,7 @@
 // From a study with a `tune` block to a setting that is certified, and measured on fresh trials.
 #pragma once
 
+#include "experiments/trial/trial_range.h"
 #include "experiments/tuning/choose_setting.h"
 #include "experiments/tuning/setting_counts.h"
 #include "experiments/tuning/verify_setting.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "experiments/analysis/summary_output.h"
+#include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
 #include "experiments/base/file_output.h"
 #include "stats/intervals.h"

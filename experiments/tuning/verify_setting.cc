@@ -3,6 +3,7 @@
 #include <mutex>
 
 #include "experiments/base/for_each_index.h"
+#include "experiments/trial/trial.h"
 
 namespace rcme {
 namespace {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "experiments/claims/study_cases.h"
+#include "experiments/data/make_data.h"
 #include "parameters/parameter.h"
 #include "simulator/exact_match.h"
 

@@ -1,6 +1,8 @@
 """Who may include whom: parameters and stats know nothing of ours, the estimator never the truth, the simulator never
-the epipolar constraint. A file that includes against these directions fails the test."""
+the epipolar constraint. A file that includes against these directions, or against the order of the folders of its room,
+fails the test. With --arrows it prints the includes between folders instead."""
 
+import collections
 import pathlib
 import re
 import sys
@@ -19,6 +21,12 @@ ALLOWED = {
     ],
     "experiments": ["experiments/", "simulator/", "estimator/", "stats/", "parameters/"],
 }
+# The folders of a room from below: a file includes files of its own folder and of those before it. "." is the room
+# itself, where the program begins.
+FOLDERS = {
+    "experiments": ["base", "data", "study", "trial", "result_file", "run", "analysis", "claims", "validity", "tuning",
+                    "contract", "commands", "."],
+}
 OUR_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 
@@ -29,6 +37,35 @@ def violations(room, path_in_room, text):
         for included in OUR_INCLUDE.findall(text)
         if not any(included.startswith(allowed) for allowed in ALLOWED[room])
     ]
+
+
+def folder_of(path_in_room):
+    """The folder of a path relative to its room."""
+    head, slash, _ = path_in_room.partition("/")
+    return head if slash else "."
+
+
+def arrows(room, files):
+    """Includes from folder to folder within a room: {(from, to): how many}; `files` are (path in room, text)."""
+    counts = collections.Counter()
+    for path, text in files:
+        for included in OUR_INCLUDE.findall(text):
+            if included.startswith(room + "/"):
+                ends = folder_of(path), folder_of(included.removeprefix(room + "/"))
+                if ends[0] != ends[1]:
+                    counts[ends] += 1
+    return counts
+
+
+def upward(room, counts):
+    """Those arrows that run against the order of the folders."""
+    level = FOLDERS[room].index
+    return [(start, end) for start, end in counts if level(end) > level(start)]
+
+
+def files_of(room):
+    return [(str(path.relative_to(ROOT / room)), path.read_text(encoding="utf-8"))
+            for path in sorted((ROOT / room).rglob("*")) if path.suffix in {".h", ".cc"}]
 
 
 class IncludeDirections(unittest.TestCase):
@@ -48,6 +85,19 @@ class IncludeDirections(unittest.TestCase):
         self.assertTrue(violations("stats", "x.cc", '#include "estimator/geometry/pose.h"\n'))
         self.assertFalse(violations("simulator", "x.cc", '#include "estimator/geometry/pose.h"\n'))
 
+    def test_includes_run_down_the_folders(self):
+        for room in FOLDERS:
+            files = files_of(room)
+            self.assertEqual({folder_of(path) for path, _ in files}, set(FOLDERS[room]))
+            self.assertEqual(upward(room, arrows(room, files)), [])
+
+    def test_an_upward_include_is_seen(self):
+        below = [("base/x.h", '#include "experiments/study/study.h"\n')]
+        above = [("study/x.h", '#include "experiments/base/message.h"\n#include "experiments/study/y.h"\n')]
+        self.assertEqual(upward("experiments", arrows("experiments", below)), [("base", "study")])
+        self.assertEqual(arrows("experiments", above), {("study", "base"): 1})
+        self.assertEqual(upward("experiments", arrows("experiments", above)), [])
+
     def test_only_simulator_experiments_and_tests_speak_of_the_truth(self):
         for room in ["parameters", "stats", "estimator"]:
             for path in sorted((ROOT / room).rglob("*")):
@@ -55,5 +105,18 @@ class IncludeDirections(unittest.TestCase):
                     self.assertNotRegex(path.read_text(encoding="utf-8"), r"\w_true\b", str(path))
 
 
+def print_arrows():
+    for room, folders in FOLDERS.items():
+        files = files_of(room)
+        counts = arrows(room, files)
+        print(f"{room}: {len(files)} files in {len(folders)} folders; {sum(counts.values())} includes between folders, "
+              f"{len(counts)} arrows, {len(upward(room, counts))} upwards")
+        for (start, end), count in sorted(counts.items()):
+            print(f"  {start} -> {end}: {count}")
+
+
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv)
+    if sys.argv[1:] == ["--arrows"]:
+        print_arrows()
+    else:
+        unittest.main(argv=sys.argv)

@@ -169,5 +169,21 @@ TEST(WilsonInterval, CoversAsOftenAsItSaysOnAverageButNotForEveryProbability) {
   EXPECT_GT(least, 0.80);
 }
 
+// 1, ..., 5: mean 3, variance 2.5; the 0.975 quantile of four degrees of freedom is 2.7764451051977987 (R:
+// qt(0.975, 4)).
+TEST(StudentInterval, OfFiveNumbers) {
+  Moments moments;
+  for (const double x : {1.0, 2.0, 3.0, 4.0, 5.0}) moments.Add(x);
+  const double half_width = 2.7764451051977987 * std::sqrt(2.5 / 5.0);
+  EXPECT_NEAR(StudentInterval(moments).lower, 3.0 - half_width, 1e-9);
+  EXPECT_NEAR(StudentInterval(moments).upper, 3.0 + half_width, 1e-9);
+}
+
+TEST(StudentInterval, OneNumberBoundsNothing) {
+  Moments moments;
+  moments.Add(1.0);
+  EXPECT_TRUE(std::isinf(StudentInterval(moments).lower) && std::isinf(StudentInterval(moments).upper));
+}
+
 }  // namespace
 }  // namespace rcme

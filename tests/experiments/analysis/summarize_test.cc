@@ -492,10 +492,5 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
   }
 }
 
-TEST(FormatColumns, PadsToTheWidestCell) {
-  EXPECT_EQ(FormatColumns({{"a", "bcd"}, {"long", "x"}, {"", "y"}}),
-            "a     bcd\n----  ---  \nlong  x\n      y\n");
-}
-
 }  // namespace
 }  // namespace rcme

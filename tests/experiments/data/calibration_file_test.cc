@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "experiments/data/simulated_data.h"
+#include "experiments/data/make_data.h"
 #include "experiments/study/study_plan.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"

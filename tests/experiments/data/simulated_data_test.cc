@@ -1,7 +1,6 @@
-#include "experiments/data/simulated_data.h"
-
 #include <gtest/gtest.h>
 
+#include "experiments/data/make_data.h"
 #include "simulator/noise/noise_laws.h"
 
 namespace rcme {

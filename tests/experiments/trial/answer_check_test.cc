@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/data/data_source.h"
+#include "experiments/data/make_data.h"
 #include "simulator/scene_registry.h"
 
 namespace rcme {

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/data/data_source.h"
+#include "experiments/data/make_data.h"
 
 int main() {
   const rcme::DataSources made =

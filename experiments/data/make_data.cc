@@ -1,0 +1,139 @@
+#include "experiments/data/make_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/data/calibration_file.h"
+#include "experiments/data/match_folder.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+#include "simulator/scene_registry.h"
+
+namespace rcme {
+namespace {
+
+std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
+  return {Parameter::Text("folder", &settings.folder, "a folder of match files",
+                          "folder with *.csv or *.csv.gz, relative to the working directory"),
+          Parameter::Real("sigma_px", &settings.sigma_px, {1e-9, 1000.0}, "px",
+                          "noise standard deviation that the estimators are told")};
+}
+
+// The keys that choose by name, with the field of the choice.
+const std::vector<std::pair<std::string, std::string Choices::*>>& ChoiceKeys() {
+  static const std::vector<std::pair<std::string, std::string Choices::*>> keys = {
+      {"scene", &Choices::scene},
+      {"cameras", &Choices::cameras},
+      {"motion", &Choices::motion},
+      {"noise", &Choices::noise},
+      {"outliers", &Choices::outliers}};
+  return keys;
+}
+
+Choices ChoicesIn(const Settings& settings) {
+  Choices choices;
+  for (const auto& [key, value] : settings) {
+    for (const auto& [name, field] : ChoiceKeys()) {
+      if (key != name) continue;
+      if (value.empty()) {
+        throw InputError(fmt::format("{}: '' is not allowed; give a name (see `rcme list`)", key));
+      }
+      choices.*field = value;
+    }
+  }
+  if (choices.scene.empty())
+    throw InputError("data: key 'scene' is missing; `rcme list scenes` shows what there is");
+  return choices;
+}
+
+[[noreturn]] void ThrowUnknownScene(const std::string& scene) {
+  std::vector<std::string> names = {kMatchFilesScene};
+  for (const SceneEntry& entry : SceneRegistry()) names.push_back(entry.name);
+  throw InputError(
+      fmt::format("scene: {} is not allowed; give one of: {}", Quoted(scene), fmt::join(names, ", ")));
+}
+
+[[noreturn]] void ThrowUnknownKey(const std::string& key, const std::string& scene,
+                                  const std::vector<Parameter>& parameters) {
+  std::vector<std::string> names;
+  for (const auto& [name, field] : ChoiceKeys()) names.push_back(name);
+  if (scene == kMatchFilesScene) names.resize(1);
+  for (const Parameter& parameter : parameters) names.push_back(parameter.name());
+  throw InputError(
+      fmt::format("unknown key {} for scene {}; known keys: {}", Quoted(key), scene, fmt::join(names, ", ")));
+}
+
+// The parameters of the settings' choices: of a folder of match files, or of a simulation.
+struct Configured {
+  MatchFolderSettings folder;
+  std::shared_ptr<SimulatedData> simulated;  // null: a folder
+
+  explicit Configured(const Settings& given) {
+    const Settings settings = WithCalibration(given);
+    const Choices choices = ChoicesIn(settings);
+    if (choices.scene != kMatchFilesScene) {
+      const bool is_known = std::ranges::count(SceneRegistry(), choices.scene, &SceneEntry::name) > 0;
+      if (!is_known) ThrowUnknownScene(choices.scene);
+      simulated = std::make_shared<SimulatedData>(choices);
+    }
+    const std::vector<Parameter> parameters = AllParameters();
+    for (const auto& [key, value] : settings) {
+      if (key == "scene" || (simulated && IsChoice(key))) continue;
+      const auto parameter = std::ranges::find(parameters, key, &Parameter::name);
+      if (parameter == parameters.end()) ThrowUnknownKey(key, choices.scene, parameters);
+      parameter->SetFromText(value);
+    }
+  }
+
+  std::vector<Parameter> AllParameters() { return simulated ? simulated->Parameters() : Parameters(folder); }
+
+  Settings ChosenNames() const {
+    if (!simulated) return {{"scene", kMatchFilesScene}};
+    Settings names;
+    for (const auto& [name, field] : ChoiceKeys()) names.emplace_back(name, simulated->choices().*field);
+    return names;
+  }
+};
+
+}  // namespace
+
+bool IsChoice(const std::string& key) {
+  return std::ranges::any_of(ChoiceKeys(), [&](const auto& choice) { return choice.first == key; });
+}
+
+DataSources MakeDataSources(const Settings& settings) {
+  const Configured configured(settings);
+  if (configured.simulated) {
+    configured.simulated->FixBaseline();
+    return {"", {{"", configured.simulated}}};
+  }
+  return {"pair_scene", LoadMatchFolder(configured.folder)};
+}
+
+std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings) {
+  const Configured configured(settings);
+  if (!configured.simulated) throw InputError(fmt::format("scene: {} is not simulated", kMatchFilesScene));
+  configured.simulated->FixBaseline();
+  return configured.simulated;
+}
+
+Settings ResolveSettings(const Settings& settings) {
+  Configured configured(settings);
+  Settings resolved = configured.ChosenNames();
+  for (const Parameter& parameter : configured.AllParameters()) {
+    resolved.emplace_back(parameter.name(), parameter.Value());
+  }
+  return resolved;
+}
+
+std::vector<SettingHelp> DescribeSettings(const Settings& settings) {
+  Configured configured(settings);
+  std::vector<SettingHelp> help;
+  for (const Parameter& p : configured.AllParameters()) {
+    help.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
+  }
+  return help;
+}
+
+}  // namespace rcme
