@@ -44,6 +44,7 @@ int RunProgram(int argc, const char* const* argv) {
       "  rcme run experiments/studies/failure_vs_outliers.yaml --out run.sqlite\n"
       "  rcme summarize run.sqlite                                    rates with exact intervals\n"
       "  rcme compare run.sqlite                                      each estimator against the first\n"
+      "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure   rates with their intervals\n"
       "  rcme report run.sqlite --out report.html                     all of it on one page, with figures\n"
       "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
       "  rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture\n"
@@ -57,6 +58,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddSummarizeCommand(app);
   AddCompareCommand(app);
   AddReportCommand(app);
+  AddPlotCommand(app);
   AddCheckCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);

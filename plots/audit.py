@@ -10,21 +10,21 @@ import math
 import os
 import sys
 
-import audit_groups as groups
-import audit_look as look
-import style
-from audit_curve import panels_of
-from audit_forest import ForestPanel
-from audit_json import read_audit
-from audit_page import Titled, draw_page
-from audit_panel import EmptyPanel
-from audit_roc import RocPanel, is_roc
-from command_line import Parser, PlotError
+from audit_figures import groups, look
+from audit_figures.audit_file import read_audit
+from audit_figures.curve import panels_of
+from audit_figures.forest import ForestPanel
+from audit_figures.page import Titled, draw_page
+from audit_figures.panel import EmptyPanel
+from audit_figures.roc import RocPanel, is_roc
+from common import style
+from common.command_line import Parser, PlotError
+from common.number_text import power_text
 
 EXAMPLE = """
 example:
   rcme audit --out audit
-  plots/audit.py audit
+  rcme plot audit audit
 draws audit/audit_<family>.png and .pdf for every family of claims in audit/audit.json.
 
 A claim with a condition along x is drawn over that condition, any other as a list of its targets; the acceptance of models
@@ -48,7 +48,7 @@ def panels_of_claim(claim, path):
 
 def confidence_text(confidence):
     """'1 − 8·10⁻⁵', or '0.95'."""
-    return f"{confidence:g}" if confidence <= 0.99 else f"1 \u2212 {look.power_text(1 - confidence)}"
+    return f"{confidence:g}" if confidence <= 0.99 else f"1 \u2212 {power_text(1 - confidence)}"
 
 
 def caption_of(audit, family, claims, panels):
@@ -84,7 +84,7 @@ def draw_family(audit, family, claims):
 
 
 def parse(arguments):
-    parser = Parser(prog="audit.py", description=__doc__, epilog=EXAMPLE,
+    parser = Parser(prog="rcme plot audit", description=__doc__, epilog=EXAMPLE,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", metavar="DIR", help="the folder that 'rcme audit --out DIR' wrote; it holds audit.json")
     parser.add_argument("--out", metavar="OUTDIR", help="the folder to write to (default: DIR)")

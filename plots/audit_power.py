@@ -7,9 +7,9 @@ It draws what sigma.csv says and computes nothing but shares.
 import argparse
 import sys
 
-import style
-from command_line import Parser, check_figure_path, draw_figure
-from summary_csv import read_table
+from common import style
+from common.command_line import Parser, check_figure_path, draw_figure
+from common.summary_csv import read_table
 
 COLUMNS = ("claim", "statistic", "budget", "sigma_error", "seeds", "does_not_hold", "does_not_hold_lower",
            "does_not_hold_upper", "holds", "holds_lower", "holds_upper")
@@ -18,7 +18,7 @@ DASHES = {"does_not_hold": style.SOLID, "holds": style.DASHED}
 EXAMPLE = """
 example:
   rcme_audit_power sigma > sigma.csv
-  plots/audit_power.py sigma.csv --out power
+  rcme plot audit_power sigma.csv --out power
 """
 
 
@@ -70,7 +70,7 @@ def draw(options):
 
 
 def parse(arguments):
-    parser = Parser(prog="audit_power.py", description=__doc__, epilog=EXAMPLE,
+    parser = Parser(prog="rcme plot audit_power", description=__doc__, epilog=EXAMPLE,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", metavar="TABLE.csv", help="what 'rcme_audit_power sigma' printed")
     parser.add_argument("--out", metavar="PATH", default="audit_power", help="writes PATH.png and PATH.pdf")

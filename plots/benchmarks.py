@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
-import style
-from command_line import Parser, PlotError
+from common import style
+from common.command_line import Parser, PlotError
 
 LOOKS = {  # the second part of an arm's name, or its group
     "fast": dict(color=style.BLUE, marker="o"),
@@ -37,7 +37,7 @@ SERIES_LOOKS = (dict(color=style.BLUE, marker="o"), dict(color=style.ORANGE, mar
 EXAMPLE = """
 example:
   build/release/bin/rcme_ratios --out build/benchmarks.json
-  plots/benchmarks.py build/benchmarks.json --out build/benchmarks
+  rcme plot benchmarks build/benchmarks.json --out build/benchmarks
 draws build/benchmarks.png and build/benchmarks.pdf. scripts/benchmark does both.
 """
 

@@ -6,124 +6,27 @@ It draws what the file says and computes nothing: values and interval bounds are
 """
 
 import argparse
-import itertools
-import math
 import sys
 
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-import style
-from command_line import Parser, check_figure_path, draw_figure, names_of
-from factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
-from rates import check_factor, check_no_repetition, fixed_levels, interval_in_words, n_in_words, select_rates, title_of
-from summary_csv import read_summary, where
+from common.command_line import Parser, check_figure_path, draw_figure, names_of
+from common.summary_csv import read_summary, where
+from rates.lines import draw
 
 EXAMPLE = """
 example:
   rcme summarize run.sqlite --format csv > summary.csv
-  plots/failure_rate.py summary.csv --x outlier_ratio --out failure_rate
+  rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate
 draws failure_rate.png and failure_rate.pdf: the failure rate and the detect-fail rate of each estimator.
 
-  plots/failure_rate.py summary.csv --x outlier_ratio --out failure_rate_1px \\
+  rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate_1px \\
       --where sigma_px=1 --where estimator=standard --where estimator=rcme --quantities failure --log-y
 draws only the failure rate of two estimators at one noise level, on a logarithmic axis; there a rate of exactly zero,
 which has no place, becomes an arrow that points down from its upper bound.
 """
 
 
-def draw_line(axes, points, look):
-    """One estimator's line with its interval band; both break where a value is missing."""
-    axes.fill_between(points.x, points.lower, points.upper, color=look.color, alpha=0.13, linewidth=0)
-    axes.plot(points.x, points.value, **look.line(), clip_on=False, zorder=3)
-    gap = points.value.isna()
-    alone = points[~gap & gap.shift(1, fill_value=True) & gap.shift(-1, fill_value=True)]  # too narrow for a band
-    axes.vlines(alone.x, alone.lower, alone.upper, color=look.color, alpha=0.5, linewidth=1, zorder=2)
-
-
-def draw_abreast(axes, points, look, aside):
-    """One estimator's marks with their intervals, beside those of the others: words have no line between them."""
-    points = points[points.value.notna()]
-    axes.vlines(points.x, points.lower, points.upper, color=look.color, linewidth=1, zorder=2,
-                transform=axes.transData + aside)
-    axes.plot(points.x, points.value, **{**look.line(), "linestyle": "none"}, transform=axes.transData + aside,
-              clip_on=False, zorder=3)
-
-
-def draw_upper_limits(axes, zeros, looks):
-    """Arrows down from the upper bounds of rates that are zero; those at one x share a bound, so they stand abreast."""
-    for _, at_one_x in zeros.groupby("x"):
-        for position, row in enumerate(at_one_x.itertuples()):
-            aside = abreast(axes, position, len(at_one_x), 24)
-            for mark in looks[row.estimator].upper_limit():
-                axes.plot([row.x], [row.upper], **mark, transform=axes.transData + aside, clip_on=False, zorder=4)
-
-
-def draw_panel(axes, points, looks, axis, room, log_y):
-    """One quantity in one panel, all estimators; the y values are fractions, the tick labels per cent."""
-    points = points.sort_values("x", kind="stable")
-    if log_y:
-        axes.set_yscale("log", nonpositive="clip")
-        is_zero = points.value == 0
-        draw_upper_limits(axes, points[is_zero], looks)
-        points = points.assign(value=points.value.mask(is_zero), lower=points.lower.mask(is_zero))
-    for position, (estimator, look) in enumerate(looks.items()):
-        of_estimator = points[points.estimator == estimator]
-        if axis.is_numeric:
-            draw_line(axes, of_estimator, look)
-        else:
-            draw_abreast(axes, of_estimator, look, abreast(axes, position, len(looks), room))
-    if points.upper.isna().all():
-        axes.text(0.5, 0.5, "no trials (n = 0)", transform=axes.transAxes, ha="center", va="center", color="0.4")
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:g}"))
-
-
-def set_y_limits(column_of_axes, points, log_y):
-    """From zero; on a logarithmic axis from the decade below everything that is drawn."""
-    if not log_y:
-        column_of_axes[0].set_ylim(bottom=0, top=None if points.upper.max() > 0 else 1)
-        return
-    drawn = points.value.where(points.value > 0, points.upper)
-    smallest = min(drawn.dropna(), default=0.1)
-    column_of_axes[0].set_ylim(10 ** math.floor(math.log10(smallest) - 0.3), 1)
-    for axes in column_of_axes:
-        axes.yaxis.set_major_locator(LogLocator(numticks=12))
-        axes.yaxis.set_minor_formatter(NullFormatter())
-
-
-def caption_of(rows, other_factors, is_numeric, log_y):
-    return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, "point"),
-                      f"{'bands' if is_numeric else 'bars'}: {interval_in_words(rows)} intervals"] +
-                     (["arrows: rate zero, at its upper bound"] if log_y and (rows.value == 0).any() else [])) + "."
-
-
-def draw(summary, x, quantities, log_y=False):
-    """The whole figure: quantities side by side, one row of panels per combination of the other factors."""
-    check_factor(summary, "--x", x)
-    rows = select_rates(summary, quantities)
-    axis = FactorAxis(x, rows[x])
-    other_factors = [factor for factor in summary.factors if factor != x]
-    rows = rows_that_vary(rows.assign(x=axis.positions(rows[x])), other_factors)
-    parts = split_into_panel_rows(summary.path, rows, other_factors)
-    for _, part in parts:
-        check_no_repetition(summary.path, part, ["x", "estimator", "quantity"], lambda row: f"x = {row[x]}")
-    looks = (style.looks_of if axis.is_numeric else style.equal_looks_of)(list(dict.fromkeys(rows.estimator)))
-    figure, panels = style.new_figure(len(parts), len(quantities))
-    letters = style.letters(panels.size)
-    for (r, (levels, part)), (c, quantity) in itertools.product(enumerate(parts), enumerate(quantities)):
-        draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), log_y)
-        panels[r, c].set_title(next(letters) + title_of(quantity) + (f", {levels}" if levels else ""))
-    for c, quantity in enumerate(quantities):
-        set_y_limits(panels[:, c], rows[rows.quantity == quantity], log_y)
-        axis.prepare(panels[-1, c], len(quantities))  # the x axis is shared by all panels
-    for axes in panels[:, 0]:
-        axes.set_ylabel("Rate (%)")
-    style.add_legend_and_caption(figure, panels[0, 0].get_legend_handles_labels()[0],
-                                 caption_of(rows, other_factors, axis.is_numeric, log_y))
-    return figure
-
-
 def parse(arguments):
-    parser = Parser(prog="failure_rate.py", description=__doc__, epilog=EXAMPLE,
+    parser = Parser(prog="rcme plot failure_rate", description=__doc__, epilog=EXAMPLE,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("summary", metavar="SUMMARY.csv", help="output of 'rcme summarize RUN.sqlite --format csv'")
     parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor on the x axis; words stand side by side")

@@ -12,13 +12,13 @@ import re
 import shlex
 import sys
 
-import report_tables as tables
-from command_line import Parser, PlotError, check_folder, run as run_script
-from report_data import read_runs
-from report_figures import figures
-from report_html import code, definitions, details, element, joined, listed, page
-from report_style import CSS
-from style import label_of, split_unit
+from common.command_line import Parser, PlotError, check_folder, run as run_script
+from common.style import label_of, split_unit
+from report_page import tables
+from report_page.data import read_runs
+from report_page.figures import figures
+from report_page.html import code, definitions, details, element, joined, listed, page
+from report_page.style import CSS
 
 EXAMPLE = """
 example:

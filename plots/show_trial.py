@@ -8,14 +8,14 @@ It draws what the file says and computes nothing but where a line leaves an imag
 import argparse
 import sys
 
-import style
-from command_line import Parser, check_figure_path, draw_figure
-from sheet import WIDTH, sheet_of
-from text_size import fill, height_of, width_of
-from trial_images import draw_image_pair, legend_handles
-from trial_json import read_trial
-from trial_scene import FROM_ABOVE, FROM_THE_RIGHT, draw_close_up, draw_scene, limits_of_scene, num_outside
-from trial_words import facts_of, notes_of, outcome_of, table_of, title_of
+from common import style
+from common.command_line import Parser, check_figure_path, draw_figure
+from common.text_size import fill, height_of, width_of
+from trial_sheet.images import draw_image_pair, legend_handles
+from trial_sheet.scene import FROM_ABOVE, FROM_THE_RIGHT, draw_close_up, draw_scene, limits_of_scene, num_outside
+from trial_sheet.sheet import WIDTH, sheet_of
+from trial_sheet.trial_file import read_trial
+from trial_sheet.words import facts_of, notes_of, outcome_of, table_of, title_of
 
 GAP = 0.14  # inches, as all lengths here
 MIN_IMAGE_HEIGHT, MAX_IMAGE_HEIGHT, LABEL = 1.6, 4.2, 0.28  # LABEL: room for what stands under an image

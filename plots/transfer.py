@@ -15,15 +15,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from audit_look import number_text
-from audit_paper import HEAD_SIZE, SMALL_SIZE, add_axes, add_text
-from command_line import Parser, check_figure_path, draw_figures
-from heat_map import CELL_HEIGHT, CELL_WIDTH, draw_cell, in_per_cent, text_color
-from rate_bands import QUANTITIES, SCALE, TARGET, add_color_bar, color_of
-from rates import n_in_words
-from text_size import fill, height_of, width_of
-from tune_json import UNDECIDED, VIOLATED, is_real, read_transfer
-from tune_marks import EXACT, head_in_words
+from common.command_line import Parser, check_figure_path, draw_figures
+from common.number_text import number_text
+from common.paper import HEAD_SIZE, SMALL_SIZE, add_axes, add_text
+from common.text_size import fill, height_of, width_of
+from rates.cells import CELL_HEIGHT, CELL_WIDTH, draw_cell, in_per_cent, text_color
+from rates.rate_bands import QUANTITIES, SCALE, TARGET, add_color_bar, color_of
+from rates.selection import n_in_words
+from tuning_figures.marks import EXACT, head_in_words
+from tuning_figures.tune_file import UNDECIDED, VIOLATED, is_real, read_transfer
 
 MATRIX_WIDTH = 4.4  # inches, as all lengths here: cells narrow until so many families fit
 NARROWEST_CELL, LOWEST_CELL = 0.155, 0.15
@@ -33,7 +33,7 @@ EMPTY = dict(facecolor="0.95", hatch="////", edgecolor="0.8", linewidth=0)
 
 EXAMPLE = """
 example:
-  plots/transfer.py transfer.json --out transfer
+  rcme plot transfer transfer.json --out transfer
 draws transfer_matrix.png, transfer_refusal.png and the same as PDF.
 """
 
@@ -190,7 +190,7 @@ def draw_for(options):
 
 
 def parse(arguments):
-    parser = Parser(prog="transfer.py", description=__doc__, epilog=EXAMPLE,
+    parser = Parser(prog="rcme plot transfer", description=__doc__, epilog=EXAMPLE,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("transfer", metavar="TRANSFER.json", help="file that 'rcme transfer' wrote")
     parser.add_argument("--out", required=True, metavar="PREFIX",

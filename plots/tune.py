@@ -11,24 +11,24 @@ program. Colours and lines between settings are interpolated.
 import argparse
 import sys
 
-from command_line import Parser, PlotError, check_figure_path, draw_figures
-from tune_front import draw_front
-from tune_json import read_tune
-from tune_roc import draw_roc
-from tune_surface import draw_surface
+from common.command_line import Parser, PlotError, check_figure_path, draw_figures
+from tuning_figures.front import draw_front
+from tuning_figures.roc import draw_roc
+from tuning_figures.surface import draw_surface
+from tuning_figures.tune_file import read_tune
 
 EXAMPLE = """
 example:
-  plots/tune.py tune.json --out tune
+  rcme plot tune tune.json --out tune
 draws tune_surface.png, tune_front.png, tune_roc.png and the same as PDF.
 
-  plots/tune.py tune.json --out tune_1 --where significance_level=0.05
+  rcme plot tune tune.json --out tune_1 --where significance_level=0.05
 draws of the surface only the part with one level of a further option; front and ROC curves are of all settings.
 """
 
 
 def parse(arguments):
-    parser = Parser(prog="tune.py", description=__doc__, epilog=EXAMPLE,
+    parser = Parser(prog="rcme plot tune", description=__doc__, epilog=EXAMPLE,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tune", metavar="TUNE.json", help="file that 'rcme tune' wrote")
     parser.add_argument("--out", required=True, metavar="PREFIX",

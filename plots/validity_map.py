@@ -18,10 +18,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-import style
-from command_line import Parser, PlotError
-from summary_csv import numbers, read_table
-from text_size import wrap
+from common import style
+from common.command_line import Parser, PlotError
+from common.summary_csv import numbers, read_table
+from common.text_size import wrap
 
 NOMINAL = 0.95
 QUANTITIES = {  # name in the files: name in words
@@ -57,7 +57,7 @@ MAP_KEYS, REFERENCE_KEYS = ["conditioning", "quantity"], ["covariance", "quantit
 EXAMPLE = """
 example:
   rcme map --out map
-  plots/validity_map.py map --out figures
+  rcme plot validity_map map --out figures
 draws figures/validity_map.png, .pdf and the other figures; without --out beside the tables. More than four conditions of a
 study go to validity_map_2 and so on.
 """
@@ -266,7 +266,7 @@ def draw_reference(path, rows):
 
 
 def parse(arguments):
-    parser = Parser(prog="validity_map.py", description=__doc__, epilog=EXAMPLE,
+    parser = Parser(prog="rcme plot validity_map", description=__doc__, epilog=EXAMPLE,
                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tables", metavar="DIR", help="folder that 'rcme map --out DIR' wrote")
     parser.add_argument("--out", metavar="DIR", help="folder for the figures (default: where the tables are)")

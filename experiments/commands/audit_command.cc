@@ -61,7 +61,7 @@ void RunAuditCommand(const AuditArguments& arguments) {
   fmt::print("{}", AuditAsTable(audit));
   WriteFileWhole(arguments.out + "/audit.json", AuditAsJson(audit));
   WriteFileWhole(arguments.out + "/audit.md", AuditAsMarkdown(audit));
-  DrawFigures("audit.py", {arguments.out});
+  DrawFigures("audit", {arguments.out});
   PrintMessage("done: {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", arguments.out);
 }
 

@@ -17,6 +17,7 @@ void AddSummarizeCommand(CLI::App& app);
 void AddCompareCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);
 void AddCheckCommand(CLI::App& app);
+void AddPlotCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
 void AddShowCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);

@@ -46,7 +46,7 @@ void AddCompareCommand(CLI::App& app) {
       "  rcme compare run.sqlite                                    against the study's first estimator\n"
       "  rcme compare run.sqlite --against rcme_rank_aware          against another\n"
       "  rcme compare run.sqlite --format csv --out comparison.csv\n"
-      "  python3 plots/paired_difference.py comparison.csv --x outlier_ratio --out difference");
+      "  rcme plot paired_difference comparison.csv --x outlier_ratio --out difference");
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("--against", arguments->against,

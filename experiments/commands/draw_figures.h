@@ -11,16 +11,23 @@ enum class ScriptEnd {
   kFailed,    // the script said why on standard error
 };
 
-// Runs a script of plots/ with these arguments; what it prints (the names of what it wrote) is dropped.
-ScriptEnd RunPlotScript(const std::string& script, const std::vector<std::string>& arguments);
+// What a script prints on standard output: the names of what it wrote, or its help.
+enum class ScriptOutput { kShown, kDropped };
 
-// The same, where the command's result is what the script draws. Throws InputError that begins with the
-// command's name and says what is missing.
-void DrawOrThrow(const std::string& command, const std::string& script,
+// Runs the script plots/<kind>.py with these arguments, with a Python that has what it needs.
+ScriptEnd RunPlotScript(const std::string& kind, const std::vector<std::string>& arguments,
+                        ScriptOutput output);
+
+// The same, its output dropped, where the command's result is what the script draws. Throws InputError that
+// begins with the command's name and says what is missing.
+void DrawOrThrow(const std::string& command, const std::string& kind,
                  const std::vector<std::string>& arguments);
 
 // The same where the figures are not all there is. A failure (no Python with matplotlib) is a message on
 // standard error that says how to draw the figures later: the results themselves are already written.
-void DrawFigures(const std::string& script, const std::vector<std::string>& arguments);
+void DrawFigures(const std::string& kind, const std::vector<std::string>& arguments);
+
+// Throws InputError that begins with the command's name and says which packages of Python are missing.
+[[noreturn]] void ThrowNoPython(const std::string& command);
 
 }  // namespace rcme

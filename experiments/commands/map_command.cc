@@ -99,7 +99,7 @@ void AddMapCommand(CLI::App& app) {
       "Example:\n"
       "  rcme map --out map\n"
       "  rcme map study.yaml --set outlier_ratio=0 --out map\n"
-      "  python3 plots/validity_map.py map");
+      "  rcme plot validity_map map");
   auto arguments = std::make_shared<MapArguments>();
   command->add_option("study", arguments->study, "study file (YAML); without one: the built-in scene");
   command->add_option("-o,--out", arguments->out, "folder for the tables; made if it is missing")->required();

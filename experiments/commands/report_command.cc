@@ -33,7 +33,7 @@ void CheckOut(const std::string& out) {
 
 std::string PageFrom(const std::string& folder) {
   const std::string page = folder + "/report.html";
-  DrawOrThrow("report", "report.py", {folder, "--out", page});
+  DrawOrThrow("report", "report", {folder, "--out", page});
   std::ostringstream text;
   text << std::ifstream(page, std::ios::binary).rdbuf();
   return text.str();

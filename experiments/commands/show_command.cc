@@ -106,7 +106,7 @@ void Show(const ShowArguments& arguments, bool has_out) {
   if (!arguments.json.empty()) WriteFileWhole(arguments.json, json);
   const ScratchFolder folder;
   WriteFileWhole(folder.path() + "/trial.json", json);
-  DrawOrThrow("show", "show_trial.py", {folder.path() + "/trial.json", "--out=" + out});
+  DrawOrThrow("show", "show_trial", {folder.path() + "/trial.json", "--out=" + out});
   PrintMessage("done: {0}.png, {0}.pdf\n", out);
 }
 

@@ -28,7 +28,7 @@ void RunTransfer(const TransferArguments& arguments) {
   WriteFileWhole((folder / "transfer.txt").string(), table);
   WriteFileWhole(json, TransferAsJson(plan, settings, result));
   fmt::print("{}", table);
-  DrawFigures("transfer.py", {json, "--out", (folder / "transfer").string()});
+  DrawFigures("transfer", {json, "--out", (folder / "transfer").string()});
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ void WriteFigures(const std::string& folder, const std::string& json) {
   const std::string path = (std::filesystem::path(folder) / "tune.json").string();
   WriteFileWhole(path, json);
   PrintMessage("drawing the figures in {}\n", folder);
-  DrawFigures("tune.py", {path, "--out", (std::filesystem::path(folder) / "tune").string()});
+  DrawFigures("tune", {path, "--out", (std::filesystem::path(folder) / "tune").string()});
 }
 
 void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,

@@ -26,7 +26,9 @@ ALLOWED = {
 FOLDERS = {
     "experiments": ["base", "data", "study", "trial", "result_file", "run", "analysis", "claims", "validity", "tuning",
                     "contract", "commands", "."],
+    "plots": ["common", "rates", "audit_figures", "tuning_figures", "report_page", "trial_sheet", "."],
 }
+PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)
 OUR_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 
@@ -45,16 +47,20 @@ def folder_of(path_in_room):
     return head if slash else "."
 
 
+def folders_used_by(room, path, text):
+    """The folder of each of the room's own files that a file includes or, in Python, imports."""
+    if not path.endswith(".py"):
+        return [folder_of(included.removeprefix(room + "/")) for included in OUR_INCLUDE.findall(text)
+                if included.startswith(room + "/")]
+    modules = {file.stem for file in (ROOT / room).glob("*.py")}
+    return [name if name in FOLDERS[room] else "." for name in PYTHON_IMPORT.findall(text)
+            if name in FOLDERS[room] or name in modules]
+
+
 def arrows(room, files):
     """Includes from folder to folder within a room: {(from, to): how many}; `files` are (path in room, text)."""
-    counts = collections.Counter()
-    for path, text in files:
-        for included in OUR_INCLUDE.findall(text):
-            if included.startswith(room + "/"):
-                ends = folder_of(path), folder_of(included.removeprefix(room + "/"))
-                if ends[0] != ends[1]:
-                    counts[ends] += 1
-    return counts
+    return collections.Counter((folder_of(path), used) for path, text in files
+                               for used in folders_used_by(room, path, text) if used != folder_of(path))
 
 
 def upward(room, counts):
@@ -65,7 +71,7 @@ def upward(room, counts):
 
 def files_of(room):
     return [(str(path.relative_to(ROOT / room)), path.read_text(encoding="utf-8"))
-            for path in sorted((ROOT / room).rglob("*")) if path.suffix in {".h", ".cc"}]
+            for path in sorted((ROOT / room).rglob("*")) if path.suffix in {".h", ".cc", ".py"}]
 
 
 class IncludeDirections(unittest.TestCase):
@@ -97,6 +103,8 @@ class IncludeDirections(unittest.TestCase):
         self.assertEqual(upward("experiments", arrows("experiments", below)), [("base", "study")])
         self.assertEqual(arrows("experiments", above), {("study", "base"): 1})
         self.assertEqual(upward("experiments", arrows("experiments", above)), [])
+        of_a_script = [("rates/x.py", "from common import style\nimport heat_map\n")]
+        self.assertEqual(upward("plots", arrows("plots", of_a_script)), [("rates", ".")])
 
     def test_only_simulator_experiments_and_tests_speak_of_the_truth(self):
         for room in ["parameters", "stats", "estimator"]:

@@ -23,6 +23,6 @@ test -s "$scratch/audit/audit_estimator.png"
 "$own" run "$root/examples/own_estimator/failures.yaml" --trials 2 --out "$scratch/own.sqlite"
 "$own" summarize "$scratch/own.sqlite" --format csv --out "$scratch/own.csv"
 grep -q ',opencv,failure,' "$scratch/own.csv"
-"$("$root/scripts/find-python")" "$root/plots/failure_rate.py" "$scratch/own.csv" --x outlier_ratio \
+"$own" plot failure_rate "$scratch/own.csv" --x outlier_ratio \
   --out "$scratch/own_failures"
 test -s "$scratch/own_failures.png"

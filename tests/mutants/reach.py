@@ -29,13 +29,14 @@ def imported_files(python_file, plots):
     while todo:
         for node in ast.walk(ast.parse(todo.pop().read_text())):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else \
-                [node.module] if isinstance(node, ast.ImportFrom) and node.module else []
+                [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)] \
+                if isinstance(node, ast.ImportFrom) and node.module else []
             for name in names:
-                path = plots / f"{name}.py"
-                if path.exists() and path.name not in seen:
-                    seen.add(path.name)
+                path = plots / (name.replace(".", "/") + ".py")
+                if path.exists() and path not in seen:
+                    seen.add(path)
                     todo.append(path)
-    return frozenset(f"plots/{name}" for name in seen)
+    return frozenset(f"plots/{path.relative_to(plots)}" for path in seen)
 
 
 def trace_one(test, tree):

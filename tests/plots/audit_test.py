@@ -20,8 +20,8 @@ PLOTS = HERE.parents[1] / "plots"
 sys.path[:0] = [str(PLOTS), str(HERE)]
 
 import audit  # noqa: E402
-from audit_json import CLAIM_VERDICTS, TARGET_VERDICTS, read_audit  # noqa: E402
-from audit_look import LOOKS, series_look  # noqa: E402
+from audit_figures.audit_file import CLAIM_VERDICTS, TARGET_VERDICTS, read_audit  # noqa: E402
+from audit_figures.look import LOOKS, series_look  # noqa: E402
 from fake_audit import SIGMAS, claim, coverage, evidence, fake_audit, target  # noqa: E402
 from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402

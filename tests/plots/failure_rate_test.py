@@ -15,10 +15,10 @@ PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import failure_rate  # noqa: E402
-import style  # noqa: E402
+from common import style  # noqa: E402
 from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
-from summary_csv import read_summary, where  # noqa: E402
+from common.summary_csv import read_summary, where  # noqa: E402
 
 HEADER = "study,condition,outlier_ratio,sigma_px,estimator,quantity,kind,value,lower,upper,standard_error,n"
 # Rates and bounds with no relation to n: a script that recomputed any of them would be seen. Lines are not in order of
@@ -248,7 +248,7 @@ class Refusals(FailureRateTest):
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as end:
             failure_rate.main(["--help"])
         self.assertEqual(end.exception.code, 0)
-        self.assertIn("plots/failure_rate.py summary.csv --x outlier_ratio --out failure_rate", out.getvalue())
+        self.assertIn("rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate", out.getvalue())
 
 
 if __name__ == "__main__":

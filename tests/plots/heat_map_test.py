@@ -13,7 +13,9 @@ sys.path.insert(0, str(PLOTS))
 
 import heat_map  # noqa: E402
 from matplotlib.collections import PolyCollection  # noqa: E402
-from summary_csv import read_summary, where  # noqa: E402
+from common.summary_csv import read_summary, where  # noqa: E402
+from rates.cells import COLORS, LEAST_TOP, luminance, scale_of  # noqa: E402
+from rates.selection import select_rates  # noqa: E402
 
 HEADER = "study,condition,noise,sigma_px,estimator,quantity,kind,value,lower,upper,standard_error,n"
 # Rates and bounds with no relation to n: a script that recomputed any of them would be seen. One factor has words.
@@ -102,16 +104,16 @@ class Drawn(HeatMapTest):
         same = TABLE.replace("mine,failure,rate,0.05,0.01", "mine,failure,rate,0.07,0.01")
         standard, mine = map(colors_of, self.draw(same).axes[:2])
         self.assertEqual(mine[0, 0], standard[1, 1])  # 7 % both
-        brightness = [heat_map.luminance(heat_map.COLORS(i / 20)) for i in range(21)]
+        brightness = [luminance(COLORS(i / 20)) for i in range(21)]
         self.assertEqual(brightness, sorted(brightness, reverse=True))  # a grey print says the same
         for color, texts in ((colors_of(axes), axes.texts) for axes in self.draw().axes[:1]):
             for text in texts:
-                behind = heat_map.luminance(color[tuple(map(int, text.get_position()))])
+                behind = luminance(color[tuple(map(int, text.get_position()))])
                 self.assertEqual(text.get_color(), "white" if behind < 0.5 else "black")
 
     def test_rates_near_zero_are_not_painted_as_failures(self):
-        scale = heat_map.scale_of(heat_map.select_rates(read_summary(self.summary()), ["no_candidate"]))
-        self.assertEqual((scale.vmin, scale.vmax), (0, heat_map.LEAST_TOP))
+        scale = scale_of(select_rates(read_summary(self.summary()), ["no_candidate"]))
+        self.assertEqual((scale.vmin, scale.vmax), (0, LEAST_TOP))
 
     def test_estimators_can_be_chosen_and_the_caption_says_n_and_interval(self):
         figure = self.draw(estimators=["mine"])
@@ -161,7 +163,7 @@ class Refusals(HeatMapTest):
         out = io.StringIO()
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
             heat_map.main(["--help"])
-        self.assertIn("plots/heat_map.py summary.csv --x outlier_ratio --y sigma_px --out heat_map", out.getvalue())
+        self.assertIn("rcme plot heat_map summary.csv --x outlier_ratio --y sigma_px --out heat_map", out.getvalue())
 
 
 if __name__ == "__main__":

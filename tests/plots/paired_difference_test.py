@@ -12,7 +12,7 @@ PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import paired_difference  # noqa: E402
-from summary_csv import read_comparison, where  # noqa: E402
+from common.summary_csv import read_comparison, where  # noqa: E402
 
 HEADER = ("study,condition,outlier_ratio,estimator,reference,event,n,both,estimator_only,reference_only,neither,"
           "risk_difference,lower,upper,p_mcnemar,p_holm")
@@ -145,7 +145,7 @@ class Refusals(PairedDifferenceTest):
         out = io.StringIO()
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
             paired_difference.main(["--help"])
-        self.assertIn("plots/paired_difference.py comparison.csv --x outlier_ratio --out difference", out.getvalue())
+        self.assertIn("rcme plot paired_difference comparison.csv --x outlier_ratio --out difference", out.getvalue())
 
 
 if __name__ == "__main__":

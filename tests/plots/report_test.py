@@ -19,8 +19,8 @@ PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import report  # noqa: E402
-import report_figures  # noqa: E402
-from report_html import VOID  # noqa: E402
+from report_page import figures as report_figures  # noqa: E402
+from report_page.html import VOID  # noqa: E402
 
 SUMMARY_HEADER = "study,condition,{factors}estimator,quantity,kind,value,lower,upper,standard_error,n\n"
 COMPARISON_HEADER = ("study,condition,{factors}estimator,reference,event,n,both,estimator_only,reference_only,neither,"
@@ -188,7 +188,7 @@ class Page(ReportTest):
                         "rcme replay 'runs/a b.sqlite' --condition 1 --trial 0",
                         "rcme summarize 'runs/a b.sqlite' --format csv",
                         "rcme compare 'runs/a b.sqlite' --against standard --format csv",
-                        "--against standard --format csv --out comparison.csv && python3 plots/paired_difference.py"):
+                        "--against standard --format csv --out comparison.csv && rcme plot paired_difference"):
             self.assertIn(command, text)
         self.assertIn("3first failure", text)
 
@@ -303,7 +303,7 @@ class Figures(ReportTest):
         alts, text = self.drawn(["noise", "sigma_px"], [(a, b) for a in ("gaussian", "laplace") for b in ("1", "2", "3")])
         self.assertRegex(alts[0], "over noise and sigma .px.*heat map")
         self.assertRegex(alts[1], "Difference to Standard on the same trials, against sigma")
-        self.assertIn("python3 plots/heat_map.py summary.csv --x noise --y sigma_px", text)
+        self.assertIn("rcme plot heat_map summary.csv --x noise --y sigma_px", text)
 
     def test_one_factor_at_a_time_gives_a_line_figure_for_each(self):
         levels = [("0", "1"), ("0.2", "1"), ("0.4", "1"), ("0", "2"), ("0", "3")]

@@ -15,10 +15,10 @@ PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import show_trial  # noqa: E402
-from text_size import fill, width_of  # noqa: E402
-from trial_images import LOOKS, clip, groups_of, kept_apart  # noqa: E402
-from trial_json import trial_of  # noqa: E402
-from trial_scene import limits_of_scene, num_outside  # noqa: E402
+from common.text_size import fill, width_of  # noqa: E402
+from trial_sheet.images import LOOKS, clip, groups_of, kept_apart  # noqa: E402
+from trial_sheet.scene import limits_of_scene, num_outside  # noqa: E402
+from trial_sheet.trial_file import trial_of  # noqa: E402
 
 SIZES = ((640, 480), (320, 480))
 HORIZONTAL = [0, 0, 0, 0, 0, -1, 0, 1, 0]  # F of a translation along x: a point's line has its own height

@@ -17,9 +17,9 @@ import fake_tune as fake  # noqa: E402
 import transfer as script  # noqa: E402
 from matplotlib.collections import PolyCollection  # noqa: E402
 from matplotlib.patches import Rectangle  # noqa: E402
-from rate_bands import color_of  # noqa: E402
+from rates.rate_bands import color_of  # noqa: E402
 from transfer import number_in_cell, shortened  # noqa: E402
-from tune_json import read_transfer  # noqa: E402
+from tuning_figures.tune_file import read_transfer  # noqa: E402
 
 warnings.simplefilter("error")  # a layout that was given up is a fault
 
@@ -225,7 +225,7 @@ class Command(TransferTest):
         out = io.StringIO()
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
             script.main(["--help"])
-        self.assertIn("plots/transfer.py transfer.json --out transfer", out.getvalue())
+        self.assertIn("rcme plot transfer transfer.json --out transfer", out.getvalue())
         self.assertIn("file that 'rcme transfer' wrote", out.getvalue())
 
 

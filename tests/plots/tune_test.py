@@ -17,14 +17,14 @@ sys.path.insert(0, str(PLOTS))
 import fake_tune as fake  # noqa: E402
 import numpy as np  # noqa: E402
 import tune as script  # noqa: E402
-from heat_map import luminance  # noqa: E402
+from rates.cells import luminance  # noqa: E402
 from matplotlib.colors import to_rgb  # noqa: E402
-from rate_bands import BORDERS, TARGET, color_of  # noqa: E402
-from tune_front import draw_front  # noqa: E402
-from tune_json import read_tune  # noqa: E402
-from tune_marks import LevelAxis  # noqa: E402
-from tune_roc import draw_roc, kept_apart  # noqa: E402
-from tune_surface import Surface, draw_surface, grid_of  # noqa: E402
+from rates.rate_bands import BORDERS, TARGET, color_of  # noqa: E402
+from tuning_figures.front import draw_front  # noqa: E402
+from tuning_figures.marks import LevelAxis  # noqa: E402
+from tuning_figures.roc import draw_roc, kept_apart  # noqa: E402
+from tuning_figures.surface import Surface, draw_surface, grid_of  # noqa: E402
+from tuning_figures.tune_file import read_tune  # noqa: E402
 
 GRID = [fake.option("mu", ("0", "1", "2"), "nats"), fake.option("lambda", ("2", "0.5"))]  # levels in any order
 FURTHER = [*GRID, fake.option("rank_aware", ("no", "yes"))]
@@ -416,7 +416,7 @@ class TheCommand(TuneTest):
         out = io.StringIO()
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
             script.main(["--help"])
-        self.assertIn("plots/tune.py tune.json --out tune", out.getvalue())
+        self.assertIn("rcme plot tune tune.json --out tune", out.getvalue())
 
 
 if __name__ == "__main__":

@@ -195,7 +195,7 @@ class Refusals(ValidityMapTest):
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as end:
             validity_map.main(["--help"])
         self.assertEqual(end.exception.code, 0)
-        self.assertIn("plots/validity_map.py map --out figures", out.getvalue())
+        self.assertIn("rcme plot validity_map map --out figures", out.getvalue())
 
 
 if __name__ == "__main__":

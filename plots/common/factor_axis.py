@@ -1,0 +1,84 @@
+"""A factor along an axis: at its numbers or, where a level is a word, side by side in the order of the study; and a row
+of panels for each combination of levels of the factors that are not on the axis."""
+
+import math
+
+from matplotlib.transforms import ScaledTranslation
+
+from common import style
+from common.command_line import PlotError
+
+MAX_PANEL_ROWS = 6
+ROOM_FOR_NAMES = 76  # characters below an axis of one panel; more stand upright
+
+
+def is_number(text):
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+class FactorAxis:
+    """Where each level of one factor stands."""
+
+    def __init__(self, name, levels):
+        self.name, self.levels = name, list(dict.fromkeys(levels))
+        self.is_numeric = all(map(is_number, self.levels))
+        self.place = {level: float(level) if self.is_numeric else float(position)
+                      for position, level in enumerate(self.levels)}
+
+    def positions(self, levels):
+        return [self.place[level] for level in levels]
+
+    def limits(self):
+        """The ends of the axis, with a margin."""
+        left, right = min(self.place.values()), max(self.place.values())
+        margin = (0.06 * (right - left) or 0.5) if self.is_numeric else 0.5
+        return left - margin, right + margin
+
+    def room(self, panels_abreast):
+        """Points of paper that the marks of one level may take without meeting those of the next."""
+        left, right = self.limits()
+        places = sorted(set(self.place.values()))
+        gap = min((b - a for a, b in zip(places, places[1:])), default=right - left)
+        panel_width = 72 * {1: 4.0, 2: 3.0}.get(panels_abreast, 2.1)
+        return min(26, 0.7 * panel_width * gap / (right - left))
+
+    def prepare(self, axes, panels_abreast):
+        """Limits with a margin and, for words, ticks; conditions without a value keep their place."""
+        axes.set_xlim(*self.limits())
+        axes.set_xlabel(style.in_words(self.name))
+        if not self.is_numeric:
+            is_crowded = sum(map(len, self.levels)) > ROOM_FOR_NAMES / panels_abreast
+            axes.set_xticks(range(len(self.levels)), self.levels, rotation=90 if is_crowded else 0)
+            axes.tick_params(axis="x", length=0)
+            axes.grid(axis="x", visible=False)
+
+
+def abreast(axes, position, count, width):
+    """The shift of mark `position` of `count` that share a place on the x axis, all within `width` points."""
+    step = min(4.3, width / count)
+    return ScaledTranslation(step * (position - (count - 1) / 2) / 72, 0, axes.figure.dpi_scale_trans)
+
+
+def rows_that_vary(rows, other_factors):
+    """The rows with those levels of the other factors at which column `x` takes more than one place, or all if there are
+    none: of a study that varies one factor at a time, the part that is about this one."""
+    if not other_factors or rows.empty:
+        return rows
+    num_places = rows.groupby(other_factors)["x"].transform("nunique")
+    return rows[num_places > 1] if (num_places > 1).any() else rows
+
+
+def split_into_panel_rows(path, rows, other_factors, in_words=style.level_in_words):
+    """[(title, rows)]: one row of panels per combination of levels of the factors that are on no axis."""
+    varying = [factor for factor in other_factors if rows[factor].nunique() > 1]
+    combinations = rows[varying].drop_duplicates()
+    parts = [(", ".join(map(in_words, varying, levels)), rows[(rows[varying] == levels).all(axis=1)])
+             for levels in combinations.itertuples(index=False, name=None)] if varying else [("", rows)]
+    if len(parts) > MAX_PANEL_ROWS:
+        raise PlotError(f"{path}: {len(parts)} combinations of {', '.join(varying)} need more than {MAX_PANEL_ROWS} "
+                        "rows of panels; fix some with --where " +
+                        " --where ".join(f"{factor}={rows[factor].iloc[0]}" for factor in varying) + ".")
+    return parts

@@ -1,0 +1,86 @@
+"""Reads what `rcme report` writes for its page: a folder run_NNNN per run with run.json, summary.csv and, where there is
+more than one estimator, comparison.csv (experiments/analysis/report_data.h)."""
+
+import json
+import pathlib
+from dataclasses import dataclass
+
+from common.command_line import PlotError
+from common.summary_csv import Summary, numbers, read_comparison, read_summary
+
+NEEDED = {  # key of run.json: its type
+    "run": str, "rcme_version": str, "name": str, "description": str, "seed": int, "trials_done": int,
+    "trials_planned": int, "until": str, "study_yaml": str, "reference": str, "factors": list, "estimators": list, "conditions": list,
+    "failure_bounds": list, "quantities": list, "events": list,
+}
+SCENE = "scene"  # the "estimator" of rows that describe the simulated problems themselves
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: `facts` is run.json, `problems` the summary's rows about the problems, `summary` its others."""
+
+    number: int
+    facts: dict
+    whole_summary: Summary
+    comparison: object  # Summary, or None where there is nothing to compare
+
+    def of_scene(self):
+        """Which rows of the summary describe the problems; a study may also call an estimator so."""
+        return (self.whole_summary.rows.estimator == SCENE) & (SCENE not in self.facts["estimators"])
+
+    @property
+    def summary(self):
+        return self.whole_summary.with_rows(self.whole_summary.rows[~self.of_scene()])
+
+    @property
+    def problems(self):
+        return self.whole_summary.with_rows(self.whole_summary.rows[self.of_scene()])
+
+    def anchor(self, part=""):
+        """The id of a place on the page."""
+        return f"run-{self.number}" + (f"-{part}" if part else "")
+
+
+def read_facts(path):
+    try:
+        facts = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise PlotError(f"{path}: cannot be read ({error.strerror}).")
+    except ValueError as error:
+        raise PlotError(f"{path}: is not a JSON file ({error}).")
+    for key, kind in NEEDED.items():
+        if not isinstance(facts, dict) or not isinstance(facts.get(key), kind):
+            raise PlotError(f"{path}: has no {key}, or not as {kind.__name__}; expected what 'rcme report' writes.")
+    return facts
+
+
+def check(table, columns, facts):
+    """Numbers are numbers, there where n is not 0, and conditions those of the run."""
+    counts, known = numbers(table, "n"), {str(condition["index"]) for condition in facts["conditions"]}
+    for column in columns:
+        for value, n, line in zip(numbers(table, column, may_be_empty=True), counts, table.rows["line"]):
+            if value != value and n > 0 and column in ("value", "risk_difference", "p_mcnemar", "p_holm"):
+                raise PlotError(f"{table.path}: line {line}: column {column} is empty although n is not 0.")
+    for condition, line in zip(table.rows["condition"], table.rows["line"]):
+        if condition not in known:
+            raise PlotError(f"{table.path}: line {line}: run.json has no condition {condition}.")
+
+
+def read_run(number, folder):
+    facts = read_facts(folder / "run.json")
+    summary, comparison = read_summary(str(folder / "summary.csv")), None
+    check(summary, ("value", "lower", "upper", "standard_error"), facts)
+    if (folder / "comparison.csv").exists():
+        comparison = read_comparison(str(folder / "comparison.csv"))
+        check(comparison, ("risk_difference", "lower", "upper", "p_mcnemar", "p_holm"), facts)
+        comparison.path = "comparison.csv"  # from here on a message is part of the page
+    summary.path = "summary.csv"
+    return Run(number, facts, summary, comparison)
+
+
+def read_runs(folder):
+    folders = sorted(pathlib.Path(folder).glob("run_*"))
+    if not folders:
+        raise PlotError(f"{folder}: holds no folder run_0001; expected what 'rcme report' writes.")
+    return [read_run(number, path) for number, path in enumerate(folders, 1)]

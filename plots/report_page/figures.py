@@ -1,0 +1,123 @@
+"""The figures of the report, as pictures inside the page: rates against a factor that varies alone, heat maps where
+factors vary together, and differences to the reference."""
+
+import base64
+import io
+import itertools
+import math
+import shlex
+
+import matplotlib
+
+from common import style
+from common.command_line import PlotError
+from common.summary_csv import where
+from rates import cells, differences, lines
+from rates.selection import title_of
+from report_page.html import code, element, joined
+
+QUANTITIES = ("failure", "no_candidate")
+EVENTS = ("failure", "failure_or_refusal")
+MAX_SLICES = 6  # heat maps of one run
+PIXELS_PER_INCH = 115
+
+
+def data_uri(figure):
+    """The figure as SVG; the same figure gives the same bytes."""
+    picture = io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
+        figure.savefig(picture, format="svg", metadata={"Date": None, "Creator": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(picture.getvalue()).decode()
+
+
+def drawn(draw, alt, caption, command):
+    """One figure with its words, or the reason why it is not there."""
+    try:
+        figure = draw()
+    except PlotError as error:
+        return element("p", f"{caption} Not drawn: {error}", class_="note")
+    width = round(PIXELS_PER_INCH * figure.get_size_inches()[0])
+    return element("figure", element("img", src=data_uri(figure), alt=alt, width=width),
+                   element("figcaption", f"{caption} Drawn by ", code(command))) + "\n"
+
+
+def script_command(run, script, arguments):
+    """How to draw a figure of the summary by hand; paired differences are of the comparison."""
+    name, words = ("summary", ["summarize", run.facts["run"]]) if script != "paired_difference" else (
+        "comparison", ["compare", run.facts["run"], "--against", run.facts["reference"]])
+    return (f"rcme {shlex.join(words)} --format csv --out {name}.csv && "
+            f"rcme plot {script} {name}.csv {shlex.join(arguments)} --out {script}")
+
+
+def in_running_text(factor):
+    words, unit = style.split_unit(factor)
+    return words + (f" ({unit})" if unit else "")
+
+
+def rates_in_words():
+    return " and ".join(title_of(quantity).lower() for quantity in QUANTITIES)
+
+
+def line_figure(run, x):
+    caption = f"{rates_in_words().capitalize()} against {in_running_text(x)}."
+    return drawn(lambda: lines.draw(run.summary, x, list(QUANTITIES)),
+                 f"{caption} A line per estimator with the band of its exact 95 % intervals; the numbers are in the table "
+                 "of results.", caption,
+                 script_command(run, "failure_rate", ["--x", x, "--quantities", ",".join(QUANTITIES)]))
+
+
+def heat_map_figure(run, x, y, fixed):
+    """`fixed`: [(factor, level)] of the others that vary."""
+    caption = f"{rates_in_words().capitalize()} over {in_running_text(x)} and {in_running_text(y)}" + "".join(
+        f", {style.level_in_words(*pair)}" for pair in fixed) + "."
+    conditions = [f"{factor}={level}" for factor, level in fixed]
+    arguments = ["--x", x, "--y", y, "--quantities", ",".join(QUANTITIES)]
+    return drawn(lambda: cells.draw(where(run.summary, conditions), x, y, list(QUANTITIES)),
+                 f"{caption} A heat map per estimator with the rate and its exact 95 % interval in each cell; the numbers "
+                 "are in the table of results.", caption,
+                 script_command(run, "heat_map",
+                                arguments + [word for text in conditions for word in ("--where", text)]))
+
+
+def difference_figure(run, x):
+    reference = style.label_of(run.facts["reference"])
+    caption = f"Difference to {reference} on the same trials, against {in_running_text(x)}."
+    return drawn(lambda: differences.draw(run.comparison, x, list(EVENTS)),
+                 f"{caption} Differences of the rates of failures, and of failures and refusals, with Tango's 95 % "
+                 "intervals; filled marks where Holm's p-value is below 0.05; the numbers are in the tables of paired "
+                 "comparisons.", caption,
+                 script_command(run, "paired_difference", ["--x", x, "--event", ",".join(EVENTS)]))
+
+
+def heat_maps(run, x, y, others):
+    """One for each combination of levels of the other factors, as far as a page bears."""
+    slices = list(itertools.product(*([(factor, level) for level in dict.fromkeys(run.summary.rows[factor])]
+                                      for factor in others)))
+    figures = [heat_map_figure(run, x, y, fixed) for fixed in slices[:MAX_SLICES]]
+    if len(slices) > MAX_SLICES:
+        figures.append(element("p", f"Drawn are {MAX_SLICES} of {len(slices)} combinations of {', '.join(others)}; the "
+                               "others by the same command with other levels.", class_="note"))
+    return joined(figures)
+
+
+def is_full_factorial(rows, factors):
+    """Whether every combination of levels is there; a study may also vary one factor at a time."""
+    num_combinations = math.prod(rows[factor].nunique() for factor in factors)
+    return len(rows[factors].drop_duplicates()) == num_combinations
+
+
+def figures(run):
+    """All figures of a run, by which factors vary and how."""
+    rows = run.summary.rows
+    varying = [factor for factor in run.summary.factors if rows[factor].nunique() > 1]
+    if not varying:
+        return element("p", "The study varies nothing: there is nothing to draw against.", class_="note")
+    by_levels = sorted(varying, key=lambda factor: -rows[factor].nunique())  # equal ones in the order of the study
+    if len(varying) > 1 and is_full_factorial(rows, varying):
+        x, y = sorted(by_levels[:2], key=varying.index)
+        parts, compared = [heat_maps(run, x, y, [factor for factor in varying if factor not in (x, y)])], by_levels[:1]
+    else:
+        parts, compared = [line_figure(run, factor) for factor in varying], varying
+    if run.comparison is not None:
+        parts += [difference_figure(run, factor) for factor in compared]
+    return joined(parts)

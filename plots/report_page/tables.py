@@ -1,0 +1,200 @@
+"""The tables of the report. Numbers are those of the files, in per cent where they are rates; none is computed."""
+
+import itertools
+import shlex
+
+from common import style
+from rates.selection import interval_in_words, title_of
+from report_page.html import Html, code, definitions, details, element, joined, table
+
+SHOWN = ("failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
+         "rotation_error_deg", "direction_error_deg")  # of the results; all others stand in the table of every number
+SIGNIFICANCE_LEVEL = 0.05
+DASH = "\u2013"
+
+
+def small(*children):
+    return element("small", *children)
+
+
+def in_per_cent(text):
+    return f"{100 * float(text):.2f}"
+
+
+def rate_cell(row):
+    """With the verdict of a coverage."""
+    verdict = [Html("<br>"), small(row["verdict"])] if row.get("verdict") else []
+    return joined([f"{in_per_cent(row['value'])} %", Html("<br>"),
+                   small(f"[{in_per_cent(row['lower'])}, {in_per_cent(row['upper'])}]"), *verdict])
+
+
+def mean_cell(row):
+    if not row["standard_error"]:  # of one trial
+        return joined([f"{float(row['value']):.3g}"])
+    return joined([f"{float(row['value']):.3g}", Html("<br>"), small(f"\u00b1 {float(row['standard_error']):.2g}")])
+
+
+def median_cell(row):
+    """Without an interval where few trials, or looking again and again, leave none."""
+    value = f"{float(row['value']):.3g}"
+    if not row["lower"] or not row["upper"]:
+        return joined([value])
+    return joined([value, Html("<br>"), small(f"[{float(row['lower']):.3g}, {float(row['upper']):.3g}]")])
+
+
+def cell(row, num_trials):
+    """One number with its interval or standard error, and its n where that is not the row's."""
+    if row is None or row["n"] == "0":
+        return DASH
+    whole = {"rate": rate_cell, "mean": mean_cell, "median": median_cell}[row["kind"]](row)
+    return whole if row["n"] == num_trials else joined([whole, Html("<br>"), small(f"n = {row['n']}")])
+
+
+def heading(quantity):
+    """In words, and as the command line calls it; long names may break after a '_'."""
+    breakable = [part for word in quantity.split("_") for part in (word, "_", Html("<wbr>"))][:-2]
+    return joined([title_of(quantity), Html("<br>"), element("code", *breakable)])
+
+
+def replay_command(run, condition, trial):
+    return code(f"rcme replay {shlex.quote(run.facts['run'])} --condition {condition} --trial {trial}")
+
+
+def trial_to_replay(run, condition, estimator):
+    """The first failure or refusal of an estimator in a condition, else the first trial."""
+    first = run.facts["conditions"][condition]["first"][run.facts["estimators"].index(estimator)]
+    for event in ("failure", "refusal"):
+        if first[event] is not None:
+            return joined([first[event], Html("<br>"), small(f"first {event}")])
+    return "0"
+
+
+def condition_heading(run, row, factors, with_replay=False):
+    """'condition 4: outlier ratio = 0.4', and how to run one of its trials again."""
+    levels = ", ".join(style.level_in_words(factor, row[factor]) for factor in factors)
+    words = f"condition {row['condition']}" + (f": {levels}" if levels else "")
+    return joined([words, element("span", replay_command(run, row["condition"], "T"), class_="aside")
+                   if with_replay else ""])
+
+
+def by_condition(pairs, heading):
+    """[(row, cells)] as groups of a table, one per condition."""
+    return [(heading(members[0][0]), [cells for _, cells in members])
+            for members in (list(members) for _, members in
+                            itertools.groupby(pairs, key=lambda pair: pair[0]["condition"]))]
+
+
+def grouped(rows):
+    """[(first row, {quantity: row})] of each condition and estimator, in the order of the file."""
+    groups = {}
+    for row in rows.to_dict("records"):
+        groups.setdefault((row["condition"], row["estimator"]), []).append(row)
+    return [(group[0], {row["quantity"]: row for row in group}) for group in groups.values()]
+
+
+def results(run):
+    """A row per condition and estimator with the main quantities."""
+    groups = grouped(run.summary.rows)
+    shown = [quantity for quantity in SHOWN if any(quantity in of for _, of in groups)]
+    lines = []
+    for row, of in groups:
+        num_trials = of["not_scored"]["n"] if "not_scored" in of else max((number["n"] for number in of.values()), key=int)
+        lines.append((row, [style.label_of(row["estimator"]), num_trials,
+                            *(cell(of.get(quantity), num_trials) for quantity in shown),
+                            trial_to_replay(run, int(row["condition"]), row["estimator"])]))
+    return table(
+        "Rates of each estimator in each condition, in per cent of its n trials with "
+        f"{interval_in_words(run.summary.rows)} intervals, and means with their Monte-Carlo standard errors; n stands with a number that is not of all trials. "
+        "T is a trial worth a look: the command beside the condition runs it again.",
+        ["estimator", "n", *map(heading, shown), "T"],
+        by_condition(lines, lambda row: condition_heading(run, row, run.summary.factors, with_replay=True)),
+        class_="results")
+
+
+def severity(run):
+    """A row per condition: how hard its problems are."""
+    factors = run.problems.factors
+    groups = grouped(run.problems.rows)
+    quantities = list(dict.fromkeys(run.problems.rows.quantity))
+    lines = []
+    for row, of in groups:
+        num_trials = max((number["n"] for number in of.values()), key=int)
+        lines.append([row["condition"], *(row[factor] for factor in factors), num_trials,
+                      *(cell(of.get(quantity), num_trials) for quantity in quantities)])
+    return table("What the simulated problems of each condition are like, whoever solves them: means of n trials with "
+                 "their Monte-Carlo standard errors.",
+                 ["condition", *map(style.in_words, factors), "n", *map(heading, quantities)], [(None, lines)],
+                 1 + len(factors))
+
+
+def difference_cell(row):
+    points = [f"{100 * float(text):+.2f}" for text in (row["risk_difference"], row["lower"], row["upper"])]
+    return joined([points[0], Html("<br>"), small(f"[{points[1]}, {points[2]}]")])
+
+
+def p_value(text):
+    return f"{float(text):.3g}"
+
+
+def comparison_cells(row):
+    counts = [row["both"], row["estimator_only"], row["reference_only"], row["neither"]]
+    if row["n"] == "0":
+        return [row["n"], *counts, DASH, DASH, DASH]
+    is_sure = float(row["p_holm"]) < SIGNIFICANCE_LEVEL
+    holm = element("strong", p_value(row["p_holm"]), " *") if is_sure else p_value(row["p_holm"])
+    return [row["n"], *counts, difference_cell(row), p_value(row["p_mcnemar"]), holm]
+
+
+def comparison(run, event):
+    """One event: a row per condition and estimator."""
+    reference = style.label_of(run.facts["reference"])
+    rows = run.comparison.rows[run.comparison.rows.event == event["name"]]
+    lines = [(row, [style.label_of(row["estimator"]), *comparison_cells(row)]) for row in rows.to_dict("records")]
+    caption = joined([
+        code(event["name"]), f" ({event['doc']}): in how many of n trials it happened to the estimator and to {reference}; "
+        f"rate of the estimator minus rate of {reference}, in percentage points, with Tango's 95 % interval; McNemar's "
+        f"exact p, and that adjusted by Holm for all tests of the comparison, of every event (* and bold: below "
+        f"{SIGNIFICANCE_LEVEL:g})."])
+    return table(caption, ["estimator", "n", "both", "estimator only", f"{reference} only", "neither", "difference",
+                           "p (McNemar)", "p (Holm)"],
+                 by_condition(lines, lambda row: condition_heading(run, row, run.comparison.factors)))
+
+
+def every_number(run):
+    """The summary as it is: a row per condition, estimator and quantity."""
+    summary = run.whole_summary
+    columns = ["condition", *summary.factors, "estimator", "quantity", "kind", "value", "lower", "upper",
+               "standard_error", "n"]
+    rows = [list(cells) for cells in summary.rows[columns].itertuples(index=False, name=None)]
+    return table(joined(["All rows of ", code(f"rcme summarize {shlex.quote(run.facts['run'])} --format csv"),
+                         "; rates are fractions, empty cells unknown."]),
+                 columns, [(None, rows)], 3 + len(summary.factors))
+
+
+def quantities(run):
+    """What each name means, as `rcme list quantities`."""
+    return details("What each quantity is", definitions(
+        [(code(q["name"]), f"{q['kind']}: {q['doc']}") for q in run.facts["quantities"]]))
+
+
+def overview(runs):
+    rows = [[element("a", str(run.number), href=f"#{run.anchor()}"), run.facts["name"], code(run.facts["run"]),
+             len(run.facts["conditions"]), "; ".join(map(style.label_of, run.facts["estimators"])), trials_of(run.facts)]
+            for run in runs]
+    return table("The runs on this page.", ["run", "study", "result file", "conditions", "estimators", "trials done"],
+                 [(None, rows)], class_="overview")
+
+
+def trials_of(facts):
+    """Of a run or of a condition."""
+    return f"{facts['trials_done']:,} of {facts['trials_planned']:,}"
+
+
+def conditions(run):
+    """Every condition with its levels and the command that replays its first trial."""
+    facts = run.facts
+    rows = [[condition["index"], *condition["levels"], trials_of(condition), replay_command(run, condition["index"], 0)]
+            for condition in facts["conditions"]]
+    return table("The conditions and their trials; the last column runs the first trial of each again.",
+                 ["condition", *map(style.in_words, facts["factors"]), "trials done", "replay"], [(None, rows)],
+                 1 + len(facts["factors"]), class_="conditions")
