@@ -18,6 +18,7 @@
 #include "experiments/study/study_file.h"
 #include "experiments/trial/trial.h"
 #include "stats/distributions.h"
+#include "tests/test_support/make_ransac.h"
 
 namespace rcme {
 namespace {
@@ -292,7 +293,7 @@ std::vector<Arm> TrialArms() {
 }  // namespace
 
 Arm EstimatorArm(const std::string& name, const std::string& estimator, const RansacOptions& options) {
-  const std::shared_ptr<const MotionEstimator> made = FindEstimator(estimator).make(options);
+  const std::shared_ptr<const MotionEstimator> made = MakeRansac(estimator, options);
   return {"estimator", name, [made](const Trial& trial) {
             RandomStream rng = StreamFor(trial.name, StreamPurpose::kSampling);
             DoNotOptimize(made->Estimate(trial.data.problem, rng));

@@ -32,6 +32,15 @@ class FixedAnswer : public MotionEstimator {
   int num_steps_;
 };
 
+class FixedAnswerModel : public EstimatorModel {
+ public:
+  explicit FixedAnswerModel(int num_steps) : num_steps_(num_steps) {}
+  std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<FixedAnswer>(num_steps_); }
+
+ private:
+  int num_steps_;
+};
+
 // Hands out copies of one trial's data.
 class FixedData : public DataSource {
  public:
@@ -48,7 +57,7 @@ void AddEstimators() {
     for (const auto& [name, num_steps] : {std::pair{kNoWork, 0}, {k80Microseconds, 47'000}}) {
       const int steps = num_steps;
       AddEstimator({name, "answers the same motion for every problem",
-                    [steps](const RansacOptions&) { return std::make_unique<FixedAnswer>(steps); }});
+                    [steps] { return std::make_unique<FixedAnswerModel>(steps); }});
     }
     return true;
   }();

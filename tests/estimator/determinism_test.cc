@@ -6,6 +6,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "tests/test_support/every_target.h"
+#include "tests/test_support/make_ransac.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {

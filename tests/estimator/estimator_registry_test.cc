@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "parameters/input_error.h"
+#include "tests/test_support/estimator_variants.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -25,19 +26,13 @@ Pair MakePair(int num_matches, double sigma_px, double outlier_ratio, std::uint3
   return pair;
 }
 
-class EstimatorContract : public testing::TestWithParam<std::tuple<EstimatorEntry, Reading, Implementation>> {
+class EstimatorContract : public testing::TestWithParam<EstimatorVariant> {
  protected:
-  void SetUp() override {
-    RansacOptions options;
-    options.reading = std::get<Reading>(GetParam());
-    options.implementation = std::get<Implementation>(GetParam());
-    estimator_ = std::get<EstimatorEntry>(GetParam()).make(options);
-  }
   MotionEstimate Estimate(const MotionProblem& problem, std::uint32_t trial = 0) const {
     RandomStream rng({1, 0, trial, 4});
     return estimator_->Estimate(problem, rng);
   }
-  std::unique_ptr<MotionEstimator> estimator_;
+  std::unique_ptr<MotionEstimator> estimator_ = GetParam().Make();
 };
 
 TEST_P(EstimatorContract, FindsTheMotionOfCleanMatches) {
@@ -131,16 +126,7 @@ TEST_P(EstimatorContract, AnswersWhateverTheCamerasAreSaidToBe) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, EstimatorContract,
-                         testing::Combine(testing::ValuesIn(EstimatorRegistry()),
-                                          testing::Values(Reading::kAsPrinted, Reading::kRankAware),
-                                          testing::Values(Implementation::kFast, Implementation::kReference)),
-                         [](const auto& c) {
-                           const bool is_printed = std::get<Reading>(c.param) == Reading::kAsPrinted;
-                           const bool is_fast = std::get<Implementation>(c.param) == Implementation::kFast;
-                           return std::get<EstimatorEntry>(c.param).name +
-                                  (is_printed ? "_as_printed" : "_rank_aware") +
-                                  (is_fast ? "_fast" : "_reference");
-                         });
+                         testing::ValuesIn(EstimatorVariants()), [](const auto& c) { return c.param.name; });
 
 TEST(FindEstimator, AnUnknownNameListsTheKnownOnes) {
   try {
@@ -151,12 +137,10 @@ TEST(FindEstimator, AnUnknownNameListsTheKnownOnes) {
   }
 }
 
-TEST(RansacOptions, ContradictionsAreErrors) {
-  RansacOptions options;
-  options.selection = Selection::kPredictiveLikelihood;
-  EXPECT_THROW(FindEstimator("rcme").make(options), InputError);
-  options.reading = Reading::kRankAware;
-  EXPECT_NO_THROW(FindEstimator("rcme").make(options));
+TEST(MakeEstimator, OptionsThatContradictEachOtherAreErrors) {
+  EXPECT_THROW(MakeEstimator("rcme", {{"selection", "predictive_likelihood"}}), InputError);
+  EXPECT_NO_THROW(
+      MakeEstimator("rcme", {{"selection", "predictive_likelihood"}, {"reading", "rank_aware"}}));
 }
 
 }  // namespace

@@ -28,6 +28,7 @@
 #include "simulator/scene_registry.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
+#include "tests/test_support/make_ransac.h"
 
 namespace rcme {
 namespace {
@@ -78,7 +79,7 @@ MotionEstimate Estimate(const Arm& arm, RansacOptions options, Implementation im
   options.reading = arm.reading;
   options.implementation = implementation;
   RandomStream rng = SamplingStream(trial);
-  return FindEstimator(arm.estimator).make(options)->Estimate(problem, rng);
+  return MakeRansac(arm.estimator, options)->Estimate(problem, rng);
 }
 
 double RelativeDifference(double a, double b) {

@@ -19,6 +19,7 @@
 #include "simulator/scene_generator.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
+#include "tests/test_support/make_ransac.h"
 
 namespace rcme {
 namespace {
@@ -101,7 +102,7 @@ struct Counts {
 void AddTrial(const std::string& estimator, const Trial& trial, std::uint32_t index, Counts* counts) {
   const auto estimate = [&](bool are_tested) {
     RandomStream rng({1, 14, index, 4});
-    return FindEstimator(estimator).make(Options(are_tested))->Estimate(trial.problem, rng);
+    return MakeRansac(estimator, Options(are_tested))->Estimate(trial.problem, rng);
   };
   const MotionEstimate untested = estimate(false), tested = estimate(true);
   ++counts->num_trials;
@@ -197,7 +198,7 @@ TEST(MotionTests, CoverageByNoiseShare) {
       const auto index = static_cast<std::uint32_t>(t);
       const Trial trial = MakeTrial(condition, scenes, index);
       RandomStream rng({1, 14, index, 4});
-      const MotionEstimate e = FindEstimator("standard").make(Options(false))->Estimate(trial.problem, rng);
+      const MotionEstimate e = MakeRansac("standard", Options(false))->Estimate(trial.problem, rng);
       if (e.status != MotionStatus::kOk || !IsRight(e, trial.pose_true)) continue;
       const double share = NoiseShareOfDirection(MatchBlocks(trial.problem), e.inliers, e.cam2_from_cam1,
                                                  e.pose_cov.bottomRightCorner<2, 2>());

@@ -6,6 +6,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/run_pipeline.h"
+#include "tests/test_support/make_ransac.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -63,7 +64,7 @@ TEST(RansacEstimator, EstimateIsFinishOfDecideOfTrace) {
     for (RansacOptions options : BothReadings()) {
       for (const Implementation implementation : {Implementation::kFast, Implementation::kReference}) {
         options.implementation = implementation;
-        const auto estimator = entry.make(options);
+        const auto estimator = MakeRansac(entry.name, options);
         const RansacEstimator* parts = AsRansac(*estimator);
         ASSERT_NE(parts, nullptr) << entry.name;
         for (const MotionProblem& problem : Problems()) {
@@ -100,15 +101,15 @@ TEST(RansacEstimator, ATraceServesAllDecisionOptions) {
   for (const MotionProblem& problem : Problems()) {
     for (RansacOptions options : BothReadings()) {
       if (options.reading == Reading::kRankAware) options.selection = Selection::kPredictiveLikelihood;
-      const auto traced = FindEstimator("rcme").make(options);
+      const auto traced = MakeRansac("rcme", options);
       RandomStream rng = SamplingStream();
       const HypothesisTrace trace = AsRansac(*traced)->Trace(problem, rng);
       Refinements refinements;  // one set for all
       for (const auto& [key, value] : changes) {
         SCOPED_TRACE(key + " = " + value);
         RansacOptions changed = options;
-        FindParameter(Parameters(changed), key).SetFromText(value);
-        const auto estimator = FindEstimator("rcme").make(changed);
+        FindParameter(AllParameters(changed), key).SetFromText(value);
+        const auto estimator = MakeRansac("rcme", changed);
         const RansacEstimator* parts = AsRansac(*estimator);
         ExpectEqual(parts->Finish(problem, parts->Decide(trace), &refinements),
                     EstimateWith(*estimator, problem));
@@ -128,7 +129,7 @@ TEST(RansacEstimator, MoreRefinedCandidatesExplainNoFewerMatches) {
       int previous = 0;
       for (const int num_refined : {1, 3, 20}) {
         options.num_refined = num_refined;
-        const MotionEstimate estimate = EstimateWith(*FindEstimator("prcme").make(options), problem);
+        const MotionEstimate estimate = EstimateWith(*MakeRansac("prcme", options), problem);
         EXPECT_GE(estimate.num_explained, previous);
         num_better += num_refined > 1 && estimate.num_explained > previous;
         previous = estimate.num_explained;
@@ -146,9 +147,9 @@ TEST(RansacEstimator, BothImplementationsChooseTheSameOfSeveralMotions) {
     for (RansacOptions options : BothReadings()) {
       options.num_refined = 8;
       options.least_explained_share = 0.5;
-      const MotionEstimate fast = EstimateWith(*FindEstimator("rcme").make(options), problem);
+      const MotionEstimate fast = EstimateWith(*MakeRansac("rcme", options), problem);
       options.implementation = Implementation::kReference;
-      const MotionEstimate reference = EstimateWith(*FindEstimator("rcme").make(options), problem);
+      const MotionEstimate reference = EstimateWith(*MakeRansac("rcme", options), problem);
       num_different += fast.status != reference.status || fast.num_explained != reference.num_explained ||
                        fast.inliers != reference.inliers;
     }
@@ -163,9 +164,9 @@ TEST(RansacEstimator, AMotionThatExplainsTooLittleIsRefused) {
   options.reading = Reading::kRankAware;
   const auto status_at = [&](double share) {
     options.least_explained_share = share;
-    return EstimateWith(*FindEstimator("rcme").make(options), problem).status;
+    return EstimateWith(*MakeRansac("rcme", options), problem).status;
   };
-  const double share = EstimateWith(*FindEstimator("rcme").make(options), problem).num_explained / 120.0;
+  const double share = EstimateWith(*MakeRansac("rcme", options), problem).num_explained / 120.0;
   EXPECT_GT(share, 0.6);
   EXPECT_LT(share, 0.9);
   EXPECT_EQ(status_at(share), MotionStatus::kOk);
@@ -221,7 +222,7 @@ TEST(RansacEstimator, TheWinnerIsTheBestByWhatSelects) {
   const MotionProblem problem = MakeProblem(0.3, 120, 0);
   for (const Selection selection : {Selection::kMeanEntropy, Selection::kPredictiveLikelihood}) {
     options.selection = selection;
-    const auto estimator = FindEstimator("prcme").make(options);
+    const auto estimator = MakeRansac("prcme", options);
     RandomStream rng = SamplingStream();
     const HypothesisTrace trace = AsRansac(*estimator)->Trace(problem, rng);
     const InlierScore winner = AsRansac(*estimator)->Decide(trace).winner.value().score;
@@ -247,20 +248,17 @@ TEST(RansacEstimator, AnEmptyLoopIsDegenerateOnlyIfEverySampleIs) {
 }
 
 // Without entropies there is nothing to stop at: psi is zero for every hypothesis.
-TEST(RansacEstimator, StandardDoesNotStopEarly) {
+TEST(RansacEstimator, StopsEarly) {
   const MotionProblem problem = MakeProblem(0.4, 120, 0);
   RansacOptions options;
-  options.early_stop_entropy = 1.0;
-  EXPECT_EQ(EstimateWith(*FindEstimator("standard").make(options), problem).counts.num_hypotheses,
-            options.num_iterations);
   options.reading = Reading::kRankAware;
   options.early_stop_entropy = 100.0;
-  EXPECT_LT(EstimateWith(*FindEstimator("prcme").make(options), problem).counts.num_hypotheses, 10);
+  EXPECT_LT(EstimateWith(*MakeRansac("prcme", options), problem).counts.num_hypotheses, 10);
 }
 
 TEST(RansacEstimator, DecisionOptionsAreOptions) {
   RansacOptions options;
-  const std::vector<Parameter> parameters = Parameters(options);
+  const std::vector<Parameter> parameters = AllParameters(options);
   for (const char* name : kDecisionOptions) EXPECT_NO_THROW(FindParameter(parameters, name)) << name;
 }
 
@@ -270,7 +268,7 @@ TEST(RansacEstimator, TheSampleTestHasALevelOfItsOwn) {
   for (RansacOptions options : BothReadings()) {
     const auto num_inconsistent = [&](double level) {
       options.sample_significance_level = level;
-      return EstimateWith(*FindEstimator("rcme").make(options), problem).counts.num_inconsistent_samples;
+      return EstimateWith(*MakeRansac("rcme", options), problem).counts.num_inconsistent_samples;
     };
     const int at_alpha = num_inconsistent(std::numeric_limits<double>::quiet_NaN());
     EXPECT_EQ(num_inconsistent(options.significance_level), at_alpha);
@@ -304,7 +302,7 @@ struct Verdict {
   friend bool operator==(const Verdict&, const Verdict&) = default;
 };
 Verdict VerdictOf(const RansacOptions& options, const MotionProblem& problem) {
-  const MotionEstimate e = EstimateWith(*FindEstimator("rcme").make(options), problem);
+  const MotionEstimate e = EstimateWith(*MakeRansac("rcme", options), problem);
   return {e.status,
           e.counts.num_candidates,
           e.counts.num_poor_inlier_sets,

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "parameters/input_error.h"
+#include "tests/test_support/estimator_variants.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/test_estimators.h"
 
@@ -38,7 +39,7 @@ class ChangedEstimator : public MotionEstimator {
   }
 
  private:
-  std::unique_ptr<MotionEstimator> rcme_ = FindEstimator("rcme").make(RansacOptions());
+  std::unique_ptr<MotionEstimator> rcme_ = MakeEstimator("rcme");
   Before before_;
   After after_;
 };
@@ -154,32 +155,25 @@ TEST(EstimatorContract, NamesThatThereAreNotAreErrors) {
   EXPECT_TRUE(ThrowsInputError([&] { RunContractCheck("nonsense", make, {}); }, {"nonsense"}));
 }
 
-void ExpectContract(const EstimatorEntry& entry, const RansacOptions& options, bool with_large) {
-  const EstimatorMaker make = [&] { return entry.make(options); };
+void ExpectContract(const EstimatorVariant& variant, bool with_large) {
+  const EstimatorMaker make = [&] { return variant.Make(); };
   for (const ContractCheck& check : ContractChecks()) {
     if (check.name == "large" && !with_large) continue;
     const ContractResult result = RunContractCheck(check.name, make, {});
-    EXPECT_TRUE(result.has_passed) << entry.name << ", " << check.name << " on '" << result.problem
+    EXPECT_TRUE(result.has_passed) << variant.name << ", " << check.name << " on '" << result.problem
                                    << "': " << result.finding;
   }
 }
 
 TEST(EstimatorContract, TheRegistryKeepsIt) {
-  for (const EstimatorEntry& entry : EstimatorRegistry()) {
-    for (const Reading reading : {Reading::kAsPrinted, Reading::kRankAware}) {
-      RansacOptions options;
-      options.reading = reading;
-      ExpectContract(entry, options, true);
-    }
-  }
+  for (const EstimatorVariant& variant : EstimatorVariants({"reading"})) ExpectContract(variant, true);
 }
 
 // 100,000 matches would take its small matrices minutes.
 TEST(EstimatorContract, TheReferenceKeepsIt) {
-  RansacOptions options;
-  options.implementation = Implementation::kReference;
-  options.num_iterations = 20;
-  for (const EstimatorEntry& entry : EstimatorRegistry()) ExpectContract(entry, options, false);
+  for (const EstimatorEntry& entry : EstimatorRegistry()) {
+    ExpectContract({entry.name, entry.name, {{"implementation", "reference"}, {"num_iterations", "20"}}}, false);
+  }
 }
 
 }  // namespace

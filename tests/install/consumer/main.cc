@@ -10,7 +10,7 @@ int main() {
   const rcme::StreamName trial{1, 0, 0, 0};
   const rcme::TrialData data = made.sources.at(0).second->Make(trial);
   rcme::RandomStream rng = rcme::StreamFor(trial, rcme::StreamPurpose::kSampling);
-  const auto estimator = rcme::FindEstimator("standard").make({});
+  const auto estimator = rcme::MakeEstimator("standard");
   const rcme::MotionEstimate estimate = estimator->Estimate(data.problem, rng);
   const double error_rad =
       rcme::RotationAngleBetween(estimate.cam2_from_cam1.R, data.truth.cam2_from_cam1_true->R);
