@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "estimator/geometry/essential_matrix.h"
+#include "estimator/match_whitening.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -89,24 +90,22 @@ double LogUpperTail(int n, int k, double p) {
 
 }  // namespace
 
-double ChanceOfAgreement(const MotionProblem& problem, const MatchBlocks& matches, const RelativePose& pose,
-                         double threshold) {
-  const Eigen::Matrix3d F = matches.FundamentalFromEssential(EssentialFromPose(pose));
+double ChanceOfAgreement(const MotionProblem& problem, const RelativePose& pose, double threshold) {
+  const MatchWhitening whitening(problem);
+  const Eigen::Matrix3d F = whitening.FundamentalFromEssential(EssentialFromPose(pose));
   const Box box = BoxOfSecondPoints(problem);
-  const int n = matches.num_matches(), stride = (n + kMostLookedAt - 1) / kMostLookedAt;
+  const int n = static_cast<int>(problem.matches.size()), stride = (n + kMostLookedAt - 1) / kMostLookedAt;
   double sum = 0.0;
   int count = 0;
   for (int i = 0; i < n; i += stride, ++count) {
-    const MatchBlock& block = matches[i / kBlockSize];
-    const Eigen::Vector2d x1(block.x1[i % kBlockSize], block.y1[i % kBlockSize]);
+    const Eigen::Vector2d x1 = whitening.WhitenPoint1(problem.matches[static_cast<size_t>(i)].x1_px);
     sum += std::min(1.0, AreaOfBand(F, x1, threshold, box) / box.Area());
   }
   return sum / count;
 }
 
-double ChanceOfAgreementWithRotation(const MotionProblem& problem, const MatchBlocks& matches,
-                                     double threshold) {
-  const RayScale& s = matches.ray_scale();
+double ChanceOfAgreementWithRotation(const MotionProblem& problem, double threshold) {
+  const RayScale s = MatchWhitening(problem).ray_scale();
   // det C at the image's middle: C = I + J J', J the ratio of the focal lengths
   const double det = (1.0 + std::pow(s.x1 / s.x2, 2)) * (1.0 + std::pow(s.y1 / s.y2, 2));
   return std::min(1.0, std::numbers::pi * threshold * std::sqrt(det) / BoxOfSecondPoints(problem).Area());

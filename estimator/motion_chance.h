@@ -19,7 +19,7 @@
 #pragma once
 
 #include "estimator/geometry/pose.h"
-#include "estimator/kernels/match_blocks.h"
+#include "estimator/motion_problem.h"
 
 namespace rcme {
 
@@ -27,13 +27,11 @@ namespace rcme {
 // image 2 is at most threshold sigma^2. "Image 2" is the least upright rectangle around the second points in
 // it, as random matches lie where points are. At most 128 matches, evenly spaced in their order, are looked
 // at.
-double ChanceOfAgreement(const MotionProblem& problem, const MatchBlocks& matches, const RelativePose& pose,
-                         double threshold);
+double ChanceOfAgreement(const MotionProblem& problem, const RelativePose& pose, double threshold);
 
-// The same for a rotation without a translation, and d2 <= threshold (kernels/rotation_equations.h): the area
-// of the ellipse over that of the rectangle.
-double ChanceOfAgreementWithRotation(const MotionProblem& problem, const MatchBlocks& matches,
-                                     double threshold);
+// The same for a rotation without a translation, and d2 <= threshold (refinement/rotation_equations.h): the
+// area of the ellipse over that of the rectangle.
+double ChanceOfAgreementWithRotation(const MotionProblem& problem, double threshold);
 
 // Models of one kind: `num_fixing` matches on their borders fix at most so many of them.
 struct ModelFamily {

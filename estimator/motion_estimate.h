@@ -60,7 +60,7 @@ struct MotionEstimate {
   bool failed_by_kappa = false;   // n*_I / n_I <= kappa
 
   // Matches, of all, that agree with the refined motion: squared Sampson distance within
-  // ConsistencyThreshold (refine_winner.h). The motion's covariance plays no part: a motion that is hardly
+  // ConsistencyThreshold (motion_tests.h). The motion's covariance plays no part: a motion that is hardly
   // determined explains no more for that.
   int num_explained = 0;
 

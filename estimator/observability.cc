@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "estimator/geometry/essential_matrix.h"
-#include "estimator/kernels/score.h"
+#include "estimator/match_whitening.h"
 #include "estimator/motion_chance.h"
 #include "estimator/refinement/fit_set.h"
 #include "stats/distributions.h"
@@ -15,64 +15,51 @@ namespace rcme {
 namespace {
 
 bool HasExcessEnergy(const RotationFit& rotation, double significance_level) {
-  const int num_fitted = CountIn(rotation.fitted);
-  return num_fitted >= 3 && ChiSquareCdf(2 * num_fitted - 3, rotation.energy) > 1.0 - significance_level;
-}
-
-double ThresholdOfTail(const MatchBlocks& matches, double significance_level) {
-  return -2.0 * std::log(significance_level / matches.num_matches());
+  return rotation.num_fitted >= 3 &&
+         ChiSquareCdf(2 * rotation.num_fitted - 3, rotation.energy) > 1.0 - significance_level;
 }
 
 }  // namespace
 
-RotationTest TestRotationAlone(const MotionProblem& problem, const MatchBlocks& matches,
-                               const RelativePose& pose, double significance_level) {
-  const double threshold = ChiSquareQuantile(1, 1.0 - kFitSignificance), third = significance_level / 3.0;
-  double F[9];
-  WriteRowMajor(matches.FundamentalFromEssential(EssentialFromPose(pose)), F);
-  InlierScan scan(matches);
-  ScanKnownPose(matches, F, threshold, &scan);
+double AgreementThreshold() { return ChiSquareQuantile(1, 1.0 - kFitSignificance); }
 
-  RotationTest test;
-  const double tail = ThresholdOfTail(matches, third);
-  test.rotation = FitRotation(matches, scan.inliers, pose.R, tail);
-  test.num_agreeing = scan.num_inliers;
-  test.num_beyond = test.num_agreeing - CountIn(test.rotation.fitted);
-  const int n = matches.num_matches(), num_within = CountIn(test.rotation.within);
-  test.num_unexplained = n - num_within;
-  if (HasExcessEnergy(test.rotation, third)) return test;
-  const double chance = ChanceOfAgreement(problem, matches, pose, threshold);
-  const double of_rotation =
-      LogFalseAlarms(kRotations, n, num_within, ChanceOfAgreementWithRotation(problem, matches, tail));
-  const double of_motion = LogFalseAlarms(kMotions, n, test.num_agreeing, chance);
-  if (of_rotation > std::min(std::log(third), of_motion)) return test;
-  const ModelFamily& family = CountIn(test.rotation.fitted) >= 10 ? kDirections : kMotions;
-  test.explains_matches =
-      LogFalseAlarms(family, test.num_unexplained, test.num_beyond, chance) > std::log(third);
-  return test;
+double TailThreshold(int num_matches, double significance_level) {
+  return -2.0 * std::log(significance_level / 3.0 / num_matches);
 }
 
-RotationTest TestRotationAloneFrom(const MotionProblem& problem, const MatchBlocks& matches,
-                                   const RelativePose& start, const MatchMask& support,
-                                   double significance_level) {
-  const RotationFit fit =
-      FitRotation(matches, support, start.R, ThresholdOfTail(matches, significance_level / 3.0));
-  return TestRotationAlone(problem, matches, {fit.R, start.t}, significance_level);
+void DecideRotationTest(const MotionProblem& problem, const RelativePose& pose, double significance_level,
+                        RotationTest* test) {
+  const int n = static_cast<int>(problem.matches.size());
+  const double third = significance_level / 3.0;
+  const RotationFit& rotation = test->rotation;
+  test->num_beyond = test->num_agreeing - rotation.num_fitted;
+  test->num_unexplained = n - rotation.num_within;
+  if (HasExcessEnergy(rotation, third)) return;
+  const double chance = ChanceOfAgreement(problem, pose, AgreementThreshold());
+  const double chance_of_rotation =
+      ChanceOfAgreementWithRotation(problem, TailThreshold(n, significance_level));
+  const double log_nfa_of_rotation = LogFalseAlarms(kRotations, n, rotation.num_within, chance_of_rotation);
+  const double log_nfa_of_motion = LogFalseAlarms(kMotions, n, test->num_agreeing, chance);
+  if (log_nfa_of_rotation > std::min(std::log(third), log_nfa_of_motion)) return;
+  const ModelFamily& family = rotation.num_fitted >= 10 ? kDirections : kMotions;
+  test->explains_matches =
+      LogFalseAlarms(family, test->num_unexplained, test->num_beyond, chance) > std::log(third);
 }
 
-double NoiseShareOfDirection(const MatchBlocks& matches, const std::vector<int>& fitted,
+double NoiseShareOfDirection(const MotionProblem& problem, const std::vector<int>& fitted,
                              const RelativePose& pose, const Eigen::Matrix2d& direction_cov) {
-  const RayScale& s = matches.ray_scale();
+  const MatchWhitening whitening(problem);
+  const RayScale& s = whitening.ray_scale();
   Eigen::Matrix3d axes, axes_in_cam1;  // t, B, column by column
   axes << pose.t, DirectionBasis(pose.t);
   axes_in_cam1 = pose.R.transpose() * axes;
   const double most = MaxLeverage(static_cast<int>(fitted.size()));
   Eigen::Matrix2d noise = Eigen::Matrix2d::Zero();
   for (const int i : fitted) {
-    const MatchBlock& block = matches[i / kBlockSize];
-    const int lane = i % kBlockSize;
-    const Eigen::Vector3d ray1(s.x1 * block.x1[lane], s.y1 * block.y1[lane], 1.0);
-    const Eigen::Vector3d ray2(s.x2 * block.x2[lane], s.y2 * block.y2[lane], 1.0);
+    const Correspondence& match = problem.matches[static_cast<size_t>(i)];
+    const Eigen::Vector2d x1 = whitening.WhitenPoint1(match.x1_px), x2 = whitening.WhitenPoint2(match.x2_px);
+    const Eigen::Vector3d ray1(s.x1 * x1.x(), s.y1 * x1.y(), 1.0);
+    const Eigen::Vector3d ray2(s.x2 * x2.x(), s.y2 * x2.y(), 1.0);
     const Eigen::Vector3d y = pose.R * ray1, ray2_in_cam1 = pose.R.transpose() * ray2;
     Eigen::Matrix<double, 3, 4> J;  // d(axes' m) / d(x2, y2, x1, y1) in units of sigma: v'(y x d) = (v x y)'d
     for (int k = 0; k < 3; ++k) {

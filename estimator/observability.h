@@ -8,8 +8,8 @@
 //
 // Null hypothesis: the right matches follow a rotation, the rest is random. The best rotation is fitted to
 // the matches that agree with the motion, d2 = e' C^-1 e the squared two-dimensional transfer residual of
-// each (kernels/rotation_equations.h). The null hypothesis is rejected at level alpha, a third of it for each
-// of:
+// each (refinement/rotation_equations.h). The null hypothesis is rejected at level alpha, a third of it for
+// each of:
 //
 //   tail    a right match lies beyond c = -2 log(alpha / 3n), which chi2_2 exceeds with probability alpha /
 //   3n;
@@ -27,7 +27,6 @@
 #pragma once
 
 #include "estimator/geometry/pose.h"
-#include "estimator/kernels/match_blocks.h"
 #include "estimator/motion_problem.h"
 #include "estimator/refinement/rotation_mle.h"
 
@@ -41,16 +40,38 @@ struct RotationTest {
   int num_unexplained = 0;  // of all matches, beyond c
 };
 
+// The bounds of the test: chi2_1 of the matches that agree with the motion, and c.
+double AgreementThreshold();
+double TailThreshold(int num_matches, double significance_level);
+
+// The verdict from the fit to the matches that agree with `pose`: fills the other fields.
+void DecideRotationTest(const MotionProblem& problem, const RelativePose& pose, double significance_level,
+                        RotationTest* test);
+
 // `pose` is the refined motion; alpha is the greatest probability that matches which follow a rotation are
-// taken for a motion with a direction.
-RotationTest TestRotationAlone(const MotionProblem& problem, const MatchBlocks& matches,
-                               const RelativePose& pose, double significance_level);
+// taken for a motion with a direction. `Matches`: see refine_winner.h.
+template <typename Matches>
+RotationTest TestRotationAlone(const Matches& matches, const RelativePose& pose, double significance_level) {
+  const typename Matches::Set agreeing = matches.FindConsistent(pose, AgreementThreshold());
+  const double threshold =
+      TailThreshold(static_cast<int>(matches.problem().matches.size()), significance_level);
+  RotationTest test;
+  test.rotation = FitRotation(matches, agreeing, pose.R, threshold);
+  test.num_agreeing = matches.Count(agreeing);
+  DecideRotationTest(matches.problem(), pose, significance_level, &test);
+  return test;
+}
 
 // Where the refinement of a motion begun at `start` with the matches `support` has diverged, as it may for
 // want of a parallax. Any direction fits a rotation, so the start's is taken.
-RotationTest TestRotationAloneFrom(const MotionProblem& problem, const MatchBlocks& matches,
-                                   const RelativePose& start, const MatchMask& support,
-                                   double significance_level);
+template <typename Matches>
+RotationTest TestRotationAloneFrom(const Matches& matches, const RelativePose& start,
+                                   const typename Matches::Set& support, double significance_level) {
+  const double threshold =
+      TailThreshold(static_cast<int>(matches.problem().matches.size()), significance_level);
+  const RotationFit fit = FitRotation(matches, support, start.R, threshold);
+  return TestRotationAlone(matches, {fit.R, start.t}, significance_level);
+}
 
 // The greatest share, over the directions, of the direction's information that is noise.
 //
@@ -61,7 +82,7 @@ RotationTest TestRotationAloneFrom(const MotionProblem& problem, const MatchBloc
 // returned is the greatest eigenvalue of direction_cov N. A match whose own share is beyond
 // MaxLeverage, next to an epipole, is left out as in the fit set. At share q the reported standard deviation
 // is too small by sqrt(1 - q).
-double NoiseShareOfDirection(const MatchBlocks& matches, const std::vector<int>& fitted,
+double NoiseShareOfDirection(const MotionProblem& problem, const std::vector<int>& fitted,
                              const RelativePose& pose, const Eigen::Matrix2d& direction_cov);
 
 // More than this is refused: standard deviations would be more than 13 % too small.

@@ -1,6 +1,7 @@
 #include "estimator/reference_matches.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "estimator/geometry/sampson.h"
@@ -36,13 +37,34 @@ ReferenceMatches::Set ReferenceMatches::All() const {
   return all;
 }
 
-int ReferenceMatches::CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {
+ReferenceMatches::Set ReferenceMatches::FindConsistent(const RelativePose& pose, double threshold) const {
   const Eigen::Matrix3d F =
       FundamentalFromEssential(EssentialFromPose(pose), problem_.camera1, problem_.camera2);
   const double bound = problem_.sigma_px * problem_.sigma_px * threshold;
-  return static_cast<int>(std::count_if(set.begin(), set.end(), [&](int index) {
-    return SquaredSampsonDistance(F, problem_.matches[static_cast<size_t>(index)]) < bound;
-  }));
+  Set consistent = All();
+  std::erase_if(consistent, [&](int index) {
+    return !(SquaredSampsonDistance(F, problem_.matches[static_cast<size_t>(index)]) <= bound);
+  });
+  return consistent;
+}
+
+int ReferenceMatches::CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {
+  return Count(Intersect(FindConsistent(pose, threshold), set));
+}
+
+RotationEquations ReferenceMatches::LinearizeRotation(const Set& set, const Eigen::Matrix3d& R,
+                                                      Loss loss) const {
+  return rcme::LinearizeRotation(problem_, set, R, loss);
+}
+
+ReferenceMatches::Set ReferenceMatches::FindRotated(const Eigen::Matrix3d& R, double threshold) const {
+  return rcme::FindRotated(problem_, R, threshold);
+}
+
+ReferenceMatches::Set ReferenceMatches::Intersect(const Set& a, const Set& b) const {
+  Set both;
+  std::ranges::set_intersection(a, b, std::back_inserter(both));
+  return both;
 }
 
 }  // namespace rcme

@@ -1,27 +1,30 @@
 #pragma once
 
 #include "estimator/geometry/essential_matrix.h"
-#include "estimator/kernels/match_blocks.h"
 #include "estimator/motion_problem.h"
 #include "estimator/ransac_options.h"
 #include "estimator/refinement/fit_set.h"
+#include "estimator/refinement/rotation_equations.h"
 
 namespace rcme {
 
-// Sets of matches as ascending indices, looked at one by one; see refine_winner.h.
+// Sets of matches as ascending indices, looked at one by one; see refine_winner.h. Shares no code with the
+// kernels.
 class ReferenceMatches {
  public:
   using Set = std::vector<int>;
-  ReferenceMatches(const MotionProblem& problem, RefinementError error)
-      : problem_(problem), blocks_(problem), error_(error) {}
+  ReferenceMatches(const MotionProblem& problem, RefinementError error) : problem_(problem), error_(error) {}
 
   const MotionProblem& problem() const { return problem_; }
-  const MatchBlocks& blocks() const { return blocks_; }
   RelativePose SelectPose(const EssentialProjection& projection, const Set& set) const;
   RefinedMotion Refine(const Set& set, const RelativePose& start, Loss loss) const;
   Set FindAgreeing(const RefinedMotion& motion, const Set& fitted, double significance_level) const;
   Set SelectFitSet(const RefinedMotion& motion, const Set& fitted) const;
+  Set FindConsistent(const RelativePose& pose, double threshold) const;
   int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
+  RotationEquations LinearizeRotation(const Set& set, const Eigen::Matrix3d& R, Loss loss) const;
+  Set FindRotated(const Eigen::Matrix3d& R, double threshold) const;
+  Set Intersect(const Set& a, const Set& b) const;
   Set SetOf(const std::vector<int>& indices) const { return indices; }
   Set All() const;
   const std::vector<int>& IndicesOf(const Set& set) const { return set; }
@@ -29,7 +32,6 @@ class ReferenceMatches {
 
  private:
   const MotionProblem& problem_;
-  MatchBlocks blocks_;
   RefinementError error_;
 };
 

@@ -1,21 +1,27 @@
 // Box 4 of the paper: from the winner of the loop and its inlier set to the estimate.
 //
-// Written once for two ways to hold a set of matches, reference_matches.h and kernels/block_matches.h:
+// Written once for two ways to hold a set of matches and to sum over it, reference_matches.h (one match at a
+// time) and kernels/block_matches.h (many at a time):
 //
 //   struct Matches {
 //     using Set = ...;
 //     const MotionProblem& problem() const;
-//     const MatchBlocks& blocks() const;  // all matches
 //     // cheirality
 //     RelativePose SelectPose(projection, set) const;
 //     RefinedMotion Refine(set, start, loss) const;
 //     // refinement/fit_set.h
 //     Set FindAgreeing(motion, fitted, significance_level) const;
 //     Set SelectFitSet(motion, fitted) const;
-//     // squared Sampson distance over sigma^2 below the threshold
+//     // of all matches: squared Sampson distance over sigma^2 at most the threshold; and how many of a set
+//     Set FindConsistent(pose, threshold) const;
 //     int CountConsistent(set, pose, threshold) const;
+//     // refinement/rotation_equations.h
+//     RotationEquations LinearizeRotation(set, R, loss) const;
+//     Set FindRotated(R, threshold) const;
+//
 //     Set SetOf(sorted_indices) const;
 //     Set All() const;
+//     Set Intersect(a, b) const;
 //     std::vector<int> IndicesOf(set) const;
 //     int Count(set) const;
 //   };
@@ -25,8 +31,8 @@
 #include <optional>
 
 #include "estimator/hypothesis.h"
-#include "estimator/kernels/match_blocks.h"
 #include "estimator/motion_estimate.h"
+#include "estimator/motion_tests.h"
 #include "estimator/ransac_options.h"
 #include "estimator/refinement/motion_search.h"
 
@@ -93,21 +99,6 @@ Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis* w
   return {{true, winner->pose, winner->pose_cov, 0}, matches.SetOf(sample)};
 }
 
-// The threshold of "reprojection error consistent", chi2_2(1 - alpha) (Sec. metric). The error is the squared
-// Sampson distance, its first-order minimum over the point; Huber's function does not change the verdict as
-// long as its corner lies at or beyond the threshold.
-double ConsistencyThreshold(double significance_level);
-
-// Refuses a motion that explains no more than chance does (motion_chance.h), or whose direction cannot be
-// observed (observability.h): then direction and its covariance are NaN, and the rotation is that of the best
-// rotation alone where it explains the matches, else the motion's. `num_explained` is known.
-void RefuseByMotionTests(const MotionProblem& problem, const MatchBlocks& matches,
-                         const RansacOptions& options, MotionEstimate* estimate);
-
-// A refinement that diverged from `start` and its matches: for want of a parallax, or for another reason.
-void ExplainDivergence(const MotionProblem& problem, const MatchBlocks& matches, const RansacOptions& options,
-                       const RelativePose& start, const MatchMask& support, MotionEstimate* estimate);
-
 std::string DivergenceMessage(int num_support, int num_fitted);
 std::string SuccessMessage(int num_inliers, int num_matches);
 
@@ -132,8 +123,7 @@ void RefineWinner(const Matches& matches, const RansacOptions& options, const Sa
   if (!refined.converged) {
     estimate->status = MotionStatus::kRefinementDiverged;
     estimate->message = DivergenceMessage(matches.Count(support), matches.Count(fit.fitted));
-    ExplainDivergence(matches.problem(), matches.blocks(), options, winner.pose,
-                      MaskOf(matches.IndicesOf(support), matches.blocks()), estimate);
+    ExplainDivergence(matches, options, winner.pose, support, estimate);
     return;
   }
   estimate->status = MotionStatus::kOk;
@@ -149,7 +139,7 @@ void RefineWinner(const Matches& matches, const RansacOptions& options, const Sa
       estimate->num_consistent_after <= options.kappa * estimate->num_consistent_before;  // (eq::metric)
   estimate->message = SuccessMessage(static_cast<int>(estimate->inliers.size()),
                                      static_cast<int>(matches.problem().matches.size()));
-  RefuseByMotionTests(matches.problem(), matches.blocks(), options, estimate);
+  RefuseByMotionTests(matches, options, estimate);
 }
 
 }  // namespace rcme

@@ -1,12 +1,12 @@
 // The parts of a call of the RANSAC family: check, loop, cheirality, refinement.
+//
+// An engine makes the hypotheses (`search`, see ransac_loop.h) and holds the matches for the refinement
+// (`matches`, see refine_winner.h): reference_engine.h or kernels/fast_engine.h.
 #pragma once
 
 #include "estimator/hypothesis_trace.h"
-#include "estimator/kernels/block_matches.h"
-#include "estimator/kernels/block_search.h"
 #include "estimator/ransac_estimator.h"
-#include "estimator/reference_matches.h"
-#include "estimator/reference_search.h"
+#include "estimator/reference_engine.h"
 #include "estimator/refine_winner.h"
 
 namespace rcme {
@@ -22,34 +22,6 @@ MotionEstimate RefusalFromLoop(const LoopCounts& counts);
 
 // Refuses an estimate that explains too few of `num_matches`.
 void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEstimate* estimate);
-
-// An engine makes the hypotheses (search, see ransac_loop.h) and holds the matches for the refinement
-// (matches, see refine_winner.h).
-template <typename Pipeline>
-struct ReferenceEngine {
-  ReferenceEngine(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
-      : search(problem, options, rng), matches(problem, options.refinement_error) {}
-  ReferenceSearch<Pipeline> search;
-  ReferenceMatches matches;
-};
-
-template <typename Pipeline>
-struct FastEngine {
-  using PointTest = typename Pipeline::PointTest;
-  static constexpr BlockSearch::Reading kReading =
-      std::is_same_v<PointTest, KnownPoseTest>   ? BlockSearch::Reading::kKnownPose
-      : std::is_same_v<PointTest, RankAwareTest> ? BlockSearch::Reading::kRankAware
-                                                 : BlockSearch::Reading::kAsPrinted;
-  FastEngine(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
-      : blocks(problem),
-        search(problem, blocks, options,
-               {kReading, Pipeline::kTestsSample, options.selection == Selection::kPredictiveLikelihood},
-               rng),
-        matches(problem, blocks, options.refinement_error) {}
-  MatchBlocks blocks;
-  BlockSearch search;
-  BlockMatches matches;
-};
 
 // The estimate from one candidate, before others are looked at.
 template <typename Engine>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimator/kernels/fast_engine.h"
 #include "estimator/ransac_estimator.h"
 #include "estimator/run_pipeline.h"
 

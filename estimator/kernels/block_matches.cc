@@ -1,11 +1,13 @@
 #include "estimator/kernels/block_matches.h"
 
 #include <limits>
+#include <utility>
 
 #include "estimator/kernels/agreement.h"
+#include "estimator/kernels/rotation_equations.h"
+#include "estimator/kernels/sampson_equations.h"
 #include "estimator/refinement/fit_set.h"
 #include "estimator/refinement/reprojection_mle.h"
-#include "estimator/refinement/sampson_mle.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -46,12 +48,26 @@ MatchMask BlockMatches::SelectFitSet(const RefinedMotion& motion, const Set& fit
                     {ChiSquareQuantile(1, 1.0 - kFitSignificance), MaxLeverage(CountIn(fitted))});
 }
 
-int BlockMatches::CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {
+MatchMask BlockMatches::FindConsistent(const RelativePose& pose, double threshold) const {
   InlierScan scan(matches_);
   double F[9];
   WriteRowMajor(matches_.FundamentalFromEssential(EssentialFromPose(pose)), F);
   ScanKnownPose(matches_, F, threshold, &scan);
-  return CountInBoth(scan.inliers, set);
+  return std::move(scan.inliers);
+}
+
+int BlockMatches::CountConsistent(const Set& set, const RelativePose& pose, double threshold) const {
+  return CountInBoth(FindConsistent(pose, threshold), set);
+}
+
+RotationEquations BlockMatches::LinearizeRotation(const Set& set, const Eigen::Matrix3d& R, Loss loss) const {
+  return rcme::LinearizeRotation(matches_, set, R, loss);
+}
+
+MatchMask BlockMatches::FindRotated(const Eigen::Matrix3d& R, double threshold) const {
+  InlierScan scan(matches_);
+  ScanRotation(matches_, R, threshold, &scan);
+  return std::move(scan.inliers);
 }
 
 }  // namespace rcme

@@ -3,7 +3,7 @@
 #include "estimator/kernels/match_blocks.h"
 #include "estimator/kernels/score.h"
 #include "estimator/ransac_options.h"
-#include "estimator/refinement/motion_search.h"
+#include "estimator/refinement/rotation_equations.h"
 
 namespace rcme {
 
@@ -16,12 +16,15 @@ class BlockMatches {
       : problem_(problem), matches_(matches), error_(error) {}
 
   const MotionProblem& problem() const { return problem_; }
-  const MatchBlocks& blocks() const { return matches_; }
   RelativePose SelectPose(const EssentialProjection& projection, const Set& set) const;
   RefinedMotion Refine(const Set& set, const RelativePose& start, Loss loss) const;
   Set FindAgreeing(const RefinedMotion& motion, const Set& fitted, double significance_level) const;
   Set SelectFitSet(const RefinedMotion& motion, const Set& fitted) const;
+  Set FindConsistent(const RelativePose& pose, double threshold) const;
   int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
+  RotationEquations LinearizeRotation(const Set& set, const Eigen::Matrix3d& R, Loss loss) const;
+  Set FindRotated(const Eigen::Matrix3d& R, double threshold) const;
+  Set Intersect(const Set& a, const Set& b) const { return Intersection(a, b); }
   Set SetOf(const std::vector<int>& indices) const { return MaskOf(indices, matches_); }
   Set All() const { return matches_.All(); }
   std::vector<int> IndicesOf(const Set& set) const { return rcme::IndicesOf(set); }

@@ -6,25 +6,18 @@ namespace rcme {
 
 MatchBlocks::MatchBlocks(const MotionProblem& problem)
     : blocks_((problem.matches.size() + kBlockSize - 1) / kBlockSize),
-      ray_scale_{problem.sigma_px / problem.camera1.fx, problem.sigma_px / problem.camera1.fy,
-                 problem.sigma_px / problem.camera2.fx, problem.sigma_px / problem.camera2.fy},
+      whitening_(problem),
       num_matches_(static_cast<int>(problem.matches.size())) {
-  const double unit = 1.0 / problem.sigma_px;
-  const Camera &camera1 = problem.camera1, &camera2 = problem.camera2;
   for (size_t i = 0; i < problem.matches.size(); ++i) {
-    const Correspondence& match = problem.matches[i];
+    const Eigen::Vector2d x1 = whitening_.WhitenPoint1(problem.matches[i].x1_px);
+    const Eigen::Vector2d x2 = whitening_.WhitenPoint2(problem.matches[i].x2_px);
     MatchBlock& block = blocks_[i / kBlockSize];
     const size_t lane = i % kBlockSize;
-    block.x1[lane] = unit * (match.x1_px.x() - camera1.cx);
-    block.y1[lane] = unit * (match.x1_px.y() - camera1.cy);
-    block.x2[lane] = unit * (match.x2_px.x() - camera2.cx);
-    block.y2[lane] = unit * (match.x2_px.y() - camera2.cy);
+    block.x1[lane] = x1.x();
+    block.y1[lane] = x1.y();
+    block.x2[lane] = x2.x();
+    block.y2[lane] = x2.y();
   }
-}
-
-Eigen::Matrix3d MatchBlocks::FundamentalFromEssential(const Eigen::Matrix3d& E) const {
-  return Eigen::Vector3d(ray_scale_.x2, ray_scale_.y2, 1.0).asDiagonal() * E *
-         Eigen::Vector3d(ray_scale_.x1, ray_scale_.y1, 1.0).asDiagonal();
 }
 
 MatchMask MatchBlocks::All() const {
@@ -53,6 +46,12 @@ MatchMask MaskOf(std::span<const int> indices, const MatchBlocks& matches) {
     byte = static_cast<std::uint8_t>(byte | (1 << (i % kBlockSize)));
   }
   return mask;
+}
+
+MatchMask Intersection(const MatchMask& a, const MatchMask& b) {
+  MatchMask both(a.size());
+  for (size_t block = 0; block < a.size(); ++block) both[block] = a[block] & b[block];
+  return both;
 }
 
 int CountIn(const MatchMask& mask) { return CountInBoth(mask, mask); }

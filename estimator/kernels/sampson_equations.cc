@@ -189,5 +189,14 @@ Matrix5d SampsonInformation(const MatchBlocks& matches, const MatchMask& mask, c
   return FromTriangle(triangle);
 }
 
+RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& start,
+                              Loss loss) {
+  const SampsonEquations equations{
+      CountIn(mask),
+      [&](const RelativePose& pose, Loss rho) { return LinearizeSampson(matches, mask, pose, rho); },
+      [&](const RelativePose& pose) { return SampsonInformation(matches, mask, pose); }};
+  return RefineBySampson(equations, start, loss);
+}
+
 }  // namespace rcme
 #endif

@@ -1,8 +1,9 @@
-// The normal equations of the Sampson distance, many matches at a time.
+// The normal equations of the Sampson distance, many matches at a time: what refinement/sampson_equations.h
+// states, in whitened coordinates.
 #pragma once
 
 #include "estimator/kernels/match_blocks.h"
-#include "estimator/refinement/motion_search.h"
+#include "estimator/refinement/sampson_mle.h"
 
 namespace rcme {
 
@@ -22,5 +23,9 @@ NormalEquations LinearizeSampson(const MatchBlocks& matches, const MatchMask& ma
 
 // sum g_p' g_p / var g over the matches of the mask.
 Matrix5d SampsonInformation(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose);
+
+// The search of refinement/sampson_mle.h with these equations.
+RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& start,
+                              Loss loss);
 
 }  // namespace rcme

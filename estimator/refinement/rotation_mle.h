@@ -1,22 +1,68 @@
+// The rotation without a translation that fits a set of matches best.
+//
+// `Matches` holds sets of matches and sums their equations, refinement/rotation_equations.h or
+// kernels/rotation_equations.h; its interface: refine_winner.h.
 #pragma once
 
-#include "estimator/kernels/match_blocks.h"
+#include <functional>
+#include <utility>
+
+#include "estimator/refinement/rotation_equations.h"
 
 namespace rcme {
 
-// The rotation without a translation that fits a set of matches best.
 struct RotationFit {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();         // cam2_from_cam1
   Eigen::Matrix3d rotation_cov = Eigen::Matrix3d::Zero();  // 3x3, rad^2, as the block of pose_cov
-  MatchMask within;  // of all matches: d2 <= threshold under R (rotation_equations.h)
-  MatchMask fitted;  // of the set: the same
+  int num_within = 0;                                      // of all matches: d2 <= threshold under R
+  int num_fitted = 0;                                      // of the set: the same; these were fitted
   double energy =
-      0.0;  // sum d2 over `fitted`; chi-square with 2 |fitted| - 3 degrees of freedom for a rotation
+      0.0;  // sum d2 over these; chi-square with 2 num_fitted - 3 degrees of freedom for a rotation
 };
 
+// Reweighted least squares from `start`, to a step of 0.001 standard deviations; of 0.1 with Cauchy's loss,
+// which serves to find the wrong matches.
+Eigen::Matrix3d MinimizeOverRotation(
+    const Eigen::Matrix3d& start, Loss loss,
+    const std::function<RotationEquations(const Eigen::Matrix3d& R, Loss loss)>& linearize);
+
+// The inverse of the Hessian; not finite where it is singular.
+Eigen::Matrix3d CovarianceOf(const RotationEquations& equations);
+
+// Most fits after the robust one.
+inline constexpr int kMaxRotationRefits = 10;
+
 // From `start` with Cauchy's loss over the set, then maximum likelihood over its matches within the
-// threshold, until they do not change any more. `fitted` is empty where fewer than three matches are left.
-RotationFit FitRotation(const MatchBlocks& matches, const MatchMask& set, const Eigen::Matrix3d& start,
-                        double threshold);
+// threshold, until they do not change any more. None are fitted where fewer than three are left.
+template <typename Matches>
+RotationFit FitRotation(const Matches& matches, const typename Matches::Set& set,
+                        const Eigen::Matrix3d& start, double threshold) {
+  using Set = typename Matches::Set;
+  const auto minimize = [&](const Set& over, const Eigen::Matrix3d& from, Loss loss) {
+    return MinimizeOverRotation(from, loss, [&](const Eigen::Matrix3d& R, Loss rho) {
+      return matches.LinearizeRotation(over, R, rho);
+    });
+  };
+  RotationFit fit{.R = minimize(set, start, Loss::kCauchy)};
+  Set fitted;
+  for (int refit = 0; refit < kMaxRotationRefits; ++refit) {
+    const Set within = matches.FindRotated(fit.R, threshold);
+    Set selected = matches.Intersect(within, set);
+    const bool is_same = refit > 0 && selected == fitted;
+    fit.num_within = matches.Count(within);
+    fitted = std::move(selected);
+    if (is_same) break;
+    if (matches.Count(fitted) < 3) {
+      fitted = matches.SetOf({});
+      break;
+    }
+    fit.R = minimize(fitted, fit.R, Loss::kSquared);
+  }
+  const RotationEquations at = matches.LinearizeRotation(fitted, fit.R, Loss::kSquared);
+  fit.num_fitted = matches.Count(fitted);
+  fit.energy = at.energy;
+  fit.rotation_cov = CovarianceOf(at);
+  return fit;
+}
 
 }  // namespace rcme

@@ -1,27 +1,31 @@
 #include "estimator/refinement/sampson_mle.h"
 
-#include "estimator/kernels/sampson_equations.h"
+#include <numeric>
+#include <vector>
+
+#include "estimator/refinement/sampson_equations.h"
 
 namespace rcme {
 
-RefinedMotion RefineBySampson(const MotionProblem& problem, std::span<const int> indices,
-                              const RelativePose& start, Loss loss) {
-  const MatchBlocks matches(problem);
-  return RefineBySampson(matches, MaskOf(indices, matches), start, loss);
+RefinedMotion RefineBySampson(const SampsonEquations& equations, const RelativePose& start, Loss loss) {
+  if (equations.num_matches < 5) return {.cam2_from_cam1 = start};
+  return MinimizeOverMotion(start, {[&](const RelativePose& pose) { return equations.linearize(pose, loss); },
+                                    equations.information, loss == Loss::kSquared ? 1e-6 : 1e-3});
 }
 
-RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& start,
-                              Loss loss) {
-  if (CountIn(mask) < 5) return {.cam2_from_cam1 = start};
-  return MinimizeOverMotion(
-      start, {[&](const RelativePose& pose) { return LinearizeSampson(matches, mask, pose, loss); },
-              [&](const RelativePose& pose) { return SampsonInformation(matches, mask, pose); },
-              loss == Loss::kSquared ? 1e-6 : 1e-3});
+RefinedMotion RefineBySampson(const MotionProblem& problem, std::span<const int> indices,
+                              const RelativePose& start, Loss loss) {
+  const SampsonEquations equations{
+      static_cast<int>(indices.size()),
+      [&](const RelativePose& pose, Loss rho) { return LinearizeSampson(problem, indices, pose, rho); },
+      [&](const RelativePose& pose) { return SampsonInformation(problem, indices, pose); }};
+  return RefineBySampson(equations, start, loss);
 }
 
 RefinedMotion RefineAllBySampson(const MotionProblem& problem, const RelativePose& start) {
-  const MatchBlocks matches(problem);
-  return RefineBySampson(matches, matches.All(), start, Loss::kSquared);
+  std::vector<int> all(problem.matches.size());
+  std::iota(all.begin(), all.end(), 0);
+  return RefineBySampson(problem, all, start, Loss::kSquared);
 }
 
 }  // namespace rcme

@@ -3,21 +3,29 @@
 // second order and the optimum is that of RefineByReprojection, at a fraction of the time.
 #pragma once
 
+#include <functional>
 #include <span>
 
-#include "estimator/kernels/match_blocks.h"
+#include "estimator/motion_problem.h"
 #include "estimator/refinement/motion_search.h"
 
 namespace rcme {
 
-// `indices` names the matches to use, at least five. pose_cov = (sum_k g_p' g_p / var g_k)^-1 at the optimum,
-// 5x5, [rotation, direction], rad^2. The last step is at most 0.0014 standard deviations long, and what it
-// leaves is of second order; with Cauchy's loss, which serves to tell the wrong matches, 0.045.
+// The equations of a set of matches, as sampson_equations.h or kernels/sampson_equations.h sums them.
+struct SampsonEquations {
+  int num_matches = 0;
+  std::function<NormalEquations(const RelativePose&, Loss)> linearize;
+  std::function<Matrix5d(const RelativePose&)> information;
+};
+
+// pose_cov = (sum_k g_p' g_p / var g_k)^-1 at the optimum, 5x5, [rotation, direction], rad^2. Not converged
+// with fewer than five matches. The last step is at most 0.0014 standard deviations long, and what it leaves
+// is of second order; with Cauchy's loss, which serves to find the wrong matches, 0.045.
+RefinedMotion RefineBySampson(const SampsonEquations& equations, const RelativePose& start, Loss loss);
+
+// One match at a time; `indices` names the matches to use.
 RefinedMotion RefineBySampson(const MotionProblem& problem, std::span<const int> indices,
                               const RelativePose& start, Loss loss);
-// The same with the matches already packed.
-RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& start,
-                              Loss loss);
 
 // All matches, squared loss: maximum likelihood where none is wrong.
 RefinedMotion RefineAllBySampson(const MotionProblem& problem, const RelativePose& start);

@@ -1,6 +1,7 @@
 """Who may include whom: parameters and stats know nothing of ours, the estimator never the truth, the simulator never
-the epipolar constraint. A file that includes against these directions, or against the order of the folders of its room,
-fails the test. With --arrows it prints the includes between folders instead."""
+the epipolar constraint, and the reference implementation none of the kernels that it is there to check. A file that
+includes against these directions, or against the order of the folders of its room, fails the test. With --arrows it
+prints the includes between folders instead."""
 
 import collections
 import pathlib
@@ -74,6 +75,37 @@ def files_of(room):
             for path in sorted((ROOT / room).rglob("*")) if path.suffix in {".h", ".cc", ".py"}]
 
 
+# What `implementation: reference` runs, but for the choice between the two implementations (estimators/).
+REFERENCE = ["estimator/reference_engine.h", "estimator/run_pipeline.h"]
+
+
+def reached_from(roots, read):
+    """The files that the roots include directly or not, with the source file beside each header; every file with the
+    one it was reached from. `read` gives a file's text, or None if there is no such file."""
+    reached, waiting = {}, [(root, None) for root in roots]
+    while waiting:
+        path, origin = waiting.pop()
+        text = None if path in reached else read(path)
+        if text is None:
+            continue
+        reached[path] = origin
+        waiting += [(included, path) for included in OUR_INCLUDE.findall(text)]
+        if path.endswith(".h"):
+            waiting.append((path[:-2] + ".cc", path))
+    return reached
+
+
+def kernels_reached_from(roots, read):
+    """The kernels among them, as sentences."""
+    return [f"{origin}: the reference may not include {path}"
+            for path, origin in sorted(reached_from(roots, read).items()) if path.startswith("estimator/kernels/")]
+
+
+def read_source(path):
+    file = ROOT / path
+    return file.read_text(encoding="utf-8") if file.is_file() else None
+
+
 class IncludeDirections(unittest.TestCase):
     def test_every_file_keeps_to_the_directions(self):
         found, num_files = [], 0
@@ -105,6 +137,20 @@ class IncludeDirections(unittest.TestCase):
         self.assertEqual(upward("experiments", arrows("experiments", above)), [])
         of_a_script = [("rates/x.py", "from common import style\nimport heat_map\n")]
         self.assertEqual(upward("plots", arrows("plots", of_a_script)), [("rates", ".")])
+
+    def test_the_reference_reaches_no_kernel(self):
+        reached = reached_from(REFERENCE, read_source)
+        for path in ["reference_matches.cc", "refinement/sampson_equations.cc", "observability.cc",
+                     "motion_tests.cc", "hypothesis.cc", "uncertainty/motion_covariance.cc"]:
+            self.assertIn("estimator/" + path, reached)
+        self.assertEqual(kernels_reached_from(REFERENCE, read_source), [])
+
+    def test_a_kernel_behind_a_source_file_is_seen(self):
+        files = {"a.h": '#include "b.h"\n', "b.h": "", "b.cc": '#include "estimator/kernels/score.h"\n',
+                 "estimator/kernels/score.h": ""}
+        self.assertEqual(kernels_reached_from(["a.h"], files.get),
+                         ["b.cc: the reference may not include estimator/kernels/score.h"])
+        self.assertTrue(kernels_reached_from(["estimator/estimators/pipeline_estimator.h"], read_source))
 
     def test_only_simulator_experiments_and_tests_speak_of_the_truth(self):
         for room in ["parameters", "stats", "estimator"]:

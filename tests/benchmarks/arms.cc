@@ -13,7 +13,6 @@
 #include "estimator/reference_search.h"
 #include "estimator/refine_winner.h"
 #include "estimator/refinement/reprojection_mle.h"
-#include "estimator/refinement/sampson_mle.h"
 #include "estimator/sample_consistency.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/trial.h"

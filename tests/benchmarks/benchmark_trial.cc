@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "estimator/refinement/sampson_mle.h"
+#include "estimator/kernels/sampson_equations.h"
 #include "stats/distributions.h"
 
 namespace rcme {

@@ -29,8 +29,7 @@ TEST(MotionChance, IsTheShareOfRandomPointsThatAgree) {
       const RelativePose pose = RandomPose(rng, 10.0);
       const Eigen::Matrix3d F =
           FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
-      const double threshold = 5.99,
-                   chance = ChanceOfAgreement(problem, MatchBlocks(problem), pose, threshold);
+      const double threshold = 5.99, chance = ChanceOfAgreement(problem, pose, threshold);
       int count = 0;
       const int per_match = 1000, n = 150 * per_match;
       for (Correspondence match : problem.matches) {

@@ -200,7 +200,7 @@ TEST(MotionTests, CoverageByNoiseShare) {
       RandomStream rng({1, 14, index, 4});
       const MotionEstimate e = MakeRansac("standard", Options(false))->Estimate(trial.problem, rng);
       if (e.status != MotionStatus::kOk || !IsRight(e, trial.pose_true)) continue;
-      const double share = NoiseShareOfDirection(MatchBlocks(trial.problem), e.inliers, e.cam2_from_cam1,
+      const double share = NoiseShareOfDirection(trial.problem, e.inliers, e.cam2_from_cam1,
                                                  e.pose_cov.bottomRightCorner<2, 2>());
       const Vector5d error = LocalCoordinates(e.cam2_from_cam1, trial.pose_true);
       const auto bin = static_cast<size_t>(std::ranges::lower_bound(kEdges, share) - kEdges);

@@ -5,8 +5,10 @@
 #include <Eigen/LU>
 
 #include "estimator/estimators/rcme.h"
+#include "estimator/kernels/block_matches.h"
 #include "estimator/kernels/rotation_equations.h"
-#include "estimator/kernels/sampson_equations.h"
+#include "estimator/reference_matches.h"
+#include "estimator/refinement/sampson_equations.h"
 #include "stats/distributions.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/random_problem.h"
@@ -91,6 +93,20 @@ TEST_F(Rotations, EquationsAreTheirDefinition) {
   }
 }
 
+RotationFit FitToAll(const MotionProblem& problem, const Eigen::Matrix3d& start, double threshold) {
+  const MatchBlocks blocks(problem);
+  const BlockMatches matches(problem, blocks, RefinementError::kSampson);
+  const RotationFit fit = FitRotation(matches, matches.All(), start, threshold);
+  const ReferenceMatches reference(problem, RefinementError::kSampson);
+  const RotationFit expected = FitRotation(reference, reference.All(), start, threshold);
+  EXPECT_LT(RotationAngleBetween(fit.R, expected.R), 1e-9);
+  EXPECT_LT((fit.rotation_cov - expected.rotation_cov).norm(), 1e-9 * expected.rotation_cov.norm());
+  EXPECT_NEAR(fit.energy, expected.energy, 1e-9 * expected.energy);
+  EXPECT_EQ(fit.num_within, expected.num_within);
+  EXPECT_EQ(fit.num_fitted, expected.num_fitted);
+  return fit;
+}
+
 // Squared errors over their covariance, 300 trials of three degrees of freedom: a covariance 25 % off in
 // variance is seen with probability .99, and a right one passes with .9999.
 TEST_F(Rotations, TheirCovarianceIsThatOfTheirError) {
@@ -98,9 +114,8 @@ TEST_F(Rotations, TheirCovarianceIsThatOfTheirError) {
   double sum = 0.0;
   for (int trial = 0; trial < 300; ++trial) {
     const RotationCase c = MakeRotationCase(40, rng);
-    const MatchBlocks matches(c.problem);
     const Eigen::Matrix3d start = RotationFromVector(0.01 * RandomDirection(rng)) * c.R_true;
-    const RotationFit fit = FitRotation(matches, matches.All(), start, 30.0);
+    const RotationFit fit = FitToAll(c.problem, start, 30.0);
     const Eigen::Vector3d error = VectorFromRotation(c.R_true * fit.R.transpose());
     sum += error.dot(fit.rotation_cov.inverse() * error);
   }
@@ -114,10 +129,9 @@ TEST_F(Rotations, AThirdOfWrongMatchesIsLeftOut) {
     RotationCase c = MakeRotationCase(90, rng);
     for (size_t i = 0; i < 90; i += 3)
       c.problem.matches[i].x2_px << rng.Uniform(0.0, 799.0), rng.Uniform(0.0, 599.0);
-    const MatchBlocks matches(c.problem);
     const Eigen::Matrix3d start = RotationFromVector(0.01 * RandomDirection(rng)) * c.R_true;
-    const RotationFit fit = FitRotation(matches, matches.All(), start, 25.0);
-    EXPECT_NEAR(CountIn(fit.fitted), 60, 1) << trial;
+    const RotationFit fit = FitToAll(c.problem, start, 25.0);
+    EXPECT_NEAR(fit.num_fitted, 60, 1) << trial;
     EXPECT_LT(RotationAngleBetween(fit.R, c.R_true), 0.001) << trial;
   }
 }
@@ -128,8 +142,7 @@ TEST_F(Rotations, TheEnergyOfNoiseHasTheStatedLaw) {
   int num_above = 0;
   for (int trial = 0; trial < 400; ++trial) {
     const RotationCase c = MakeRotationCase(20, rng);
-    const MatchBlocks matches(c.problem);
-    const RotationFit fit = FitRotation(matches, matches.All(), c.R_true, 1e6);
+    const RotationFit fit = FitToAll(c.problem, c.R_true, 1e6);
     num_above += fit.energy > ChiSquareQuantile(37, 0.9);
   }
   EXPECT_GT(num_above, 16);
@@ -207,10 +220,10 @@ TEST(NoiseShareOfDirection, IsOneWithoutParallaxAndNothingWithMuch) {
     // "about".
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 400, .min_depth = 1e9, .max_depth = 2e9});
     AddNoise(0.5, rng, &random.problem);
-    const MatchBlocks matches(random.problem);
-    const Matrix5d information = SampsonInformation(matches, matches.All(), random.pose_true);
+    const std::vector<int> all = ReferenceMatches(random.problem, RefinementError::kSampson).All();
+    const Matrix5d information = SampsonInformation(random.problem, all, random.pose_true);
     const Eigen::Matrix2d direction_cov = information.bottomRightCorner<2, 2>().inverse();
-    sum += NoiseShareOfDirection(matches, IndicesOf(matches.All()), random.pose_true, direction_cov) / 40.0;
+    sum += NoiseShareOfDirection(random.problem, all, random.pose_true, direction_cov) / 40.0;
   }
   EXPECT_GT(
       sum,
@@ -218,11 +231,9 @@ TEST(NoiseShareOfDirection, IsOneWithoutParallaxAndNothingWithMuch) {
   EXPECT_LT(sum, 1.4);
   RandomProblem near = MakeRandomProblem(rng, {.num_matches = 400});
   AddNoise(0.5, rng, &near.problem);
-  const MatchBlocks matches(near.problem);
-  const Matrix5d cov = SampsonInformation(matches, matches.All(), near.pose_true).inverse();
-  EXPECT_LT(
-      NoiseShareOfDirection(matches, IndicesOf(matches.All()), near.pose_true, cov.bottomRightCorner<2, 2>()),
-      0.02);
+  const std::vector<int> all = ReferenceMatches(near.problem, RefinementError::kSampson).All();
+  const Matrix5d cov = SampsonInformation(near.problem, all, near.pose_true).inverse();
+  EXPECT_LT(NoiseShareOfDirection(near.problem, all, near.pose_true, cov.bottomRightCorner<2, 2>()), 0.02);
 }
 
 }  // namespace

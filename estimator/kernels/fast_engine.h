@@ -1,0 +1,28 @@
+#pragma once
+
+#include "estimator/kernels/block_matches.h"
+#include "estimator/kernels/block_search.h"
+#include "estimator/point_consistency.h"
+
+namespace rcme {
+
+// `implementation: fast`, eight hypotheses and many matches at a time. See run_pipeline.h.
+template <typename Pipeline>
+struct FastEngine {
+  using PointTest = typename Pipeline::PointTest;
+  static constexpr BlockSearch::Reading kReading =
+      std::is_same_v<PointTest, KnownPoseTest>   ? BlockSearch::Reading::kKnownPose
+      : std::is_same_v<PointTest, RankAwareTest> ? BlockSearch::Reading::kRankAware
+                                                 : BlockSearch::Reading::kAsPrinted;
+  FastEngine(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
+      : blocks(problem),
+        search(problem, blocks, options,
+               {kReading, Pipeline::kTestsSample, options.selection == Selection::kPredictiveLikelihood},
+               rng),
+        matches(problem, blocks, options.refinement_error) {}
+  MatchBlocks blocks;
+  BlockSearch search;
+  BlockMatches matches;
+};
+
+}  // namespace rcme

@@ -1,0 +1,67 @@
+#include "estimator/motion_tests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/motion_chance.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+void DropDirection(MotionEstimate* estimate) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Matrix3d rotation_cov = estimate->pose_cov.topLeftCorner<3, 3>();
+  estimate->status = MotionStatus::kDirectionNotObservable;
+  estimate->cam2_from_cam1.t.setConstant(kNaN);
+  estimate->pose_cov.setConstant(kNaN);
+  estimate->pose_cov.topLeftCorner<3, 3>() = rotation_cov;
+}
+
+}  // namespace
+
+double ConsistencyThreshold(double significance_level) {
+  return ChiSquareQuantile(2, 1.0 - significance_level);
+}
+
+void RefuseByChance(const MotionProblem& problem, const RansacOptions& options, MotionEstimate* estimate) {
+  const int num_matches = static_cast<int>(problem.matches.size());
+  const double level = options.ChanceLevelOrDefault();
+  if (level == 1.0) return;
+  const double chance =
+      ChanceOfAgreement(problem, estimate->cam2_from_cam1, ConsistencyThreshold(options.significance_level));
+  if (LogFalseAlarms(kMotions, num_matches, estimate->num_explained, chance) <= std::log(level)) return;
+  estimate->status = MotionStatus::kNotBetterThanChance;
+  estimate->message = fmt::format(
+      "{} of {} matches agree with the motion; of random matches {:.1f} would agree with any one motion, and "
+      "as many as that with the best of all",
+      estimate->num_explained, num_matches, chance * num_matches);
+}
+
+void KeepRotationAlone(const RotationTest& test, MotionEstimate* estimate) {
+  estimate->cam2_from_cam1.R = test.rotation.R;
+  estimate->pose_cov.topLeftCorner<3, 3>() = test.rotation.rotation_cov;
+  DropDirection(estimate);
+  const int num_fitted = test.rotation.num_fitted;
+  estimate->message = fmt::format(
+      "a rotation alone explains {} of the {} matches that agree (sum of squares {:.0f}, {} expected of "
+      "noise): "
+      "no parallax beyond the noise, hence no direction",
+      num_fitted, test.num_agreeing, test.rotation.energy, 2 * num_fitted - 3);
+}
+
+void RefuseNoisyDirection(const MotionProblem& problem, MotionEstimate* estimate) {
+  const double share = NoiseShareOfDirection(problem, estimate->inliers, estimate->cam2_from_cam1,
+                                             estimate->pose_cov.bottomRightCorner<2, 2>());
+  if (share <= kMostNoiseInDirection) return;
+  DropDirection(estimate);
+  estimate->message = fmt::format(
+      "the parallax is too small against the noise: {:.0f} % of what seems to determine the direction is "
+      "noise",
+      100.0 * std::min(share, 1.0));
+}
+
+}  // namespace rcme

@@ -1,0 +1,21 @@
+// The normal equations of the Sampson distance, one match at a time, in pixels. The many-at-a-time twin that
+// the fast implementation takes is kernels/sampson_equations.h; the two share no formula.
+#pragma once
+
+#include <span>
+
+#include "estimator/motion_problem.h"
+#include "estimator/refinement/motion_search.h"
+
+namespace rcme {
+
+// Of sum rho(r^2) / 2 over the matches `indices` at a motion, r = g / (sigma |J|). The derivative of r along
+// coordinate k of the motion is (g_k - r sigma J J_k' / |J|) / (sigma |J|), g_k and J_k those of g and J.
+NormalEquations LinearizeSampson(const MotionProblem& problem, std::span<const int> indices,
+                                 const RelativePose& pose, Loss loss);
+
+// sum g_p' g_p / var g over the matches, var g = sigma^2 |J|^2: 5x5, [rotation, direction], 1 / rad^2.
+Matrix5d SampsonInformation(const MotionProblem& problem, std::span<const int> indices,
+                            const RelativePose& pose);
+
+}  // namespace rcme
