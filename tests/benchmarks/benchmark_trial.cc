@@ -3,6 +3,7 @@
 #include <map>
 
 #include "estimator/kernels/sampson_equations.h"
+#include "experiments/data/make_data.h"
 #include "stats/distributions.h"
 
 namespace rcme {
