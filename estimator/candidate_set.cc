@@ -20,6 +20,7 @@ void CandidateSet::Add(const Candidate& candidate) {
   }
 }
 
+// n_j / n >= lambda omega_p (eq:inlier_size_cond)
 bool CandidateSet::MeetsSizeCondition(const Candidate& candidate) const {
   const double bound = lambda_ * inlier_ratio_ * num_matches_;
   return candidate.score.num_inliers >= bound * (1.0 - 1e-12);  // n_j / n * n may round to more than n_j

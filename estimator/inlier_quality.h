@@ -8,7 +8,8 @@ namespace rcme {
 // What one pass over the matches leaves of a hypothesis; nothing per point is stored.
 struct InlierScore {
   int num_inliers = 0;        // n_j
-  double mean_entropy = 0.0;  // psi_j, a mean: the paper's "L1 norm" would turn negative entropies positive
+  double mean_entropy = 0.0;  // psi_j (eq. 16), a mean: the paper's "L1 norm" would turn negative entropies
+                              // positive
   double sum_squares = 0.0;   // sum (h - psi)^2, Welford
   double negative_log_likelihood = 0.0;  // of all matches, predictive
 
@@ -20,11 +21,12 @@ struct InlierScore {
   }
 };
 
-// Z_j = (psi - mu) / (s / sqrt(n_j)). Fewer than two inliers, or s = 0: minus infinity where psi <= mu, else
-// plus infinity, the limit s -> 0. No inlier at all: plus infinity.
+// Z_j = (psi - mu) / (s / sqrt(n_j)) (eq. 18). Fewer than two inliers, or s = 0: minus infinity where psi <=
+// mu, else plus infinity, the limit s -> 0. No inlier at all: plus infinity.
 double ZStatistic(const InlierScore& score, double mu);
 
-// Whether H0 "psi > mu" is rejected (eq::inlier-quality-test); `normal_quantile` is Phi^-1(1 - alpha).
+// Whether H0 "psi > mu" is rejected (eq::inlier-quality-test): Z_j <= Phi^-1(1 - alpha) as printed (eq. 19);
+// `normal_quantile` is Phi^-1(1 - alpha).
 bool PassesQualityTest(double z, double normal_quantile, QualityTest test);
 
 }  // namespace rcme

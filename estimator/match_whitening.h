@@ -19,7 +19,8 @@ class MatchWhitening {
   Eigen::Vector2d WhitenPoint2(const Eigen::Vector2d& x2_px) const { return inverse_sigma_ * (x2_px - c2_); }
   const RayScale& ray_scale() const { return ray_scale_; }
 
-  // F with x2' F x1 = 0 in whitened coordinates, of an E in rays. Linear in E, so it maps tangents too.
+  // F with x2' F x1 = 0 in whitened coordinates, of an E in rays (eq::model_motion_relation). Linear in E, so
+  // it maps tangents too.
   Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E) const;
 
  private:

@@ -98,6 +98,9 @@ AsPrintedTest::AsPrintedTest(const UncertainFundamental& model, double sigma_px)
       H_(ConstraintHessian(model.F)),
       point_noise_(sigma2_ * H_ * H_.transpose()) {}
 
+// delta' Sigma_delta^-1 delta (eq::mahalanobis_dist_F) of the Sampson vector (eq::sampson_error_vec) and its
+// covariance (eq::cov_sampson_error_vec), in closed form.
+//
 // The Sampson vector -j g / n2 (n2 = |j|^2) depends on the match and the motion through (j, g) alone, with
 // cov(j, g) = [[Q, a], [a', D]]. With the reflection P = I - 2 j j' / n2,
 //

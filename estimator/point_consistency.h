@@ -75,7 +75,7 @@ class AsPrintedTest {
   // Closed form, see the source; a singular Sigma_delta gives d2 = infinity: nothing can be said for the
   // match.
   double Distance(const Correspondence& match, PointResidual* residual) const;
-  // h = 1/2 log((2 pi e)^4 det Sigma_delta), det in px^8.
+  // h = 1/2 log((2 pi e)^4 det Sigma_delta) (eq. 15), det in px^8.
   static double EntropyOfLogDeterminant(double log_det_cov);
   double Entropy(const PointResidual& residual) const {
     return EntropyOfLogDeterminant(residual.log_det_cov);

@@ -37,6 +37,7 @@ Thresholds Thresholds::For(const MotionProblem& problem, const RansacOptions& op
           std::log(std::max(diagonal_px / problem.sigma_px, 1.0))};
 }
 
+// S_j (eq::minimal_sample_set)
 Sample DrawSample(int n, RandomStream& rng) {
   Sample sample;
   for (auto end = sample.begin();;) {

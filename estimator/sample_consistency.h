@@ -8,8 +8,8 @@
 
 namespace rcme {
 
-// As printed (eq::sample-p-test): every sample point must pass the point test on its own, as if it had not
-// been used.
+// As printed (eq::sample-p-test): every sample point must pass the point test on its own, d2 within its
+// threshold (eq. 12), as if it had not been used.
 template <typename PointTest>
 bool EverySamplePointFits(const MotionProblem& problem, const Hypothesis& hypothesis, const PointTest& test,
                           double threshold) {

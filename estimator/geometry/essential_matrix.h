@@ -23,7 +23,8 @@ Eigen::Matrix3d EssentialFromPose(const RelativePose& pose);
 // dE/dp for the tangent [rotation 3, direction 2]: dE/dw_k = [t]x [e_k]x R, dE/db_k = [B_k]x R.
 std::array<Eigen::Matrix3d, 5> EssentialTangent(const RelativePose& pose);
 
-// F = K2^-T E K1^-1, x2' F x1 = 0 in pixels. Linear in E, so it maps tangents too.
+// F = K2^-T E K1^-1, x2' F x1 = 0 in pixels (eq::model_motion_relation, with a camera matrix for each image).
+// Linear in E, so it maps tangents too.
 Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E, const Camera& camera1,
                                          const Camera& camera2);
 
@@ -39,7 +40,8 @@ struct EssentialProjection {
 };
 EssentialProjection ProjectToEssential(const Eigen::Matrix3d& matrix);
 
-// The four poses of an essential matrix: {R_a, R_b} x {t, -t}.
+// The four poses of an essential matrix, {R_a, R_b} x {t, -t}: the solutions p of Theta(f, p) = 0
+// (eq::motion_estimate), f taken to the nearest essential matrix.
 std::array<RelativePose, 4> PosesFromEssential(const EssentialProjection& projection);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// The essential matrix nearest to a 3x3 matrix, without iteration.
+// The essential matrix nearest to a 3x3 matrix (eq::motion_estimate), without iteration.
 //
 // u3, the left singular vector of the smallest singular value, is the eigenvector of the smallest eigenvalue
 // of M M' (closed form of a symmetric 3x3 matrix: Smith 1961). For any orthonormal u1, u2 normal to it, the

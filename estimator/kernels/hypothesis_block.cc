@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Sigma_p and the misfit's covariance from Sigma_f, without forming Sigma_f.
+// Sigma_p (eq::cov_p) and the misfit's covariance from Sigma_f (eq. 6), without forming Sigma_f.
 //
 // The products u_i v_j' of the projection are an orthonormal basis of the 3x3 matrices. Five of them (and
 // combinations) span the motions, three what is normal to the essential matrices, one is E itself:

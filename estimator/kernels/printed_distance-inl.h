@@ -1,8 +1,10 @@
-// The printed point test (eq::find-inlier), delta' Sigma_delta^-1 delta with Sigma_delta 4x4, in closed form.
+// The printed point test (eq::find-inlier), delta' Sigma_delta^-1 delta (eq::mahalanobis_dist_F) with
+// Sigma_delta 4x4 (eq::cov_sampson_error_vec), in closed form.
 //
 // In whitened coordinates (unit noise) let j, g, n2 = |j|^2 be the gradient, value and squared gradient of
 // the constraint, j_k, g_k those of its derivatives along the principal axes of the motion, H the Hessian.
-// The Sampson vector -j g / n2 depends on match and motion through z = (j, g) alone, whose covariance is
+// The Sampson vector -j g / n2 (eq::sampson_error_vec) depends on match and motion through z = (j, g) alone,
+// whose covariance is
 //
 //   X = [[Q, a], [a', D]],   Q = H H' + sum j_k j_k',   a = H j + sum g_k j_k,   D = n2 + sum g_k^2.
 //

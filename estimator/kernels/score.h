@@ -48,14 +48,15 @@ void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, doubl
 void ScanRankAware(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
                    double threshold, InlierScan* scan);
 
-// The entropies h = log(spread) / 2 + offset of the inliers, summarised.
+// The entropies h = log(spread) / 2 + offset of the inliers (eq. 15), summarised by psi and s (eq. 16).
 InlierScore SummarizeEntropies(const InlierScan& scan, double offset);
 
 // Predictive: sum over all matches of min(outlier_cost, (d2 + log(2 pi s2 / sigma^2)) / 2), rank-aware.
 double NegativeLogLikelihood(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
                              double outlier_cost);
 
-// Bit l: every match of sample l passes the printed test under its own hypothesis (eq::sample-p-test).
+// Bit l: every match of sample l is within the printed threshold (eq. 12) of its own hypothesis
+// (eq::sample-p-test).
 std::uint8_t FindConsistentSamples(const HypothesisBlock& block, double threshold);
 
 }  // namespace rcme

@@ -15,7 +15,7 @@ namespace rcme {
 Matrix9d SampleInformation(const Vector9d& f, const Camera& camera1, const Camera& camera2,
                            std::span<const Correspondence> matches, double sigma_px);
 
-// A (A' I A)^-1 A' of an information matrix I (9x9) and A (9x8): Sigma_f, overdetermined case.
+// A (A' I A)^-1 A' of an information matrix I (9x9) and A (9x8): Sigma_f, overdetermined case (eq. 6).
 Matrix9d OverdeterminedCovariance(const Matrix9d& information, const Eigen::Matrix<double, 9, 8>& A);
 
 // The first eight columns of the Householder matrix I - 2 v v' / v'v that reflects the unit vector f onto the

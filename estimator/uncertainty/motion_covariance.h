@@ -23,8 +23,8 @@ Eigen::Matrix<double, 8, 1> ConstraintVariances(const Eigen::Matrix3d& F,
                                                 std::span<const Correspondence, 8> sample, double sigma_px);
 
 // Sigma_f = G D G' (9x9, rank 8, null direction f), f the unit vector of the linear model in rays. Equals the
-// paper's overdetermined case A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' with dOmega/df the minimum-norm
-// implicit derivative.
+// paper's overdetermined case A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' (eq. 6) with dOmega/df the
+// minimum-norm implicit derivative.
 Matrix9d CovarianceOfF(const LinearModel& model, const Eigen::Matrix<double, 8, 1>& constraint_variances);
 
 // The same for a sample of m >= 8 matches, G (9 x m) of its linear least-squares fit.
@@ -42,7 +42,7 @@ Matrix5d CovarianceOfMotion(const RelativePose& pose, const Matrix9d& f_cov);
 // Sigma_p = (sum_k g_p' g_p / var g_k)^-1 over m matches (5x5, [rotation, direction], rad^2): g_p = dg_k/dp
 // (1x5) at `pose`, var g_k = sigma^2 |J_k|^2 at the matches as given. It is
 //   m = 5: H^-1 D H^-T, H = dg/dp (5x5), D = diag(var g_k): the exact case, delta p = -H^-1 n, whose f has
-//          Sigma_f = (J_Omega' Sigma_X^-1 J_Omega)^-1 on the five tangent directions;
+//          Sigma_f = (J_Omega' Sigma_X^-1 J_Omega)^-1 (eq. 5) on the five tangent directions;
 //   m > 5: the covariance of the maximum-likelihood estimate (its point coordinates eliminated) at `pose`;
 //   at the true pose and the true points: the Cramer-Rao bound.
 // Nothing if fewer than five matches, if they do not determine the motion (smallest pivot of the whitened

@@ -54,7 +54,7 @@ def evidence(targets, verdict="measured", **conditions):
 
 
 def claim(name, rows, verdict="holds", reading="rank-aware", figure_x="", up_to=None):
-    return {"id": name, "family": name.split(".")[0], "label": "eq::x", "reading": reading, "sentence": "A sentence.",
+    return {"id": name, "family": name.split(".")[0], "label": "eq::metric", "reading": reading, "sentence": "A sentence.",
             "statistic": "a statistic", "verdict": verdict, "holds_up_to_sigma_px": up_to, "figure_x": figure_x,
             "evidence": rows}
 

@@ -1,0 +1,116 @@
+"""docs/equations.md says where the paper's equations are: every file it names exists and cites the equation, every claim
+it names is one of the audit's, and no label is cited in the code that it does not list. Needs nothing but this
+repository; the claims are those of the program in the environment variable RCME, without which they are not checked."""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs/equations.md"
+ROOMS = ["parameters", "stats", "estimator", "simulator", "experiments", "plots", "tests"]
+LABEL = re.compile(r"\beq::?[A-Za-z][A-Za-z0-9_-]*")
+NUMBER = re.compile(r"(?<![A-Za-z0-9] )\beq\. (\d+)(?![\d.])")
+IN_CODE_STYLE = re.compile(r"`([^`]+)`")
+
+
+def tables(text):
+    """The tables of a page, each a list of rows, each a list of cells; without head and rule."""
+    found, rows = [], []
+    for line in text.splitlines() + [""]:
+        if line.startswith("|"):
+            rows.append([cell.strip() for cell in line.strip("|").split("|")])
+        elif rows:
+            found.append(rows[2:])
+            rows = []
+    return found
+
+
+def quoted(cell):
+    return IN_CODE_STYLE.findall(cell)
+
+
+def cited(text):
+    """The labels and numbers of equations that a text cites."""
+    return set(LABEL.findall(text)) | {f"eq. {number}" for number in NUMBER.findall(text)}
+
+
+def missing_citations(rows, read):
+    """Of the rows of the first table, what does not hold, as sentences; `read` gives a file's text or None."""
+    wrong = []
+    for number, label, _, reference, fast, _ in rows:
+        files = quoted(reference) + quoted(fast)
+        if not quoted(reference) or (not quoted(fast) and fast not in {"same", "—"}):
+            wrong.append(f"equation {number}: no file")
+        for path in files:
+            text = read(path)
+            if text is None:
+                wrong.append(f"equation {number}: {path} does not exist")
+            elif quoted(label)[0] not in cited(text):
+                wrong.append(f"equation {number}: {path} does not cite {quoted(label)[0]}")
+    return wrong
+
+
+def read_source(path):
+    file = ROOT / path
+    return file.read_text(encoding="utf-8") if file.is_file() else None
+
+
+def claims_of_the_program(program):
+    """The claims with their labels, {id: label}."""
+    lines = subprocess.run([program, "list", "claims"], check=True, capture_output=True, text=True).stdout.splitlines()
+    rule = next(line for line in lines if line.startswith("---"))
+    ends = [match.span() for match in re.finditer("-+", rule)]
+    rows = lines[lines.index(rule) + 1:]
+    return {row[slice(*ends[0])].strip(): row[slice(*ends[1])].strip() for row in rows if row.strip()}
+
+
+class Equations(unittest.TestCase):
+    def setUp(self):
+        self.text = PAGE.read_text(encoding="utf-8")
+        self.equations, self.parts = tables(self.text)
+
+    def test_the_list_is_complete(self):
+        count = int(re.search(r"(\d+) equations", self.text).group(1))
+        self.assertEqual([int(row[0]) for row in self.equations], list(range(1, count + 1)))
+        labels = [quoted(row[1])[0] for row in self.equations]
+        self.assertEqual(len(set(labels)), count)
+        for number, label in enumerate(labels, 1):
+            self.assertTrue(label.startswith("eq:") or label == f"eq. {number}", label)
+
+    def test_every_file_named_cites_its_equation(self):
+        self.assertEqual(missing_citations(self.equations, read_source), [])
+        for row in self.parts:
+            for path in quoted(row[2]):
+                self.assertIsNotNone(read_source(path), path)
+
+    def test_a_missing_file_or_citation_is_seen(self):
+        row = ["7", "`eq::cov_p`", "", "`a.h`", "`b.h`", "—"]
+        texts = {"a.h": "// (eq::cov_p)", "b.h": "// (eq::cov_p_other), eq. 7"}
+        self.assertEqual(missing_citations([row], texts.get), ["equation 7: b.h does not cite eq::cov_p"])
+        self.assertEqual(missing_citations([row[:4] + ["`c.h`", "—"]], texts.get), ["equation 7: c.h does not exist"])
+        self.assertEqual(cited("(eq. 12, eq::a-b), (Doe 1952, eq. 4.35)"), {"eq. 12", "eq::a-b"})
+
+    def test_no_other_equation_is_cited(self):
+        listed = {quoted(row[1])[0] for row in self.equations}
+        for room in ROOMS:
+            for path in sorted((ROOT / room).rglob("*")):
+                if path.suffix in {".h", ".cc", ".py"} and path != pathlib.Path(__file__).resolve():
+                    self.assertLessEqual(cited(path.read_text(encoding="utf-8")), listed, str(path))
+
+    @unittest.skipUnless(os.environ.get("RCME"), "RCME, the program, is not set")
+    def test_claims_are_those_of_the_audit(self):
+        claims = claims_of_the_program(os.environ["RCME"])
+        self.assertGreater(len(claims), 40)
+        named = {claim for row in self.equations + self.parts for claim in quoted(row[-1])}
+        self.assertEqual(named, set(claims), "the claims that the page names, and those that there are")
+        for row in self.equations:  # a claim that cites an equation stands in its row
+            label = quoted(row[1])[0]
+            self.assertLessEqual({name for name, cites in claims.items() if cites == label}, set(quoted(row[5])), label)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv)
