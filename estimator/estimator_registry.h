@@ -19,7 +19,7 @@ struct EstimatorEntry {
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 
-// Adds an estimator of one's own to the table; to be called before anything reads it, from one thread. Throws
+// Adds a user-defined estimator to the table; to be called before anything reads it, from one thread. Throws
 // InputError if the name is taken or empty.
 void AddEstimator(EstimatorEntry entry);
 

@@ -84,8 +84,8 @@ double AreaOfBand(const Eigen::Matrix3d& F, const Eigen::Vector2d& x1, double th
 double LogUpperTail(int n, int k, double p) {
   const double tail = BinomialUpperTail(n, k, p), share = static_cast<double>(k) / n;
   if (tail > 1e-280) return std::log(tail);
-  const double of_others = k < n ? (1.0 - share) * std::log((1.0 - share) / (1.0 - p)) : 0.0;
-  return -n * (share * std::log(share / p) + of_others);
+  const double other_terms = k < n ? (1.0 - share) * std::log((1.0 - share) / (1.0 - p)) : 0.0;
+  return -n * (share * std::log(share / p) + other_terms);
 }
 
 }  // namespace

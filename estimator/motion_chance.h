@@ -33,7 +33,8 @@ double ChanceOfAgreement(const MotionProblem& problem, const RelativePose& pose,
 // area of the ellipse over that of the rectangle.
 double ChanceOfAgreementWithRotation(const MotionProblem& problem, double threshold);
 
-// Models of one kind: `num_fixing` matches on their borders fix at most so many of them.
+// A family of models: `num_fixing` matches on the borders of their bands determine at most `most_per_choice`
+// models.
 struct ModelFamily {
   int num_fixing;
   double most_per_choice;

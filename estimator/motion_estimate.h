@@ -60,8 +60,8 @@ struct MotionEstimate {
   bool failed_by_kappa = false;   // n*_I / n_I <= kappa
 
   // Matches, of all, that agree with the refined motion: squared Sampson distance within
-  // ConsistencyThreshold (motion_tests.h). The motion's covariance plays no part: a motion that is hardly
-  // determined explains no more for that.
+  // ConsistencyThreshold (motion_tests.h). The motion's covariance is not used, so that a poorly
+  // determined motion does not explain more matches.
   int num_explained = 0;
 
   LoopCounts counts;

@@ -7,11 +7,11 @@
 
 namespace rcme {
 
-// All that an estimator may know: the matches, the cameras, and the noise level it is told.
+// The input of an estimator: the matches, the cameras, and the assumed noise level.
 struct MotionProblem {
   std::vector<Correspondence> matches;
   Camera camera1, camera2;
-  double sigma_px = 0.5;  // standard deviation of the noise per coordinate in each image (a.2)
+  double sigma_px = 0.5;  // assumed standard deviation of the noise per coordinate in each image (a.2)
 };
 
 }  // namespace rcme

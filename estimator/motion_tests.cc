@@ -36,8 +36,9 @@ void RefuseByChance(const MotionProblem& problem, const RansacOptions& options, 
   if (LogFalseAlarms(kMotions, num_matches, estimate->num_explained, chance) <= std::log(level)) return;
   estimate->status = MotionStatus::kNotBetterThanChance;
   estimate->message = fmt::format(
-      "{} of {} matches agree with the motion; of random matches {:.1f} would agree with any one motion, and "
-      "as many as that with the best of all",
+      "{} of {} matches agree with the motion, no more than chance explains: of random matches, {:.1f} agree "
+      "with "
+      "a given motion on average, and this many may agree with the best motion",
       estimate->num_explained, num_matches, chance * num_matches);
 }
 
@@ -47,9 +48,9 @@ void KeepRotationAlone(const RotationTest& test, MotionEstimate* estimate) {
   DropDirection(estimate);
   const int num_fitted = test.rotation.num_fitted;
   estimate->message = fmt::format(
-      "a rotation alone explains {} of the {} matches that agree (sum of squares {:.0f}, {} expected of "
-      "noise): "
-      "no parallax beyond the noise, hence no direction",
+      "a rotation alone explains {} of the {} matches that agree (sum of squared residuals {:.0f}, {} "
+      "expected "
+      "from noise alone): no parallax beyond the noise, so the direction cannot be estimated",
       num_fitted, test.num_agreeing, test.rotation.energy, 2 * num_fitted - 3);
 }
 
@@ -59,8 +60,9 @@ void RefuseNoisyDirection(const MotionProblem& problem, MotionEstimate* estimate
   if (share <= kMostNoiseInDirection) return;
   DropDirection(estimate);
   estimate->message = fmt::format(
-      "the parallax is too small against the noise: {:.0f} % of what seems to determine the direction is "
-      "noise",
+      "the parallax is too small for the noise level: noise accounts for {:.0f} % of the information about "
+      "the "
+      "direction",
       100.0 * std::min(share, 1.0));
 }
 

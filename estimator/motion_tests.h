@@ -37,7 +37,8 @@ void RefuseByMotionTests(const Matches& matches, const RansacOptions& options, M
   }
 }
 
-// A refinement that diverged from `start` and its matches: for want of a parallax, or for another reason.
+// After a refinement that diverged from `start` and its matches: the rotation alone, if too little parallax
+// is the reason.
 template <typename Matches>
 void ExplainDivergence(const Matches& matches, const RansacOptions& options, const RelativePose& start,
                        const typename Matches::Set& support, MotionEstimate* estimate) {

@@ -63,8 +63,8 @@ double NoiseShareOfDirection(const MotionProblem& problem, const std::vector<int
     const Eigen::Vector3d y = pose.R * ray1, ray2_in_cam1 = pose.R.transpose() * ray2;
     Eigen::Matrix<double, 3, 4> J;  // d(axes' m) / d(x2, y2, x1, y1) in units of sigma: v'(y x d) = (v x y)'d
     for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d of_2 = axes.col(k).cross(y), of_1 = ray2_in_cam1.cross(axes_in_cam1.col(k));
-      J.row(k) << s.x2 * of_2.x(), s.y2 * of_2.y(), s.x1 * of_1.x(), s.y1 * of_1.y();
+      const Eigen::Vector3d moment2 = axes.col(k).cross(y), moment1 = ray2_in_cam1.cross(axes_in_cam1.col(k));
+      J.row(k) << s.x2 * moment2.x(), s.y2 * moment2.y(), s.x1 * moment1.x(), s.y1 * moment1.y();
     }
     const double variance = J.row(0).squaredNorm();
     const Eigen::Matrix2d own = J.bottomRows<2>() * J.bottomRows<2>().transpose();

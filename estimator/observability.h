@@ -62,8 +62,8 @@ RotationTest TestRotationAlone(const Matches& matches, const RelativePose& pose,
   return test;
 }
 
-// Where the refinement of a motion begun at `start` with the matches `support` has diverged, as it may for
-// want of a parallax. Any direction fits a rotation, so the start's is taken.
+// Where the refinement of a motion begun at `start` with the matches `support` has diverged, as it may where
+// there is too little parallax. Any direction fits a rotation, so the start's is taken.
 template <typename Matches>
 RotationTest TestRotationAloneFrom(const Matches& matches, const RelativePose& start,
                                    const typename Matches::Set& support, double significance_level) {
@@ -78,8 +78,8 @@ RotationTest TestRotationAloneFrom(const Matches& matches, const RelativePose& s
 // With y = R x1 the constraint is g = t'm, m = y x x2, and its derivative along the tangent b is B'm. Of m
 // the parallax is one part and the noise another, with covariance C = [y]x S2 [y]x' + [x2]x R S1 R' [x2]x'
 // (S1, S2 those of the rays). So the information sum (B'm)(B'm)' / var g, var g = t'C t, holds on average N =
-// sum B'C B / t'C t that tells nothing of the direction. With `direction_cov` the 2x2 block of pose_cov,
-// returned is the greatest eigenvalue of direction_cov N. A match whose own share is beyond
+// sum B'C B / t'C t that is not information about the direction. With `direction_cov` the 2x2 block of
+// pose_cov, returned is the greatest eigenvalue of direction_cov N. A match whose own share is beyond
 // MaxLeverage, next to an epipole, is left out as in the fit set. At share q the reported standard deviation
 // is too small by sqrt(1 - q).
 double NoiseShareOfDirection(const MotionProblem& problem, const std::vector<int>& fitted,

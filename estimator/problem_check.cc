@@ -50,7 +50,8 @@ double RmsDistanceFromLine(const std::vector<Correspondence>& matches,
 
 std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int min_matches) {
   if (!problem.camera1.IsValid() || !problem.camera2.IsValid()) {
-    return Refusal(MotionStatus::kInvalidInput, "a camera has no finite, invertible K or no image size");
+    return Refusal(MotionStatus::kInvalidInput,
+                   "a camera matrix K is not finite or not invertible, or an image size is not positive");
   }
   if (!(problem.sigma_px > 0.0) || !std::isfinite(problem.sigma_px)) {
     return Refusal(MotionStatus::kInvalidInput,

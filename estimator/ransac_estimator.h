@@ -38,7 +38,7 @@ inline constexpr const char* kDecisionOptions[] = {"mu",
                                                    "num_refined",
                                                    "least_explained_share"};
 
-// The estimator as one whose loop can be taken apart; null if it is none.
+// The estimator as one whose loop can be taken apart; null if its loop cannot.
 inline const RansacEstimator* AsRansac(const MotionEstimator& estimator) {
   return dynamic_cast<const RansacEstimator*>(&estimator);
 }

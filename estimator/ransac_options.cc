@@ -72,10 +72,10 @@ std::vector<Parameter> Parameters(RansacOptions& o) {
       Parameter::Choice<Implementation>(
           "implementation", &o.implementation,
           {{"fast", Implementation::kFast}, {"reference", Implementation::kReference}},
-          "vectorised, or the same mathematics in its simplest form, hundreds of times slower"),
+          "vectorised, or the same mathematics one match at a time: an independent check, hundreds "
+          "of times slower"),
       Parameter::Integer("num_refined", &o.num_refined, {1, 1000},
-                         "so many of the best candidates are refined; the motion that explains most matches "
-                         "wins"),
+                         "number of top candidates refined; the motion that explains the most matches wins"),
       Parameter::Real("least_explained_share", &o.least_explained_share, {0.0, 1.0}, "",
                       "refuse a refined motion that explains a smaller share of the matches"),
       Parameter::RealOrWords(

@@ -48,7 +48,7 @@ enum class Implementation {
 
 // Options of the RANSAC family (standard, prcme, rcme). Defaults are the paper's where it gives a value.
 struct RansacOptions {
-  int num_iterations = 200;          // N, all of them unless early_stop_entropy says otherwise
+  int num_iterations = 200;          // N; fewer only where early_stop_entropy stops the loop
   double significance_level = 0.05;  // alpha of every test, the sample test's unless that has its own
   double sample_significance_level = std::numeric_limits<double>::quiet_NaN();  // NaN: significance_level
   Reading reading = Reading::kAsPrinted;
@@ -61,10 +61,11 @@ struct RansacOptions {
   Refinement refinement = Refinement::kRobust;
   RefinementError refinement_error = RefinementError::kSampson;
   Implementation implementation = Implementation::kFast;
-  int num_refined = 1;                 // the best so many candidates are refined; the best motion wins
+  int num_refined = 1;  // number of top candidates refined; the one that explains most matches wins
   double least_explained_share = 0.0;  // of the matches, by the refined motion; less is refused
-  // What the refined motion is refused for. Levels: the greatest probability of an answer where the test's
-  // null hypothesis holds; 1: off; NaN: off as printed (the paper has neither test), 0.001 rank-aware.
+  // Significance levels of the tests that may refuse the refined motion: the greatest probability of an
+  // answer where the test's null hypothesis holds; 1: off; NaN: off as printed (the paper has neither test),
+  // 0.001 rank-aware.
   double observability_significance_level = std::numeric_limits<double>::quiet_NaN();  // observability.h
   double chance_significance_level = std::numeric_limits<double>::quiet_NaN();         // motion_chance.h
   double kappa = 0.5;  // failure flag: n*_I / n_I <= kappa (eq::metric)

@@ -5,8 +5,9 @@
 namespace rcme {
 
 std::string DivergenceMessage(int num_support, int num_fitted) {
-  return fmt::format("the refinement, begun with {} matches, was left with {} and no finite optimum",
-                     num_support, num_fitted);
+  return fmt::format(
+      "the refinement diverged: of {} matches at its start it kept {}, and found no finite optimum",
+      num_support, num_fitted);
 }
 
 std::string SuccessMessage(int num_inliers, int num_matches) {

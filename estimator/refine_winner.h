@@ -112,7 +112,7 @@ void RefineWinner(const Matches& matches, const RansacOptions& options, const Sa
   if (!instantiated) {  // on the border of what has a model: the loop's arithmetic found one, this one does
                         // not
     estimate->status = MotionStatus::kRefinementDiverged;
-    estimate->message = "the winning sample is degenerate to rounding";
+    estimate->message = "the selected sample is degenerate within rounding error";
     return;
   }
   Hypothesis winner = *instantiated;

@@ -26,10 +26,11 @@ MotionEstimate RefusalFromLoop(const LoopCounts& counts) {
   estimate.status = all_degenerate ? MotionStatus::kDegenerateMatches : MotionStatus::kNoCandidate;
   estimate.message =
       all_degenerate
-          ? fmt::format("none of {} samples determines a motion", counts.num_hypotheses)
+          ? fmt::format("no motion could be computed: all {} samples are degenerate", counts.num_hypotheses)
           : fmt::format(
-                "no hypothesis of {} is a candidate: {} degenerate, {} disagree with their sample, "
-                "{} have poor inliers",
+                "none of the {} hypotheses is a candidate: {} samples are degenerate, {} hypotheses disagree "
+                "with "
+                "their sample, {} fail the inlier quality test",
                 counts.num_hypotheses, counts.num_degenerate_samples, counts.num_inconsistent_samples,
                 counts.num_poor_inlier_sets);
   return estimate;
@@ -40,7 +41,7 @@ void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEs
   const double least = options.least_explained_share * num_matches;
   if (estimate->num_explained >= least * (1.0 - 1e-12)) return;  // 0.55 * 100 rounds to more than 55
   estimate->status = MotionStatus::kTooFewExplained;
-  estimate->message = fmt::format("the motion explains {} of {} matches, less than the share {} asked for",
+  estimate->message = fmt::format("the motion explains {} of {} matches, less than the required share {}",
                                   estimate->num_explained, num_matches, options.least_explained_share);
 }
 

@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// How many bytes the UTF-8 character at the beginning of `text` has, which is not empty; 0: it is none (RFC
-// 3629).
+// How many bytes the UTF-8 character at the beginning of `text` has, which is not empty; 0 if it is not valid
+// UTF-8 (RFC 3629).
 size_t Utf8Length(std::string_view text);
 
 // Where `text` stops being plain: at a byte that is not UTF-8, or at a control character other than tab and

@@ -8,7 +8,7 @@ namespace rcme {
 namespace {
 
 constexpr double kTolerance = 1e-3;        // of the parallax, relative
-constexpr double kNarrowest = 1.0 + 1e-5;  // ratio of two baselines between which nothing is looked for
+constexpr double kNarrowest = 1.0 + 1e-5;  // the search ends at this ratio of its two baselines
 constexpr double kLeast_m = 1e-9, kGreatest_m = 1e9;
 constexpr int kMaxSteps = 200;
 

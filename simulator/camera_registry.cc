@@ -9,7 +9,7 @@ const std::vector<CameraEntry>& CameraRegistry() {
       {"pinhole", "two equal ideal cameras, any size and focal length", MakePinhole},
       {"two_pinholes", "two different ideal cameras, each with its own size and focal length",
        MakeTwoPinholes},
-      {"own_intrinsics", "two cameras of one's own: size, fx, fy, cx, cy of either", MakeOwnIntrinsics},
+      {"own_intrinsics", "two user-defined cameras: size, fx, fy, cx, cy of each", MakeOwnIntrinsics},
       {"kitti", "KITTI odometry, rectified grey camera, 1241 x 376, f 719 px", MakeKitti},
       {"euroc", "EuRoC MAV cam0, undistorted, 752 x 480, f 458 px", MakeEuroc},
       {"office", "RGB-D camera of an office robot, 640 x 480, f 525 px", MakeOffice},

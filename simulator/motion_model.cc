@@ -9,16 +9,17 @@ namespace rcme {
 
 double Baseline::Length() const {
   if (!IsParallax()) return baseline_m;
-  if (std::isnan(of_parallax_m)) throw std::logic_error("the baseline of a parallax is not fixed yet");
-  return of_parallax_m;
+  if (std::isnan(length_of_parallax_m)) throw std::logic_error("the baseline of a parallax is not fixed yet");
+  return length_of_parallax_m;
 }
 
 std::vector<Parameter> Parameters(Baseline& baseline) {
-  return {Parameter::Real("baseline_m", &baseline.baseline_m, {1e-9, 1e6}, "m", "length of the translation"),
-          Parameter::RealOrWord(
-              "parallax_deg", &baseline.parallax_deg, {1e-9, 120.0}, "none", "deg",
-              "the length as an angle instead: the angle at a point between the rays to the two "
-              "centres, its median over the points, that on average over trials")};
+  return {
+      Parameter::Real("baseline_m", &baseline.baseline_m, {1e-9, 1e6}, "m", "length of the translation"),
+      Parameter::RealOrWord(
+          "parallax_deg", &baseline.parallax_deg, {1e-9, 120.0}, "none", "deg",
+          "the length as an angle instead: the parallax angle at a point between the rays to the two camera "
+          "centres, median over the points, averaged over trials")};
 }
 
 Eigen::Vector3d DrawDirection(RandomStream& rng) {

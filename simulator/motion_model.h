@@ -22,7 +22,7 @@ struct Baseline {
   double baseline_m = 0.5;
   double parallax_deg = std::numeric_limits<double>::quiet_NaN();  // NaN: in metres
   // The length that gives this parallax in a scene (SceneGenerator::FixBaseline); NaN: not known yet.
-  double of_parallax_m = std::numeric_limits<double>::quiet_NaN();
+  double length_of_parallax_m = std::numeric_limits<double>::quiet_NaN();
 
   bool IsParallax() const { return !std::isnan(parallax_deg); }
   // Throws std::logic_error where it is a parallax whose length is not known yet.

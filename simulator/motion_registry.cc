@@ -14,7 +14,7 @@ const std::vector<MotionEntry>& MotionRegistry() {
        MakeAckermann},
       {"pure_rotation", "no translation (Type A): the direction is not defined and not scored",
        MakePureRotation},
-      {"vanishing_baseline", "as general, with a baseline close to nothing", MakeVanishingBaseline},
+      {"vanishing_baseline", "as general, with a baseline close to zero", MakeVanishingBaseline},
       {"hand_held", "a camera in the hand: turns mostly sideways, moves mostly across the view",
        MakeHandHeld},
       {"vehicle", "a camera in a car: the arc of ackermann with pitch, roll and slip", MakeVehicle},

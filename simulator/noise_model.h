@@ -13,8 +13,8 @@ namespace rcme {
 // by threads.
 //
 // Every law has the key sigma_px, and scales itself so that sigma_px is the root mean square of the noise
-// over the four coordinates of a match: laws differ in shape, not in power. (`quantised` alone adds more than
-// it tells, which is its point.)
+// over the four coordinates of a match: laws differ in shape, not in power. (The exception is
+// `quantised`, whose rounding adds noise that its sigma_px does not include.)
 class NoiseModel {
  public:
   virtual ~NoiseModel() = default;

@@ -18,7 +18,7 @@ struct MatchedScene {
   const Scene& scene;
   std::span<const std::uint32_t> inliers;  // points whose matches stay true, in random order
   std::span<Correspondence> matches;
-  // To be set for wrong matches that satisfy the true epipolar constraint: no epipolar test can tell them.
+  // To be set for wrong matches that satisfy the true epipolar constraint: no epipolar test can detect them.
   std::vector<bool>& is_undetectable;
 };
 

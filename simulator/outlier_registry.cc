@@ -17,7 +17,7 @@ const std::vector<OutlierEntry>& OutlierRegistry() {
       {"moving_object", "points on an object with a rigid motion of its own", MakeMovingObject},
       {"repeated_texture", "the same place on another repetition of a pattern in the scene",
        MakeRepeatedTexture},
-      {"epipolar", "on the true epipolar line: no epipolar test can tell them", MakeEpipolarOutliers},
+      {"epipolar", "on the true epipolar line: no epipolar test can detect them", MakeEpipolarOutliers},
       {"one_to_many", "points of image 1 that have a true match already, matched once more",
        MakeOneToManyOutliers},
       {"mixture", "of all the others, in exact shares", MakeOutlierMixture},

@@ -87,7 +87,7 @@ void SceneGenerator::FixBaseline(const StreamName& pilot) {
   Baseline* baseline = motion_->MutableBaseline();
   if (baseline == nullptr || !baseline->IsParallax()) return;
   const auto parallax_deg = [&](double length_m) -> std::optional<double> {
-    baseline->of_parallax_m = length_m;
+    baseline->length_of_parallax_m = length_m;
     try {
       return MeanParallaxDeg(pilot);
     } catch (const InputError&) {
@@ -99,16 +99,16 @@ void SceneGenerator::FixBaseline(const StreamName& pilot) {
     if (found.greatest_deg == 0.0) MeanParallaxDeg(pilot);  // throws, and says why
     throw InputError(fmt::format(
         "parallax_deg: {} is not allowed; scene {} with motion {} and cameras {} gives at most "
-        "about {:.2g} before both images see too little of the same; give less, or baseline_m with "
-        "parallax_deg none. What decides: {}",
+        "about {:.2g}, beyond which the views overlap too little; give less, or give baseline_m and set "
+        "parallax_deg to none. Settings that matter: {}",
         baseline->parallax_deg, scene_name_, motion_name_, cameras_name_, found.greatest_deg, keys_));
   }
-  baseline->of_parallax_m = *found.baseline_m;
+  baseline->length_of_parallax_m = *found.baseline_m;
 }
 
 double SceneGenerator::BaselineOfParallax() const {
   const Baseline* baseline = motion_->MutableBaseline();
-  return baseline != nullptr && baseline->IsParallax() ? baseline->of_parallax_m
+  return baseline != nullptr && baseline->IsParallax() ? baseline->length_of_parallax_m
                                                        : std::numeric_limits<double>::quiet_NaN();
 }
 

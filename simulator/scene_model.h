@@ -39,7 +39,7 @@ class World {
   virtual std::vector<double> PartShares() const { return {1.0}; }
   // Fills the block with candidates on a part, `num_before` of which have been drawn before. They may lie
   // behind a camera or outside its image: only those that both see are kept. Candidates are independent, or,
-  // where a part has only so many points, all different.
+  // where a part has a finite number of points, all different.
   virtual void DrawCandidates(size_t part, size_t num_before, RandomStream& rng, PointBlock* block) const = 0;
   // See Scene::repeat_steps_m.
   virtual std::vector<Eigen::Vector3d> RepeatSteps() const { return {}; }

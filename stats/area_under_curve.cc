@@ -65,14 +65,14 @@ struct ClusterMean {
 
 // What both kinds of a cluster have in common: S11.
 double CovarianceOf(const std::vector<Placements>& positives, const std::vector<Placements>& negatives,
-                    const ClusterMean& of_positives, const ClusterMean& of_negatives) {
+                    const ClusterMean& positive_mean, const ClusterMean& negative_mean) {
   double products = 0.0;
   for (size_t c = 0; c < positives.size(); ++c) {
-    products += (positives[c].sum - positives[c].count * of_positives.mean) *
-                (negatives[c].sum - negatives[c].count * of_negatives.mean);
+    products += (positives[c].sum - positives[c].count * positive_mean.mean) *
+                (negatives[c].sum - negatives[c].count * negative_mean.mean);
   }
   const double n = static_cast<double>(positives.size());
-  return n > 1.0 ? n / (n - 1.0) * products / (of_positives.count * of_negatives.count) : 0.0;
+  return n > 1.0 ? n / (n - 1.0) * products / (positive_mean.count * negative_mean.count) : 0.0;
 }
 
 // Student's interval on the log odds of an area whose estimate, not 0 or 1, has this variance.

@@ -32,7 +32,7 @@ double LogCapital(const std::vector<Bin>& bins, double m) {
 }
 
 // The greatest m in [0, mean] with K_n(m) >= 1 / a, within a thousandth of `distance` below it; 0 if there is
-// none. `distance`: the step of the search down from the mean.
+// no such m. `distance`: the step of the search down from the mean.
 double LowerBound(const std::vector<Bin>& bins, double mean, double distance, double a) {
   const double tolerance = 1e-3 * distance;
   const double needed = -std::log(a);

@@ -1,4 +1,4 @@
-// A verdict needs evidence either way: that a test did not reject is none that a claim holds.
+// A verdict needs evidence either way: a test that did not reject is no evidence that a claim holds.
 #pragma once
 
 #include "stats/intervals.h"

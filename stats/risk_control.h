@@ -25,7 +25,7 @@ struct ErrorCount {
 // P(Binomial(n, at_most) <= errors): the p-value of "the rate is above at_most". 1 at n = 0.
 double ExcessPValue(const ErrorCount& count, double at_most);
 
-// The most errors of n trials that certify `at_most` at level delta; -1 if not even none would.
+// The most errors of n trials that certify `at_most` at level delta; -1 if not even zero errors would.
 std::int64_t LargestCertifyingCount(std::int64_t n, double at_most, double delta);
 
 // The fewest trials that can certify `at_most` at all, those without an error.

@@ -40,10 +40,10 @@ struct WeightedRate {
 // cautious_upper takes the greatest of any trial. That is never below 3.7 m / n, and so useless for rates far
 // below 1 / n, which are the reason to weigh at all. `interval` takes the greatest weight of an event (1, the
 // mean weight, where no event was seen) and thereby assumes that the weights where no event was seen hold
-// little of the rate. Nothing in the sample can tell: an event that is rare at its typical weight and
-// frequent only at small ones gives an estimate that looks settled and lies orders of magnitude too low. For
-// Binomial(100, p), p = 0.2 tilted to 0.5, 2,000 trials, and an event whose odds grow by a factor e^s with
-// every unit of K, the 95 % interval covers a rate of
+// little of the rate. The sample itself cannot show whether this is so: an event that is rare at its typical
+// weight and frequent only at small ones gives an estimate that looks settled and lies orders of magnitude
+// too low. For Binomial(100, p), p = 0.2 tilted to 0.5, 2,000 trials, and an event whose odds grow by a
+// factor e^s with every unit of K, the 95 % interval covers a rate of
 //   1e-2 in 96 %, 1e-4 in 96 %, 1e-6 in 95 % of the samples at s = 2,
 //   1e-2 in 96 %, 1e-4 in 88 %, 1e-6 in 66 % at s = 1,
 //   1e-2 in 95 %, 1e-4 in 56 %, 1e-6 in 13 % at s = 0.5:

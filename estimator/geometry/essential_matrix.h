@@ -35,7 +35,7 @@ struct EssentialProjection {
   Eigen::Matrix3d U, V;             // proper rotations
   Eigen::Vector3d singular_values;  // descending; the last has the sign of the matrix's determinant
 
-  // False where the second singular value is zero: then no direction of translation can be told.
+  // False where the second singular value is zero: the direction of translation is then undetermined.
   bool DeterminesDirection() const { return singular_values(1) > 1e-9 * singular_values(0); }
 };
 EssentialProjection ProjectToEssential(const Eigen::Matrix3d& matrix);

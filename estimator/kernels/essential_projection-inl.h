@@ -80,7 +80,7 @@ HWY_INLINE void CompleteBasis(const Vec3& n, Vec3* first, Vec3* second) {
 
 // One Newton step of the eigenvector of M M'. Where the two smaller singular values are close, a relative gap
 // d apart, the closed form has the angle of a cosine near one and loses eps / d^2; the step, with S = M M' in
-// the basis u1, u2, u, leaves eps / d. None where S does not tell the two apart.
+// the basis u1, u2, u, leaves eps / d. No step where S does not separate the two.
 HWY_INLINE Vec3 Polish(const Mat3& M, const Vec3& u) {
   Vec3 u1, u2;
   CompleteBasis(u, &u1, &u2);

@@ -32,8 +32,8 @@ HWY_INLINE Vec Load(const double* from) { return hn::Load(Tag(), from); }
 HWY_INLINE void Store(Vec v, double* to) { hn::Store(v, Tag(), to); }
 HWY_INLINE Vec Square(Vec a) { return a * a; }
 
-// a b + c, a b - c and c - a b, rounded once. Plain code has the library's fma, slow where the machine has
-// none.
+// a b + c, a b - c and c - a b, rounded once. Plain code has the library's fma, slow on a machine without
+// such an instruction.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE Vec FusedMulAdd(Vec a, Vec b, Vec c) { return Vec(std::fma(a.raw, b.raw, c.raw)); }
 HWY_INLINE Vec FusedMulSub(Vec a, Vec b, Vec c) { return Vec(std::fma(a.raw, b.raw, -c.raw)); }

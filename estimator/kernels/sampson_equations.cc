@@ -104,9 +104,9 @@ HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const Sam
                     SampsonSums* sums) {
   PartialSums<21> partial;
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-    Vec of_lane[21];
-    SumLane<loss>(matches, mask, model, lane, of_lane);
-    partial.Put(of_lane, lane);
+    Vec lane_sums[21];
+    SumLane<loss>(matches, mask, model, lane, lane_sums);
+    partial.Put(lane_sums, lane);
   }
   double totals[21];
   partial.Total(totals);

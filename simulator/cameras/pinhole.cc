@@ -13,14 +13,14 @@ struct Pinhole {
   Camera Make() const { return {focal_px, focal_px, 0.5 * (width - 1), 0.5 * (height - 1), width, height}; }
 };
 
-Parameter WidthParameter(const std::string& name, int* width, const std::string& of) {
-  return Parameter::Integer(name, width, {16, 100'000}, "width of " + of + ", px");
+Parameter WidthParameter(const std::string& name, int* width, const std::string& owner) {
+  return Parameter::Integer(name, width, {16, 100'000}, "width of " + owner + ", px");
 }
-Parameter HeightParameter(const std::string& name, int* height, const std::string& of) {
-  return Parameter::Integer(name, height, {16, 100'000}, "height of " + of + ", px");
+Parameter HeightParameter(const std::string& name, int* height, const std::string& owner) {
+  return Parameter::Integer(name, height, {16, 100'000}, "height of " + owner + ", px");
 }
-Parameter FocalParameter(const std::string& name, double* focal_px, const std::string& of) {
-  return Parameter::Real(name, focal_px, {1.0, 1e6}, "px", "focal length of " + of);
+Parameter FocalParameter(const std::string& name, double* focal_px, const std::string& owner) {
+  return Parameter::Real(name, focal_px, {1.0, 1e6}, "px", "focal length of " + owner);
 }
 
 class PinholePair : public CameraModel {

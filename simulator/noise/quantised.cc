@@ -8,9 +8,9 @@ namespace {
 
 // A detector on the pixel grid: normal noise, then every coordinate is rounded to the nearest multiple of the
 // step (pixel centres for a step of 1). This is the law whose sigma_px is not its root mean square: sigma_px
-// is the normal part's, as someone would tell it who forgot the rounding. The total variance is sigma_px^2 +
+// is that of the normal part alone, as if the rounding had been forgotten. The total variance is sigma_px^2 +
 // step^2 / 12 to a good approximation (the rounding error is uniform and does not depend on the point where
-// scene and noise spread over many steps), and that is what is told wrong.
+// scene and noise spread over many steps), so that the assumed noise level is too small.
 class QuantisedNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -19,7 +19,7 @@ class QuantisedNoise : public NoiseModel {
                         "standard deviation of the noise per coordinate before it is rounded"),
         Parameter::Real("quantisation_step_px", &step_px_, {1e-6, 1000.0}, "px",
                         "distance of the detector's grid lines; adds a variance of step^2 / 12 that sigma_px "
-                        "does not tell")};
+                        "does not include")};
   }
   double sigma_px() const override { return sigma_px_; }
 

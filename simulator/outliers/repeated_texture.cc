@@ -69,7 +69,7 @@ class RepeatedTexture : public OutlierLaw {
       if (is_seen && !shift_m.isZero(0.0)) return shift_m;
     }
     throw InputError(
-        fmt::format("max_repeat_steps: {}: image 2 shows none of {} other repetitions of a point; "
+        fmt::format("max_repeat_steps: {}: none of {} other repetitions of a point lies in image 2; "
                     "give a smaller repeat_step_m or a scene with smaller steps",
                     max_steps_, kMaxOutlierDraws));
   }

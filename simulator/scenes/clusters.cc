@@ -95,10 +95,11 @@ class Clusters : public SceneModel {
       const Eigen::Vector3d centre_in_cam1 = depths_.Draw(rng) * ray;
       if (view.Sees(centre_in_cam1)) return centre_in_cam1;
     }
-    throw InputError(fmt::format(
-        "num_clusters: no place for the centre of a cluster in {} tries, both images show none between "
-        "min_depth_m = {} and max_depth_m = {}; make the motion smaller or the depths larger",
-        kMaxTriesPerCentre, depths_.min_depth_m, depths_.max_depth_m));
+    throw InputError(
+        fmt::format("num_clusters: no place for the centre of a cluster found in {} tries: no point seen in "
+                    "both images between "
+                    "min_depth_m = {} and max_depth_m = {}; make the motion smaller or the depths larger",
+                    kMaxTriesPerCentre, depths_.min_depth_m, depths_.max_depth_m));
   }
 
   DepthRange depths_;

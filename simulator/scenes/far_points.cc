@@ -28,7 +28,7 @@ class FarPointsWorld : public World {
   double far_share_;
 };
 
-// Points so far away that their parallax drowns in the noise: they tell the rotation and nothing of the
+// Points so far away that their parallax is below the noise: they determine the rotation, but not the
 // translation.
 class FarPoints : public SceneModel {
  public:

@@ -94,11 +94,11 @@ class ImageClusters : public SceneModel {
       const Eigen::Vector3d parent_in_cam1 = depths_.Middle() * DrawRay(view.camera1, rng);
       if (view.Sees(parent_in_cam1)) return view.camera1.Project(parent_in_cam1);
     }
-    throw InputError(
-        fmt::format("num_clusters: no place for a cluster in {} tries, both images show none in the middle "
-                    "of min_depth_m = {} "
-                    "and max_depth_m = {}; make the motion smaller or the depths larger",
-                    kMaxTriesPerParent, depths_.min_depth_m, depths_.max_depth_m));
+    throw InputError(fmt::format(
+        "num_clusters: no place for a cluster found in {} tries: no point seen in both images in the middle "
+        "of min_depth_m = {} "
+        "and max_depth_m = {}; make the motion smaller or the depths larger",
+        kMaxTriesPerParent, depths_.min_depth_m, depths_.max_depth_m));
   }
 
   DepthRange depths_;

@@ -37,7 +37,7 @@ class PlaneWorld : public PointwiseWorld {
 };
 
 // A plane, tilted about any axis in the image, and points beside it: with few of them the motion is hard to
-// tell from another one of the same homography (Type B).
+// distinguish from another one of the same homography (Type B).
 class PlaneScene : public SceneModel {
  public:
   explicit PlaneScene(double off_plane_share) : off_plane_share_(off_plane_share) {}

@@ -27,10 +27,11 @@ class UprightCamera {
 
   // A viewing ray, given in camera axes, in the axes of the building.
   Eigen::Vector3d InBuildingAxes(const Eigen::Vector3d& ray) const;
-  // The depth (third coordinate in the camera, m) of the first rectangle on the ray; infinite: there is none.
+  // The depth (third coordinate in the camera, m) of the first rectangle on the ray; infinite if the ray
+  // meets no rectangle.
   double FirstDepth(const Eigen::Vector3d& ray, std::span<const Rectangle> rectangles) const;
-  // The point (camera frame) of the first rectangle on the ray of a pixel uniform over the image; where there
-  // is none, UnseenPoint().
+  // The point (camera frame) of the first rectangle on the ray of a pixel uniform over the image; where it
+  // meets no rectangle, UnseenPoint().
   Eigen::Vector3d DrawPoint(std::span<const Rectangle> rectangles, RandomStream& rng) const;
 
  private:

@@ -8,8 +8,8 @@
 
 namespace rcme {
 
-// The greatest share of the points that one homography explains: points on one plane, or all that have no
-// parallax to speak of. A point counts if the homography carries its exact first image to within the 95 %
+// The greatest share of the points that one homography explains: points on one plane, or all whose
+// parallax is negligible. A point counts if the homography carries its exact first image to within the 95 %
 // radius of two noisy points' difference, sqrt(2) 2.448 sigma, of its exact second image. Tried are the
 // homography of the plane at infinity and those of 64 planes through three random points each: the share is a
 // lower bound, reached with probability 1 - (1 - s^3)^64 or more where the answer is s (0.9996 at s = 0.49;

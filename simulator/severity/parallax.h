@@ -11,7 +11,7 @@ namespace rcme {
 std::vector<double> ParallaxesDeg(const ViewPair& view, const std::vector<Eigen::Vector3d>& points_in_cam1);
 
 // The value at rank floor(probability (n - 1)), from 0, of n in rising order; the values are reordered. NaN
-// of none.
+// if there are no values.
 double QuantileOf(std::vector<double>& values, double probability);
 
 }  // namespace rcme

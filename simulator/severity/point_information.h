@@ -1,4 +1,4 @@
-// What one exact match tells about the motion, from projections alone.
+// The information of one exact match about the motion, from projections alone.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
-// How hard a problem is, measured on the truth itself, so that a failure can be told from an impossible
-// problem.
+// How hard a problem is, measured on the truth itself, so that an avoidable failure can be distinguished
+// from an impossible problem.
 #pragma once
 
 #include <limits>

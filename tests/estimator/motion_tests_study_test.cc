@@ -3,7 +3,7 @@
 //
 //   RCME_MOTION_TESTS_TRIALS=1000 estimator_test --gtest_filter='MotionTests.*'
 //
-// the study of experiments/RESULTS.md: so many trials of each condition.
+// the study of experiments/RESULTS.md, with that number of trials of each condition.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

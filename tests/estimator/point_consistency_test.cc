@@ -236,10 +236,10 @@ TEST(AsPrintedTest, ClosedFormEqualsTheFourByFourInverse) { CompareWithTextbook(
 TEST(AsPrintedTest, ClosedFormHoldsForWellKnownMotions) { CompareWithTextbook(30.0, 211); }
 
 TEST(AsPrintedTest, KnownMotionMeasuresTheDistanceFromTheEpipoles) {
-  // With Sigma_p = 0, d2 = |H^-1 j|^2 / sigma^2 times (e / (j' H^-1 j / |j| - e))^2, e = g / |j| (a closed form
-  // of the 4x4 route). F has rank 2, so that j' H^-1 j = 2 g and the factor is 1, and H^-1 j = [x1 - epipole1; x2 -
-  // epipole2]: the printed statistic of a known motion is the squared distance of the match from the two
-  // epipoles, whatever its residual.
+  // With Sigma_p = 0, d2 = |H^-1 j|^2 / sigma^2 times (e / (j' H^-1 j / |j| - e))^2, e = g / |j| (a closed
+  // form of the 4x4 route). F has rank 2, so that j' H^-1 j = 2 g and the factor is 1, and H^-1 j = [x1 -
+  // epipole1; x2 - epipole2]: the printed statistic of a known motion is the squared distance of the match
+  // from the two epipoles, whatever its residual.
   RandomStream rng({.seed = 1, .purpose = 212});
   int num_compared = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -384,12 +384,13 @@ TEST(PointTests, UnitsOfPixelsMatterAsStated) {
 
 // --- coverage
 
-// Fresh points of many random motions that are known exactly, true noise `sigma_px`, the test told `told_px`.
+// Fresh points of many random motions that are known exactly, true noise `sigma_px`, the test assuming
+// `assumed_px`.
 struct KnownMotionCoverage {
   CoverageCount rank_aware, as_printed;
 };
 
-KnownMotionCoverage MeasureKnownMotion(double sigma_px, double told_px, std::uint32_t purpose) {
+KnownMotionCoverage MeasureKnownMotion(double sigma_px, double assumed_px, std::uint32_t purpose) {
   const double limit_1 = ChiSquareQuantile(1, 0.95), limit_3 = ChiSquareQuantile(3, 0.95);
   KnownMotionCoverage coverage;
   RandomStream rng({.seed = 1, .purpose = purpose});
@@ -397,8 +398,8 @@ KnownMotionCoverage MeasureKnownMotion(double sigma_px, double told_px, std::uin
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 20});
     AddNoise(sigma_px, rng, &random.problem);
     const UncertainFundamental model = ModelOf(random, Matrix5d::Zero());
-    const RankAwareTest rank_aware(model, told_px);
-    const AsPrintedTest as_printed(model, told_px);
+    const RankAwareTest rank_aware(model, assumed_px);
+    const AsPrintedTest as_printed(model, assumed_px);
     for (const Correspondence& match : random.problem.matches) {
       coverage.rank_aware.Add(Distance(rank_aware, match) <= limit_1);
       coverage.as_printed.Add(Distance(as_printed, match) <= limit_3);
@@ -408,7 +409,7 @@ KnownMotionCoverage MeasureKnownMotion(double sigma_px, double told_px, std::uin
 }
 
 TEST(PointTests, CoverageWithAKnownMotion) {
-  // 40 000 fresh points at sigma 0.5 px, false alarm 1e-4, interval 0.0085 wide; told 0.45 (0.55) px the
+  // 40 000 fresh points at sigma 0.5 px, false alarm 1e-4, interval 0.0085 wide; assuming 0.45 (0.55) px the
   // rank-aware test covers 0.922 (0.969). The printed one covers next to nothing: see
   // KnownMotionMeasuresTheDistanceFromTheEpipoles.
   const KnownMotionCoverage coverage = MeasureKnownMotion(0.5, 0.5, 209);

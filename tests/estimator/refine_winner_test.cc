@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-// Says what it is told of how many matches are consistent: before and after the refinement, and of all.
+// Returns given numbers of consistent matches: before and after the refinement, and of all matches.
 class ScriptedMatches : public ReferenceMatches {
  public:
   ScriptedMatches(const MotionProblem& problem, int before, int after, int explained)
@@ -88,7 +88,7 @@ TEST(RefineWinner, CountsWhatItSaysItCounts) {
     EXPECT_NEAR(threshold, 5.991464547, 1e-9);  // chi2_2, 95 %
 }
 
-// Lets so many matches agree with every motion, the first of the problem.
+// The first `num_agreeing` matches of the problem agree with every motion.
 class AgreeingMatches : public ReferenceMatches {
  public:
   AgreeingMatches(const MotionProblem& problem, int num_agreeing)

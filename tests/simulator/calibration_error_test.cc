@@ -20,13 +20,13 @@ TEST(CalibrationError, ByHand) {
     FindParameter(Parameters(error), key).SetFromText(value);
   }
   EXPECT_EQ(error.SigmaTold(0.7), 0.3);
-  const Camera told = error.CameraTold({700.0, 650.0, 330.0, 235.0, 640, 480});
-  EXPECT_DOUBLE_EQ(told.fx, 770.0);
-  EXPECT_DOUBLE_EQ(told.fy, 715.0);
-  EXPECT_EQ(told.cx, 326.0);
-  EXPECT_EQ(told.cy, 231.0);
-  EXPECT_EQ(told.width, 640);
-  EXPECT_EQ(told.height, 480);
+  const Camera assumed = error.CameraTold({700.0, 650.0, 330.0, 235.0, 640, 480});
+  EXPECT_DOUBLE_EQ(assumed.fx, 770.0);
+  EXPECT_DOUBLE_EQ(assumed.fy, 715.0);
+  EXPECT_EQ(assumed.cx, 326.0);
+  EXPECT_EQ(assumed.cy, 231.0);
+  EXPECT_EQ(assumed.width, 640);
+  EXPECT_EQ(assumed.height, 480);
 }
 
 }  // namespace

@@ -32,11 +32,11 @@ TEST_P(NoiseContract, ItsParametersHaveNamesOfTheirOwnAndSurviveARoundTrip) {
 TEST_P(NoiseContract, SigmaIsTheRootMeanSquareOverTheCoordinates) {
   const auto law = WithSettings(GetParam().make(), {{"sigma_px", "0.75"}});
   const std::vector<Eigen::Vector4d> noise = SampleNoise(*law, 100'000);
-  const double told = 0.75 * 0.75, rounding = GetParam().name == "quantised" ? 1.0 / 12.0 : 0.0;
+  const double stated = 0.75 * 0.75, rounding = GetParam().name == "quantised" ? 1.0 / 12.0 : 0.0;
   const Moments square = MomentsOf(noise, [](const Eigen::Vector4d& e) { return e.squaredNorm() / 4.0; });
-  EXPECT_LT(std::abs(ZAgainst(square, told + rounding)), kNoiseZ);
-  EXPECT_GT(std::abs(ZAgainst(square, 1.05 * 1.05 * told + rounding)), kNoiseZ) << "no power";
-  EXPECT_GT(std::abs(ZAgainst(square, told / (1.05 * 1.05) + rounding)), kNoiseZ) << "no power";
+  EXPECT_LT(std::abs(ZAgainst(square, stated + rounding)), kNoiseZ);
+  EXPECT_GT(std::abs(ZAgainst(square, 1.05 * 1.05 * stated + rounding)), kNoiseZ) << "no power";
+  EXPECT_GT(std::abs(ZAgainst(square, stated / (1.05 * 1.05) + rounding)), kNoiseZ) << "no power";
 }
 
 // z-tests at 1e-4 each: mean zero in each coordinate, and no correlation, of values and of sizes, with the

@@ -189,10 +189,10 @@ TEST_P(SceneContract, ItsParametersHaveNamesOfTheirOwnBesideThoseOfEverythingEls
       for (const OutlierEntry& outlier_entry : OutlierRegistry()) {
         const std::unique_ptr<NoiseModel> noise = noise_entry.make();
         OutlierModel outliers(std::shared_ptr<OutlierLaw>(outlier_entry.make()));
-        CalibrationError told;
+        CalibrationError error;
         std::set<std::string> names;
         for (const std::vector<Parameter>& parameters :
-             {generator.Parameters(), noise->Parameters(), Parameters(outliers), Parameters(told)}) {
+             {generator.Parameters(), noise->Parameters(), Parameters(outliers), Parameters(error)}) {
           for (const Parameter& parameter : parameters) {
             EXPECT_TRUE(names.insert(parameter.name()).second)
                 << parameter.name() << " with " << noise_entry.name << ", " << outlier_entry.name;

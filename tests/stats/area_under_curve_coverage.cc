@@ -34,8 +34,8 @@ const Law kLaws[] = {{"normal", Shifted, Same},
                      {"positives 3 times as wide", ShiftedWide, Same},
                      {"exponential", LongerExponential, Exponential}};
 
-// `num_clusters` clusters of so many scores of each kind; half of the variance of the normal behind each
-// score is common: to the scores of a kind in a cluster, or to both kinds.
+// `num_clusters` clusters with the given number of scores of each kind; half of the variance of the normal
+// behind each score is common: to the scores of a kind in a cluster, or to both kinds.
 struct Design {
   int num_clusters, positives_each, negatives_each;
   bool are_kinds_alike;

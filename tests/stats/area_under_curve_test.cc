@@ -132,7 +132,7 @@ TEST(AreaUnderCurve, CoversWhereScoresShareAScene) {
 }
 
 TEST(AreaUnderCurve, HasPower) {
-  // A shift of 0.4 sigma (area 0.61), 200 of each kind, is told from chance with power above 0.9.
+  // A shift of 0.4 sigma (area 0.61), 200 of each kind, is distinguished from chance with power above 0.9.
   CoverageCount caught;
   RandomStream rng({.seed = 1, .purpose = 143});
   for (int repetition = 0; repetition < 1000; ++repetition) {

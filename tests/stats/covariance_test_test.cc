@@ -111,7 +111,7 @@ TEST(CovarianceTest, SeesAFaultAndItsDirection) {
 
 TEST(WhitenedErrors, FalseAlarmRateIsNominalWithAnotherCovarianceInEachTrial) {
   // k = 3, n = 60, 20 000 repetitions. Errors 20 % too large, a bias of one sigma and the covariance of the
-  // previous trial instead of one's own are caught.
+  // previous trial instead of the trial's own are caught.
   RandomStream rng({.seed = 1, .purpose = 103});
   CoverageCount alarms, scaled, biased, shuffled;
   for (int repetition = 0; repetition < 20'000; ++repetition) {

@@ -110,7 +110,7 @@ TEST_F(AgreementTest, TheFitSetKnowsLeverageAndWhatWasFitted) {
   EXPECT_GT(num_behind, 20);
 }
 
-TEST_F(AgreementTest, ACovarianceThatIsNoneAgreesWithNothing) {
+TEST_F(AgreementTest, AnInvalidCovarianceAgreesWithNothing) {
   Case c = MakeCase(16, 0);
   c.motion.pose_cov(0, 0) = std::nan("");
   const MatchBlocks matches(c.problem);

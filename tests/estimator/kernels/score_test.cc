@@ -289,7 +289,7 @@ TEST_F(ScoreTest, ACovarianceOfZeroLeavesTheKnownPose) {
   });
 }
 
-TEST_F(ScoreTest, ACovarianceThatIsNoneGivesNoModel) {
+TEST_F(ScoreTest, AnInvalidCovarianceGivesNoModel) {
   const Case c = MakeCase(8, 102);
   const MatchBlocks matches(c.problem);
   Matrix5d bad = c.pose_cov;

@@ -128,11 +128,11 @@ TEST(RefineByReprojection, UsesOnlyTheMatchesItIsTold) {
   RandomStream rng({.seed = 1, .purpose = 223});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 40});
   random.problem.sigma_px = 0.5;
-  std::vector<int> told;
-  for (int k = 0; k < 40; k += 2) told.push_back(k);
+  std::vector<int> used;
+  for (int k = 0; k < 40; k += 2) used.push_back(k);
   for (size_t k = 1; k < 40; k += 2) random.problem.matches[k].x2_px.x() += 50.0;
   const RelativePose start = Retract(random.pose_true, RandomStep(0.003, rng));
-  const RefinedMotion refined = RefineByReprojection(random.problem, told, start, Loss::kSquared);
+  const RefinedMotion refined = RefineByReprojection(random.problem, used, start, Loss::kSquared);
   ASSERT_TRUE(refined.converged);
   EXPECT_LT(LocalCoordinates(random.pose_true, refined.cam2_from_cam1).norm(), 1e-6);
 }

@@ -36,7 +36,7 @@ class MotionContract : public testing::TestWithParam<MotionEntry> {};
 TEST_P(MotionContract, DrawsRotationsAndUnitDirectionsFromTheStreamAlone) {
   const std::unique_ptr<MotionModel> model = GetParam().make();
   if (Baseline* baseline = model->MutableBaseline())
-    baseline->of_parallax_m = 0.1;  // for one given as parallax
+    baseline->length_of_parallax_m = 0.1;  // for one given as parallax
   for (std::uint32_t trial = 0; trial < 50; ++trial) {
     const Motion motion = Draw(*model, trial), again = Draw(*model, trial);
     const Eigen::Matrix3d& R = motion.cam2_from_cam1.R;
@@ -185,7 +185,7 @@ TEST(BaselineLength, IsMetresOrThatOfTheParallax) {
   EXPECT_EQ(baseline.Length(), 0.5);
   baseline.parallax_deg = 4.0;
   EXPECT_THROW(baseline.Length(), std::logic_error) << "not known yet";
-  baseline.of_parallax_m = 0.7;
+  baseline.length_of_parallax_m = 0.7;
   EXPECT_EQ(baseline.Length(), 0.7);
 }
 

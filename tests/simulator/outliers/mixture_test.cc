@@ -28,7 +28,7 @@ TEST(OutlierMixture, HasAWeightForEveryOtherLaw) {
   }
 }
 
-// Three laws that can be told apart: flagged; sharing a point with a true match; near the true point.
+// Three laws that are easy to distinguish: flagged; sharing a point with a true match; near the true point.
 TEST(OutlierMixture, SplitsByTheWeightsToOneMatch) {
   const auto law =
       MixtureOf({{"weight_epipolar", "3"}, {"weight_one_to_many", "2"}, {"weight_displaced", "1"}});

@@ -67,8 +67,8 @@ TEST(ImageClusters, DiscOffspringIsUniformInTheDisc) {
   EXPECT_LT(*std::ranges::max_element(radii), 1.03);
 }
 
-// 3,000 parents, told by offspring that stays with them; Kolmogorov-Smirnov at 1e-4. The same test rejects
-// parents that are a tenth of the width to the right (sqrt(n) D = 5.5).
+// 3,000 parents, recovered from offspring that stays with them; Kolmogorov-Smirnov at 1e-4. The same test
+// rejects parents that are a tenth of the width to the right (sqrt(n) D = 5.5).
 TEST(ImageClusters, ParentsAreUniformOverImage1) {
   const auto model = Configured(MakeImageClusters(), {{"num_clusters", "1"}, {"cluster_spread_px", "1e-6"}});
   std::vector<Eigen::Vector3d> parents;
