@@ -4,11 +4,11 @@
 
 namespace rcme {
 
-double CalibrationError::SigmaTold(double sigma_true_px) const {
-  return std::isnan(sigma_told_px) ? sigma_true_px : sigma_told_px;
+double CalibrationError::AssumedSigma(double sigma_true_px) const {
+  return std::isnan(assumed_sigma_px) ? sigma_true_px : assumed_sigma_px;
 }
 
-Camera CalibrationError::CameraTold(Camera camera_true) const {
+Camera CalibrationError::AssumedCamera(Camera camera_true) const {
   camera_true.fx *= 1.0 + focal_error;
   camera_true.fy *= 1.0 + focal_error;
   camera_true.cx += principal_point_error_px;
@@ -17,7 +17,7 @@ Camera CalibrationError::CameraTold(Camera camera_true) const {
 }
 
 std::vector<Parameter> Parameters(CalibrationError& error) {
-  return {Parameter::RealOrWord("sigma_told_px", &error.sigma_told_px, {1e-9, 1000.0}, "true", "px",
+  return {Parameter::RealOrWord("assumed_sigma_px", &error.assumed_sigma_px, {1e-9, 1000.0}, "true", "px",
                                 "standard deviation of the noise that the estimators assume"),
           Parameter::Real("focal_error", &error.focal_error, {-0.9, 9.0}, "",
                           "relative error of the focal lengths that the estimators assume"),

@@ -10,12 +10,12 @@ namespace rcme {
 
 // What the estimators assume where it differs from the truth.
 struct CalibrationError {
-  double sigma_told_px = std::numeric_limits<double>::quiet_NaN();  // NaN: the true one
+  double assumed_sigma_px = std::numeric_limits<double>::quiet_NaN();  // NaN: the true one
   double focal_error = 0.0;               // relative: assumed f = true f (1 + error), both cameras
   double principal_point_error_px = 0.0;  // assumed cx, cy = true ones + error, both cameras
 
-  double SigmaTold(double sigma_true_px) const;
-  Camera CameraTold(Camera camera_true) const;
+  double AssumedSigma(double sigma_true_px) const;
+  Camera AssumedCamera(Camera camera_true) const;
 };
 std::vector<Parameter> Parameters(CalibrationError& error);
 

@@ -1,4 +1,4 @@
-// An estimator of one's own in the whole framework: OpenCV's five-point RANSAC, with the first-order
+// A user's own estimator in the whole framework: OpenCV's five-point RANSAC, with the first-order
 // covariance of its inliers. Everything else is the program `rcme`.
 
 #include <opencv2/calib3d.hpp>

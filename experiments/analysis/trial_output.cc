@@ -225,7 +225,7 @@ std::string MatchesInWords(const TrialData& data) {
         fmt::format(": {} true, {} wrong ({} of them on their true epipolar line)", num_true,
                     std::ssize(is_inlier) - num_true, std::ranges::count(data.truth.is_undetectable, true));
   }
-  return words + fmt::format("; sigma {} px as told", data.problem.sigma_px);
+  return words + fmt::format("; assumed sigma {} px", data.problem.sigma_px);
 }
 
 }  // namespace

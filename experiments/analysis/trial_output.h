@@ -15,7 +15,7 @@ size_t MostTelling(const StudyPlan& plan, const TrialResult& result);
 // What plots/show_trial.py draws, as one JSON object. Lists over matches have the matches' order; matrices
 // are row-major lists of nine; what is unknown or not defined is null.
 //
-//   study, seed, condition, trial, trials_planned, origin, sigma_px (told)
+//   study, seed, condition, trial, trials_planned, origin, sigma_px (assumed)
 //   factors, parts     [name, level] each; parts are scene, cameras, motion, noise, outliers
 //   bounds, severity   by name
 //   cameras            the true ones, image 1 first
@@ -32,7 +32,7 @@ size_t MostTelling(const StudyPlan& plan, const TrialResult& result);
 //                      baseline's length
 //
 // Real pairs have no kinds, points and views. F of the truth is between the true cameras, F of an estimate
-// between those the estimators are told.
+// between those the estimators assume.
 std::string TrialAsJson(const StudyPlan& plan, const TrialResult& result, const std::vector<size_t>& drawn);
 
 // The condition, how hard the problem is, and a row per estimator.

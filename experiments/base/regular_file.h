@@ -10,7 +10,7 @@ struct FileKind {
   std::string name, article_name;
 };
 
-// A file opened for reading. A folder, a pipe, a socket or a device is none: to read it may take for ever.
+// A file opened for reading. Not a folder, a pipe, a socket or a device: reading one may take for ever.
 class RegularFile {
  public:
   // Throws InputError that names the path and what is wrong with it.

@@ -18,7 +18,7 @@ namespace {
 constexpr const char* kPrefix = "rcme_scratch_";
 
 // A descriptor of the folder that closes with the process and is not handed to the programs it starts; -1 if
-// there is no such folder (a link is none).
+// there is no such folder (a symbolic link does not count).
 int OpenFolder(const std::string& path) {
   return open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }

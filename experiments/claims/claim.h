@@ -85,7 +85,7 @@ struct TrialLimits {
 struct Check {
   Settings conditions;  // for people: key, value
   std::optional<double> sigma_px =
-      0.5;  // its rung on the ladder of noise levels; nothing: there is no ladder
+      0.5;  // the noise level it belongs to; nothing: the claim is not judged by noise levels
   std::vector<Target> targets;
   TrialLimits limits;
   std::function<Outcome(const StreamName&)> trial;  // a pure function of the name

@@ -43,28 +43,29 @@ void JudgeClaim(const Claim& claim, ClaimResult* result) {
     verdicts_by_sigma[claim.checks[i].sigma_px.value_or(kAssertedSigmaPx)].push_back(
         result->checks[i].verdict);
   }
-  std::vector<std::pair<double, Verdict>> rungs;  // rising
+  std::vector<std::pair<double, Verdict>> noise_levels;  // rising
   for (const auto& [sigma_px, verdicts] : verdicts_by_sigma) {
-    if (const std::optional<Verdict> verdict = Together(verdicts)) rungs.emplace_back(sigma_px, *verdict);
+    if (const std::optional<Verdict> verdict = Together(verdicts))
+      noise_levels.emplace_back(sigma_px, *verdict);
   }
   result->holds_up_to_sigma_px.reset();
   result->verdict = IsPossible(claim) ? ClaimVerdict::kMeasured : ClaimVerdict::kNotPossible;
-  if (rungs.empty()) return;
+  if (noise_levels.empty()) return;
 
-  const bool has_ladder = claim.checks.front().sigma_px.has_value();
-  for (const auto& [sigma_px, verdict] : rungs) {
-    if (verdict != Verdict::kHolds || !has_ladder) break;
+  const bool has_noise_levels = claim.checks.front().sigma_px.has_value();
+  for (const auto& [sigma_px, verdict] : noise_levels) {
+    if (verdict != Verdict::kHolds || !has_noise_levels) break;
     result->holds_up_to_sigma_px = sigma_px;
   }
-  bool fails = false, is_undecided = false;  // on a rung up to the asserted one
-  for (const auto& [sigma_px, verdict] : rungs) {
-    if (sigma_px > kAssertedSigmaPx && sigma_px > rungs.front().first) continue;
+  bool fails = false, is_undecided = false;  // at a noise level up to the asserted one
+  for (const auto& [sigma_px, verdict] : noise_levels) {
+    if (sigma_px > kAssertedSigmaPx && sigma_px > noise_levels.front().first) continue;
     fails |= verdict == Verdict::kDoesNotHold;
     is_undecided |= verdict == Verdict::kUndecided;
   }
-  if (rungs.front().second == Verdict::kDoesNotHold) {
+  if (noise_levels.front().second == Verdict::kDoesNotHold) {
     result->verdict = ClaimVerdict::kDoesNotHold;
-  } else if (rungs.front().second == Verdict::kUndecided || (!fails && is_undecided)) {
+  } else if (noise_levels.front().second == Verdict::kUndecided || (!fails && is_undecided)) {
     result->verdict = ClaimVerdict::kUndecided;
   } else {
     result->verdict = fails ? ClaimVerdict::kSmallNoiseOnly : ClaimVerdict::kHolds;

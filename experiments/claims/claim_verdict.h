@@ -33,8 +33,9 @@ const char* Name(ClaimVerdict verdict);
 
 struct ClaimResult {
   ClaimVerdict verdict = ClaimVerdict::kUndecided;
-  std::optional<double> holds_up_to_sigma_px;  // the highest rung such that it holds there and on all below
-  std::vector<CheckResult> checks;             // as claim.checks
+  std::optional<double>
+      holds_up_to_sigma_px;         // the highest noise level such that it holds there and at all below
+  std::vector<CheckResult> checks;  // as claim.checks
 };
 
 // Does not hold if one of them does not, holds if all do, else undecided; nothing claimed: nothing.
@@ -43,10 +44,11 @@ std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdi
 // Whether any of the claim's checks has trials.
 bool IsPossible(const Claim& claim);
 
-// The claim's verdict from its checks', by rungs of equal sigma_px: "holds" if it holds on every rung up to
-// kAssertedSigmaPx (higher ones only inform), "small noise only" if it fails by kAssertedSigmaPx but holds on
-// the lowest rungs, "does not hold" if it fails on the lowest rung, else undecided. Checks without a ladder
-// are one rung: the claim holds if it holds in all of them. "Not possible" if none of them has trials.
+// The claim's verdict from its checks', by noise level (equal sigma_px): "holds" if it holds at every level
+// up to kAssertedSigmaPx (higher ones only inform), "small noise only" if it fails by kAssertedSigmaPx but
+// holds on the lowest levels, "does not hold" if it fails at the lowest, else undecided. Checks without a
+// noise level are judged together: the claim holds if it holds in all of them. "Not possible" if none of them
+// has trials.
 void JudgeClaim(const Claim& claim, ClaimResult* result);
 
 }  // namespace rcme

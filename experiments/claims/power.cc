@@ -97,8 +97,8 @@ struct MeanLaw {
   }
 };
 
-// The values F(x / c), x chi-square distributed, c = (told sigma / true sigma)^2, that n trials are expected
-// to give.
+// The values F(x / c), x chi-square distributed, c = (assumed sigma / true sigma)^2, that n trials are
+// expected to give.
 BoundedMean ExpectedPits(int degrees_of_freedom, double sigma_error, double n) {
   const double c = (1.0 + sigma_error) * (1.0 + sigma_error);
   BoundedMean expected;

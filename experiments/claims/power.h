@@ -18,8 +18,8 @@ struct TargetPower {
   // True values outside are called "does not hold" with probability kPowerOfDesign; an infinite end: none
   // are.
   Interval found{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  // The same as relative errors of sigma, (told - true) / true, of a statistic with a chi-square law, where
-  // this error is all that is wrong; NaN: it has no such law.
+  // The same as relative errors of sigma, (assumed - true) / true, of a statistic with a chi-square law,
+  // where this error is all that is wrong; NaN: it has no such law.
   Interval found_sigma{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 };
 

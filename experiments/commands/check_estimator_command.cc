@@ -89,7 +89,7 @@ void AddCheckEstimatorCommand(CLI::App& app) {
   for (const ContractCheck& check : ContractChecks())
     checks += fmt::format("  {:<12} {}\n", check.name, check.doc);
   command->footer(
-      "For an estimator of one's own (examples/own_estimator), before it is audited or put in a study. The\n"
+      "For a user's own estimator (examples/own_estimator), before it is audited or put in a study. The\n"
       "contract is in estimator/motion_estimator.h and motion_estimate.h. The checks:\n" +
       checks +
       "Each runs in a process of its own, so that a crash or a call that never returns fails the check. A\n"

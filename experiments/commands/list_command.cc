@@ -57,7 +57,7 @@ Rows ListScenes() {
 
 Rows ListCameras() {
   Rows rows = ListRegistry("cameras", CameraRegistry());
-  rows.push_back({kCamerasFromFile, "two cameras of one's own, from the file of the key calibration"});
+  rows.push_back({kCamerasFromFile, "two cameras given by the user, from the file of the key calibration"});
   return rows;
 }
 Rows ListMotions() { return ListRegistry("motion", MotionRegistry()); }

@@ -12,7 +12,8 @@
 
 namespace rcme {
 
-// `parse` reads a whole text into a Number; false: it is none. `allowed` says what is, in words.
+// `parse` reads a whole text into a Number; false: the text is not a number. `allowed` says what is, in
+// words.
 template <typename Number>
 CLI::Validator NumberValidator(bool (*parse)(const std::string&, Number*), Number min, Number max,
                                const std::string& allowed) {

@@ -113,8 +113,9 @@ void AddTuneCommand(CLI::App& app) {
       command->add_option("--figures", arguments->figures,
                           "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
   command
-      ->add_option("--repeat", arguments->repeat,
-                   "tune so many times with fresh seeds, and count how often the target is violated")
+      ->add_option(
+          "--repeat", arguments->repeat,
+          "number of repetitions: tune again with fresh seeds, and count how often the target is violated")
       ->transform(WholeNumberIn(1, 100'000))
       ->excludes(out)
       ->excludes(figures);

@@ -17,7 +17,7 @@ std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
   return {Parameter::Text("folder", &settings.folder, "a folder of match files",
                           "folder with *.csv or *.csv.gz, relative to the working directory"),
           Parameter::Real("sigma_px", &settings.sigma_px, {1e-9, 1000.0}, "px",
-                          "noise standard deviation that the estimators are told")};
+                          "noise standard deviation that the estimators assume")};
 }
 
 // The keys that choose by name, with the field of the choice.

@@ -31,8 +31,8 @@ struct MatchFile {
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
 
 // Reads line by line; memory is that of the matches. Throws InputError that names the file, the line, what is
-// wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible, a rotation
-// that is none, columns in another order, a coordinate that is none, more than kMaxMatchesPerFile matches,
+// wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible, an invalid
+// rotation, columns in another order, a coordinate that is not finite, more than kMaxMatchesPerFile matches,
 // 1,000 columns or what GzipLines allows.
 MatchFile ReadMatchFile(const std::string& path);
 

@@ -12,7 +12,7 @@ namespace rcme {
 // What a `data:` block says of a folder of match files.
 struct MatchFolderSettings {
   std::string folder;     // relative to the working directory
-  double sigma_px = 0.5;  // the noise level that the estimators are told
+  double sigma_px = 0.5;  // the noise level that the estimators assume
 };
 
 // The pairs of one scene of a folder of match files; trial t is file t mod (number of files), each pass with

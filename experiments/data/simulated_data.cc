@@ -31,7 +31,7 @@ SimulatedData::SimulatedData(const Choices& choices)
 std::vector<Parameter> SimulatedData::Parameters() {
   std::vector<Parameter> all = scenes_.Parameters();
   for (const std::vector<Parameter>& more :
-       {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(told_)}) {
+       {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(assumed_)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   all.push_back(Parameter::Choice<bool>("severity", &measures_severity_,
@@ -66,8 +66,8 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_na
     RandomStream severity_rng = StreamFor(trial_name, StreamPurpose::kSeverity);
     data.severity = MeasureSeverity(scene, observation, noise_->sigma_px(), severity_rng);
   }
-  data.problem = {std::move(observation.matches), told_.CameraTold(scene.camera1),
-                  told_.CameraTold(scene.camera2), told_.SigmaTold(noise_->sigma_px())};
+  data.problem = {std::move(observation.matches), assumed_.AssumedCamera(scene.camera1),
+                  assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(noise_->sigma_px())};
   data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
                 std::move(observation.is_undetectable)};
   data.origin = "simulated";

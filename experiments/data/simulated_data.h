@@ -17,7 +17,8 @@ struct Choices {
   std::string scene, cameras, motion, noise, outliers;
 };
 
-// Simulated pairs: a scene, noise, outliers. The estimators are told sigma and the cameras, and nothing else.
+// Simulated pairs: a scene, noise, outliers. The estimators get the matches, an assumed sigma and assumed
+// cameras, and nothing else.
 class SimulatedData : public DataSource {
  public:
   // Throws InputError that lists what is allowed.
@@ -44,7 +45,7 @@ class SimulatedData : public DataSource {
   SceneGenerator scenes_;
   std::unique_ptr<NoiseModel> noise_;
   OutlierModel outliers_;
-  CalibrationError told_;
+  CalibrationError assumed_;
   bool measures_severity_ = true;
 };
 

@@ -34,7 +34,7 @@ class ResultStore {
   // study keeps the greatest number of trials. Throws InputError if the path cannot be written, is no result
   // file or a damaged one, is in use by another run, or holds another study (the message says what differs).
   static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan);
-  // Opens an existing file to read. Throws InputError if it is none, or damaged.
+  // Opens an existing file to read. Throws InputError if it is not a result file, or damaged.
   static ResultStore OpenForReading(const std::string& path);
 
   ResultStore(ResultStore&&) noexcept;

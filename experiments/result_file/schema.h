@@ -15,7 +15,7 @@ inline constexpr const char* kResultFormat = "rcme results 4";  // `run` holds i
 void CreateTables(SQLite::Database& database);
 void DropTables(SQLite::Database& database);
 
-// Throws InputError if the file is none of ours, or of another format.
+// Throws InputError if the file is not a result file, or of another format.
 void CheckFormat(SQLite::Database& database, const std::string& path);
 
 // Throws Damage if the file does not have exactly our tables: a column or its type differs, there is a

@@ -22,7 +22,7 @@ Description FaultOfInliers(const std::vector<int>& inliers, size_t num_matches) 
   std::vector<bool> is_taken(num_matches);
   for (const int index : inliers) {
     if (index < 0 || static_cast<size_t>(index) >= num_matches)
-      return fmt::format("inlier {} is none of the {} matches", index, num_matches);
+      return fmt::format("inlier {} is not an index of one of the {} matches", index, num_matches);
     if (is_taken[static_cast<size_t>(index)]) return fmt::format("inlier {} is there twice", index);
     is_taken[static_cast<size_t>(index)] = true;
   }
@@ -47,7 +47,8 @@ Description FaultOfCounts(const MotionEstimate& e, size_t num_matches) {
 
 // Everything but the motion and its covariance.
 Description FaultOfAccount(const MotionEstimate& estimate, size_t num_matches) {
-  if (!IsKnown(estimate.status)) return fmt::format("status {} is none", static_cast<int>(estimate.status));
+  if (!IsKnown(estimate.status))
+    return fmt::format("status {} is not a known status", static_cast<int>(estimate.status));
   const Description inliers = FaultOfInliers(estimate.inliers, num_matches);
   return inliers ? inliers : FaultOfCounts(estimate, num_matches);
 }

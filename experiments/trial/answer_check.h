@@ -34,8 +34,8 @@ struct AnswerFault {
 
 // What is wrong with the answer to a problem of `num_matches`; nothing: it is valid.
 // invalid_motion: an unknown status, inliers that are no matches or are repeated, counts that cannot be, or,
-// where the status promises them (ok: both; direction_not_observable: the rotation), R and t that are none.
-// invalid_covariance: status ok, a valid motion, and a covariance that is none.
+// where the status promises them (ok: both; direction_not_observable: the rotation), R and t that are not a
+// valid motion. invalid_covariance: status ok, a valid motion, and an invalid covariance.
 std::optional<AnswerFault> FindFault(const MotionEstimate& estimate, size_t num_matches);
 
 // The answer as it is scored: itself if it is valid, else with the fault's status and message, and without

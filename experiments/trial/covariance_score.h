@@ -1,6 +1,6 @@
 // How far the truth lies from an estimate, measured with the covariance that the estimate reports: tangent
 // and covariance are both those at the estimate, as a user of the covariance has them. Infinite or NaN: the
-// covariance is none, and covers nothing.
+// covariance is invalid, and covers nothing.
 #pragma once
 
 #include "estimator/linear_motion.h"

@@ -22,7 +22,7 @@ class SampleFamily {
   Scene MakeScene(const StreamName& name) const;
   // The scene's matches with noise from `noise_rng`; their order depends on the name alone.
   ObservedSample Observe(const Scene& scene, const StreamName& name, RandomStream& noise_rng) const;
-  // The same matches in the same order without noise; the problem is told the same sigma.
+  // The same matches in the same order without noise; the problem states the same sigma.
   ObservedSample ObserveExactly(const Scene& scene, const StreamName& name) const;
 
  private:

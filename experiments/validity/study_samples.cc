@@ -14,7 +14,7 @@ namespace rcme {
 namespace {
 
 constexpr const char* kSigmaKey = "sigma_px";
-constexpr const char* kAssumedSigmaKey = "sigma_told_px";
+constexpr const char* kAssumedSigmaKey = "assumed_sigma_px";
 
 std::string ValueOf(const Settings& settings, const std::string& key) {
   for (const auto& [name, value] : settings) {

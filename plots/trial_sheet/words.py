@@ -40,14 +40,14 @@ def facts_of(trial):
     """How hard the problem is, a sentence or less each."""
     severity, count = trial.severity, len(trial.matches)
     if trial.kinds is None:
-        return [f"{count} matches of {trial.facts['origin']}; which of them are true is not known. Noise as told: "
+        return [f"{count} matches of {trial.facts['origin']}; which of them are true is not known. Assumed noise: "
                 f"{number(trial.facts['sigma_px'])} px."]
     num_true, num_hidden = (int((trial.kinds == kind).sum()) for kind in ("inlier", "undetectable"))
     parts = ", ".join(f"{part} {name}" for part, name in trial.facts["parts"])
     facts = [f"{parts[:1].upper()}{parts[1:]}.",
              f"{count} matches: {num_true} true, {count - num_true} wrong" +
              (f", of these {num_hidden} on their true epipolar line" if num_hidden else "") + ".",
-             f"Noise as told: {number(trial.facts['sigma_px'])} px.",
+             f"Assumed noise: {number(trial.facts['sigma_px'])} px.",
              f"Baseline: {number(trial.baseline_m)} m." if trial.baseline_m else "No baseline: a pure rotation."]
     known = [("image_coverage", per_cent, "of image 1 covered by true matches."),
              ("parallax_median_deg", degrees, "parallax (median of the true matches)."),
@@ -58,7 +58,7 @@ def facts_of(trial):
               if severity.get(name) is not None]
     if bounds:
         facts.append(f"Gaussian bound: {' and '.join(bounds)}. No unbiased estimator can be better (root mean square) "
-                     "with these true matches and normal noise, even if it is told which they are.")
+                     "with these true matches and normal noise, even if it knows which they are.")
     return facts
 
 

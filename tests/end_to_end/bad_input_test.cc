@@ -118,7 +118,7 @@ TEST_F(BadInput, UnknownStudyKey) {
   const std::string bad = folder_.Write("bad.yaml", SmallStudyYaml() + "trails: 5\n");
   EXPECT_TRUE(
       IsRefused(RunRcme({"run", bad, "--out", out_}), {"bad.yaml:10:", "'trails'", "known keys", "trials"}));
-  EXPECT_FALSE(std::filesystem::exists(out_)) << "a result file was made for a study that is none";
+  EXPECT_FALSE(std::filesystem::exists(out_)) << "a result file was made for a file that is not a study";
 }
 
 TEST_F(BadInput, StudiesThatCannotBePlannedNameTheirFile) {
@@ -339,7 +339,7 @@ TEST_F(BadInput, TuneBlock) {
   EXPECT_FALSE(std::filesystem::exists(out_));
 }
 
-// Both commands that take an estimator file, with a file that is none.
+// Both commands that take an estimator file, with a file that is not an estimator file.
 TEST_F(BadInput, EstimatorFiles) {
   const std::string matches = folder_.Write("m.csv", MatchHeader() + MatchRows(50));
   const auto refuses = [&](const std::string& file, const std::vector<std::string>& fragments) {

@@ -99,16 +99,16 @@ Claim ClaimOn(const std::function<MotionEstimate(Case&)>& answer) {
   return claim;
 }
 
-// A check whose statistic is chi-square distributed, with standard deviations told too large by
+// A check whose statistic is chi-square distributed, with assumed standard deviations too large by
 // `sigma_error`.
 Check DrawnCheck(int degrees_of_freedom, double sigma_error, const TrialLimits& limits) {
   Check check;
   check.targets = CoverageTargets(degrees_of_freedom);
   check.limits = limits;
-  check.trial = [degrees_of_freedom, told = 1.0 + sigma_error](const StreamName& name) -> Outcome {
+  check.trial = [degrees_of_freedom, assumed = 1.0 + sigma_error](const StreamName& name) -> Outcome {
     RandomStream rng(name);
     double sum = 0.0;
-    for (int i = 0; i < degrees_of_freedom; ++i) sum += std::pow(rng.Normal() / told, 2.0);
+    for (int i = 0; i < degrees_of_freedom; ++i) sum += std::pow(rng.Normal() / assumed, 2.0);
     return {sum};
   };
   return check;
@@ -182,10 +182,10 @@ void PrintSigma(double confidence) {
     }
   }
   for (const double error : {-0.1, -0.05, 0.0, 0.05, 0.1}) {
-    const double told = (1.0 + error) * (1.0 + error);
-    const auto answer = [told](Case& made) {
+    const double assumed = (1.0 + error) * (1.0 + error);
+    const auto answer = [assumed](Case& made) {
       MotionEstimate estimate = SoundAnswer(made, made.rng);
-      estimate.pose_cov *= told;
+      estimate.pose_cov *= assumed;
       return estimate;
     };
     Claim point;

@@ -103,7 +103,7 @@ inline void AddNoise(double sigma_px, RandomStream& rng, Correspondence* match) 
   }
 }
 
-// Gaussian noise on every coordinate; the problem is told its true sigma.
+// Gaussian noise on every coordinate; the problem states its true sigma.
 inline void AddNoise(double sigma_px, RandomStream& rng, MotionProblem* problem) {
   for (Correspondence& match : problem->matches) AddNoise(sigma_px, rng, &match);
   problem->sigma_px = sigma_px;

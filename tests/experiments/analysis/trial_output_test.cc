@@ -58,7 +58,7 @@ double DistanceFromLine(const Eigen::Matrix3d& F, const Json& match) {
 }
 
 TEST(TrialAsJson, TrueLinesGoThroughTrueMatchesAndMissWrongOnes) {
-  // The estimators are told a wrong focal length: the truth's lines are those of the true cameras.
+  // The estimators assume a wrong focal length: the truth's lines are those of the true cameras.
   for (const char* cameras : {"pinhole", "euroc_and_office"}) {
     const StudyPlan plan = PlanWith({{"sigma_px", "1e-7"}, {"cameras", cameras}, {"focal_error", "0.1"}});
     const Json json = JsonOf(plan, RunLast(plan));
@@ -228,7 +228,7 @@ TEST(TrialAsJson, AnInvalidAnswerIsAFailureWithItsReasonAndNoMotion) {
   const Json json = JsonOf(plan, result)["estimators"][0];
   EXPECT_EQ(json["outcome"], "failed");
   EXPECT_EQ(json["status"], "invalid_motion");
-  EXPECT_EQ(json["message"], "inlier 1000000000 is none of the 60 matches");
+  EXPECT_EQ(json["message"], "inlier 1000000000 is not an index of one of the 60 matches");
   EXPECT_EQ(json["inliers"], Json::array());
   EXPECT_TRUE(json["R"].is_null() && json["F"].is_null());
   EXPECT_NE(TrialAsText(plan, result).find("failed"), std::string::npos);

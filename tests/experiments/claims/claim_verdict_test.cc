@@ -16,17 +16,17 @@ TEST(Together, OneFailureDecidesAndOneOpenQuestionLeavesOpen) {
   EXPECT_EQ(Together({kOpen, kNo, kYes}), kNo);
 }
 
-struct Rung {
+struct NoiseLevel {
   double sigma_px;
   std::optional<Verdict> verdict;
 };
 
-ClaimResult Judge(const std::vector<Rung>& rungs) {
+ClaimResult Judge(const std::vector<NoiseLevel>& noise_levels) {
   Claim claim;
   ClaimResult result;
-  for (const Rung& rung : rungs) {
-    claim.checks.emplace_back().sigma_px = rung.sigma_px;
-    result.checks.emplace_back().verdict = rung.verdict;
+  for (const NoiseLevel& noise_level : noise_levels) {
+    claim.checks.emplace_back().sigma_px = noise_level.sigma_px;
+    result.checks.emplace_back().verdict = noise_level.verdict;
   }
   JudgeClaim(claim, &result);
   return result;
@@ -80,7 +80,7 @@ TEST(JudgeClaim, IsUndecidedWithoutEvidence) {
   EXPECT_EQ(Judge({{0.5, std::nullopt}}).verdict, ClaimVerdict::kMeasured);
 }
 
-TEST(JudgeClaim, ChecksOfOneRungStandTogether) {
+TEST(JudgeClaim, ChecksOfOneNoiseLevelStandTogether) {
   EXPECT_EQ(Judge({{0.5, kYes}, {0.5, kNo}, {0.5, std::nullopt}}).verdict, ClaimVerdict::kDoesNotHold);
   EXPECT_EQ(Judge({{0.5, kYes}, {0.5, kYes}}).verdict, ClaimVerdict::kHolds);
   EXPECT_EQ(Judge({{0.1, kYes}, {0.1, kOpen}, {0.5, kYes}}).verdict, ClaimVerdict::kUndecided);

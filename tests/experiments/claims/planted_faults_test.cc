@@ -34,7 +34,7 @@ Check PointCheck(const Statistic& statistic, double sigma_px, int num_matches, i
       CoverageTargets(degrees_of_freedom), kLimits);
 }
 
-// The estimator is told a noise level that is wrong by a factor.
+// The estimator assumes a noise level that is wrong by a factor.
 Statistic WithSigmaScaled(const Statistic& statistic, double factor) {
   return [statistic, factor](Case& made) {
     made.data.problem.sigma_px *= factor;
@@ -204,11 +204,11 @@ std::vector<Fault> Faults() {
   return {
       {"wrong degrees of freedom: 2 for 1", known, PointCheck(true_pose, 0.5, 1, 2)},
       {"wrong degrees of freedom: 7 for 8 (Sigma_f)", sigma_f, PointCheck(SoundNeesOfF, kLimitSigmaPx, 8, 7)},
-      {"sigma told 20 % too large (known motion)", known,
+      {"assumed sigma 20 % too large (known motion)", known,
        PointCheck(WithSigmaScaled(true_pose, 1.2), 0.5, 1, 1)},
-      {"sigma told 20 % too small (known motion)", known,
+      {"assumed sigma 20 % too small (known motion)", known,
        PointCheck(WithSigmaScaled(true_pose, 1 / 1.2), 0.5, 1, 1)},
-      {"sigma told 20 % too large (Sigma_f)", sigma_f,
+      {"assumed sigma 20 % too large (Sigma_f)", sigma_f,
        PointCheck(WithSigmaScaled(SoundNeesOfF, 1.2), kLimitSigmaPx, 8, 8)},
       {"dropped Jacobian term: the motion's, in a point's variance", fresh,
        PointCheck(FreshPointWith(without_motion), kLimitSigmaPx, 9, 1)},

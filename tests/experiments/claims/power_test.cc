@@ -15,7 +15,7 @@
 namespace rcme {
 namespace {
 
-// A check of the law chi2_k where sigma is told wrong by a relative error.
+// A check of the law chi2_k where the assumed sigma has a relative error.
 Check LawCheck(int degrees_of_freedom, double sigma_error, const std::vector<Target>& targets,
                std::int64_t trials) {
   Check check;

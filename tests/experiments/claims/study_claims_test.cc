@@ -94,7 +94,7 @@ TEST(StudyClaims, HaveOneCheckPerConditionNamedByItsLevels) {
     EXPECT_EQ(claim.checks[1].conditions, (Settings{{"outlier_ratio", "0"}, {"sigma_px", "1"}})) << claim.id;
     for (const Check& check : claim.checks) {
       EXPECT_EQ(check.not_possible, "") << claim.id;
-      EXPECT_FALSE(check.sigma_px) << claim.id;  // no ladder: "holds" is for all conditions
+      EXPECT_FALSE(check.sigma_px) << claim.id;  // no noise levels: "holds" is for all conditions
       const Outcome outcome = check.trial({1, 2, 3, 0});
       for (const Target& target : check.targets) EXPECT_LT(target.statistic, outcome.size()) << claim.id;
     }
@@ -146,8 +146,8 @@ TEST(StudyClaims, ASigmaThatIsWrongDoesNotHoldAndARightOneIsNotCalledFaulty) {
   };
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     EXPECT_NE(verdict_of("", seed), Verdict::kDoesNotHold) << seed;
-    EXPECT_EQ(verdict_of(", sigma_told_px: 0.96", seed), Verdict::kDoesNotHold) << seed;
-    EXPECT_EQ(verdict_of(", sigma_told_px: 0.64", seed), Verdict::kDoesNotHold) << seed;
+    EXPECT_EQ(verdict_of(", assumed_sigma_px: 0.96", seed), Verdict::kDoesNotHold) << seed;
+    EXPECT_EQ(verdict_of(", assumed_sigma_px: 0.64", seed), Verdict::kDoesNotHold) << seed;
   }
 }
 
@@ -190,7 +190,7 @@ TEST(MapConditionsOf, AreThoseThatDifferInMoreThanTheNoiseLevel) {
 }
 
 TEST(MapConditionsOf, KeepTheRatioOfTheAssumedSigma) {
-  const StudyPlan plan = PlanWith("num_matches: 20, sigma_px: 0.5, sigma_told_px: 0.75");
+  const StudyPlan plan = PlanWith("num_matches: 20, sigma_px: 0.5, assumed_sigma_px: 0.75");
   EXPECT_DOUBLE_EQ(MapConditionsOf(plan).at(0).sampler(8, 0.2)({1, 2, 3})->observed.problem.sigma_px, 0.3);
 }
 

@@ -29,9 +29,10 @@ TEST(SimulatedData, EachCameraIsToldWithTheErrorOfItsOwnFocalLength) {
   EXPECT_DOUBLE_EQ(problem.camera2.fx, 1.1 * scene.camera2.fx);
 }
 
-// How hard a problem is does not depend on what an estimator is told.
+// How hard a problem is does not depend on what an estimator assumes.
 TEST(SimulatedData, SeverityIsThatOfTheTrueNoise) {
-  const TrialData right = DataWith({})->Make(kName), wrong = DataWith({{"sigma_told_px", "2"}})->Make(kName);
+  const TrialData right = DataWith({})->Make(kName),
+                  wrong = DataWith({{"assumed_sigma_px", "2"}})->Make(kName);
   EXPECT_EQ(right.problem.sigma_px, 0.5);
   EXPECT_EQ(wrong.problem.sigma_px, 2.0);
   EXPECT_GT(right.severity.crb_rotation_deg, 0.0);

@@ -79,7 +79,7 @@ TEST(InvalidAnswers, AreFailuresInSummaryComparisonAndVerification) {
 
   for (const ComparisonRow& row : Compare(store, "standard").rows) {
     if (row.event == "failure") {
-      EXPECT_LT(row.p_value, 0.01) << "told from its honest twin";
+      EXPECT_LT(row.p_value, 0.01) << "distinguished from its honest twin";
     }
     if (row.event == "refusal") {
       EXPECT_EQ(row.counts.RiskDifference(), 0.0);
