@@ -63,6 +63,19 @@ void InstantiateWithCovarianceReference(const Trial& trial) {
   }
 }
 
+// All essential matrices through five matches of every sample. Wrong matches take part, as in a search.
+void SolveFivePointsFast(const Trial& trial) {
+  FivePointModels models;
+  for (const FivePointSamples& block : trial.five_point_samples) {
+    SolveFivePoints(block, &models);
+    DoNotOptimize(models);
+  }
+}
+void SolveFivePointsReference(const Trial& trial) {
+  for (const Trial::FiveRays& rays : trial.five_rays)
+    DoNotOptimize(FivePoint::Solve(rays.first, rays.second));
+}
+
 void TestSamplesFast(const Trial& trial) {
   const double threshold = PointThreshold(AsPrintedTest::kDegreesOfFreedom);
   for (const HypothesisBlock& block : trial.hypothesis_blocks)
@@ -217,6 +230,8 @@ std::vector<Arm> StageArms() {
           {stage, "instantiate/reference", InstantiateReference},
           {stage, "instantiate_with_covariance/fast", InstantiateFast<Spread::kCovariance>},
           {stage, "instantiate_with_covariance/reference", InstantiateWithCovarianceReference},
+          {stage, "five_points/fast", SolveFivePointsFast},
+          {stage, "five_points/reference", SolveFivePointsReference},
           {stage, "test_samples/fast", TestSamplesFast},
           {stage, "test_samples/reference", TestSamplesReference},
           {stage, "score_known_pose/fast", ScoreFast<Reading::kKnownPose>},

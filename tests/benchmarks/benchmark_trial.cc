@@ -34,6 +34,7 @@ BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
     x2.emplace_back(static_cast<float>(match.x2_px.x()), static_cast<float>(match.x2_px.y()));
   }
   MakeHypotheses(num_matches);
+  MakeFivePointSamples();
   FindWinner();
   for (int i = 0; i < num_matches; ++i) {
     if (data.truth.is_inlier_true[static_cast<size_t>(i)]) inliers.push_back(i);
@@ -57,6 +58,26 @@ void BenchmarkTrial::MakeHypotheses(int num_matches) {
     for (int lane = 0; lane < kBlockSize; ++lane) models.emplace_back(hypothesis_blocks[b], lane);
   }
   for (const WhitenedModel& model : models) variances.emplace_back(model.dF);
+}
+
+void BenchmarkTrial::MakeFivePointSamples() {
+  five_point_samples.resize(samples.size() / kBlockSize);
+  five_rays.resize(samples.size());
+  for (size_t j = 0; j < samples.size(); ++j) {
+    FivePointSamples& block = five_point_samples[j / kBlockSize];
+    const size_t lane = j % kBlockSize;
+    for (size_t k = 0; k < FivePoint::kSampleSize; ++k) {
+      const Correspondence& match = data.problem.matches[static_cast<size_t>(samples[j][k])];
+      const Eigen::Vector3d ray1 = data.problem.camera1.Ray(match.x1_px);
+      const Eigen::Vector3d ray2 = data.problem.camera2.Ray(match.x2_px);
+      five_rays[j].first[k] = ray1;
+      five_rays[j].second[k] = ray2;
+      block.x1[k][lane] = ray1.x();
+      block.y1[k][lane] = ray1.y();
+      block.x2[k][lane] = ray2.x();
+      block.y2[k][lane] = ray2.y();
+    }
+  }
 }
 
 void BenchmarkTrial::FindWinner() {

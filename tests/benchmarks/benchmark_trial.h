@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "estimator/kernels/block_search.h"
+#include "estimator/kernels/five_point_block.h"
 #include "estimator/refinement/motion_search.h"
+#include "estimator/solvers/five_point.h"
 #include "experiments/data/data_source.h"
 
 namespace rcme {
@@ -31,6 +33,13 @@ struct BenchmarkTrial {
   std::vector<WhitenedModel> models;
   std::vector<VariancePolynomial> variances;
 
+  // The first five matches of every sample, eight samples at a time and one by one.
+  struct FiveRays {
+    FivePoint::Rays first, second;
+  };
+  std::vector<FivePointSamples> five_point_samples;
+  std::vector<FiveRays> five_rays;
+
   // The hypothesis with most inliers by the known-pose test, and these.
   Sample winner{};
   MatchMask support;
@@ -43,6 +52,7 @@ struct BenchmarkTrial {
 
  private:
   void MakeHypotheses(int num_matches);
+  void MakeFivePointSamples();
   void FindWinner();
 };
 
