@@ -22,7 +22,8 @@ std::vector<double> SharesAtLeast(std::vector<double> scores, const std::vector<
   std::vector<double> shares;
   for (const double threshold : thresholds) {
     const auto num_below = std::lower_bound(scores.begin(), scores.end(), threshold) - scores.begin();
-    shares.push_back(1.0 - static_cast<double>(num_below) / static_cast<double>(scores.size()));
+    shares.push_back(static_cast<double>(std::ssize(scores) - num_below) /
+                     static_cast<double>(scores.size()));
   }
   return shares;
 }

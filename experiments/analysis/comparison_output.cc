@@ -7,6 +7,7 @@
 
 #include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
+#include "experiments/base/json_output.h"
 
 namespace rcme {
 namespace {
@@ -100,7 +101,7 @@ std::string ComparisonAsJson(const Comparison& comparison) {
     entry["p_holm"] = JsonNumber(row.holm_p_value);
     json["rows"].push_back(std::move(entry));
   }
-  return json.dump(2) + "\n";
+  return JsonText(kComparisonFormat, json);
 }
 
 }  // namespace rcme

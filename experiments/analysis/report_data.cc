@@ -9,6 +9,7 @@
 #include "experiments/analysis/report_findings.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/base/file_output.h"
+#include "experiments/base/json_output.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -115,8 +116,7 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["reference"] = comparison.reference;
   json["caution"] = comparison.caution;
   json["findings"] = FindingsOf(summary, comparison);
-  // Names are whatever bytes the study and the command line hold: what is no UTF-8 is replaced.
-  WriteFileWhole(folder + "/run.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));
   WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));
   if (!comparison.rows.empty()) WriteFileWhole(folder + "/comparison.csv", ComparisonAsCsv(comparison));
 }

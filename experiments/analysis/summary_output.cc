@@ -9,6 +9,7 @@
 
 #include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
+#include "experiments/base/json_output.h"
 
 namespace rcme {
 namespace {
@@ -196,7 +197,7 @@ std::string SummaryAsJson(const Summary& summary) {
     }
     json["rows"].push_back(std::move(entry));
   }
-  return json.dump(2) + "\n";
+  return JsonText(kSummaryFormat, json);
 }
 
 }  // namespace rcme

@@ -9,7 +9,8 @@
 #include "estimator/geometry/essential_matrix.h"
 #include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
-#include "experiments/data/simulated_data.h"
+#include "experiments/base/json_output.h"
+#include "experiments/trial/trial_outcome.h"
 
 namespace rcme {
 namespace {
@@ -53,23 +54,6 @@ Json ViewAsJson(const Eigen::Vector3d& centre_in_cam1, const Eigen::Matrix3d& ca
           {"edges_in_cam1", {Point(left), Point(right), Point(upper), Point(lower)}}};
 }
 
-// Null for real pairs.
-const SimulatedData* SimulationOf(const StudyPlan& plan, const TrialResult& result) {
-  return dynamic_cast<const SimulatedData*>(ConditionOf(plan, result).source.get());
-}
-
-// The parts of the simulation that are chosen by name, with the names; none for real pairs.
-Settings ChosenParts(const StudyPlan& plan, const TrialResult& result) {
-  const SimulatedData* simulated = SimulationOf(plan, result);
-  if (!simulated) return {};
-  const Choices& choices = simulated->choices();
-  return {{"scene", choices.scene},
-          {"cameras", choices.cameras},
-          {"motion", choices.motion},
-          {"noise", choices.noise},
-          {"outliers", choices.outliers}};
-}
-
 // The cameras as they are; the scene is null for real pairs.
 struct TrueSetting {
   Camera camera1, camera2;
@@ -77,9 +61,9 @@ struct TrueSetting {
 
   TrueSetting(const StudyPlan& plan, const TrialResult& result)
       : camera1(result.data.problem.camera1), camera2(result.data.problem.camera2) {
-    const SimulatedData* simulated = SimulationOf(plan, result);
-    if (!simulated) return;
-    scene = simulated->DrawScene({plan.study.seed, result.problem.condition, result.problem.trial, 0});
+    scene = ConditionOf(plan, result)
+                .source->SceneOf({plan.study.seed, result.problem.condition, result.problem.trial, 0});
+    if (!scene) return;
     camera1 = scene->camera1;
     camera2 = scene->camera2;
   }
@@ -148,19 +132,13 @@ std::vector<int> SpreadOver(const std::vector<Correspondence>& matches, const st
   return selected;
 }
 
-const char* OutcomeOf(const TrialRecord& record, const FailureBounds& bounds) {
-  if (HasRefused(record)) return "refused";
-  if (HasFailed(record, bounds)) return "failed";
-  return HasSucceeded(record, bounds) ? "success" : "not_scored";
-}
-
 Json EstimateAsJson(const StudyPlan& plan, const TrialResult& result, size_t e, double baseline_m) {
   const MotionEstimate& estimate = result.estimates[e];
   const TrialRecord& record = result.records[e];
   Json json = {{"label", plan.study.estimators[e].label},
                {"status", StatusName(estimate.status)},
                {"message", estimate.message},
-               {"outcome", OutcomeOf(record, plan.study.failure)},
+               {"outcome", Name(OutcomeOf(record, plan.study.failure))},
                {"rotation_error_deg", JsonNumber(record.rotation_error_deg)},
                {"direction_error_deg", JsonNumber(record.direction_error_deg)},
                {"inlier_precision", JsonNumber(record.inlier_precision)},
@@ -189,13 +167,12 @@ Json Header(const StudyPlan& plan, const TrialResult& result) {
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {
     factors.push_back(Json::array({plan.factor_names[f], condition.levels[f]}));
   }
-  for (const auto& [part, name] : ChosenParts(plan, result)) parts.push_back(Json::array({part, name}));
+  for (const auto& [part, name] : condition.source->ChosenParts()) parts.push_back(Json::array({part, name}));
   bounds["max_rotation_error_deg"] = plan.study.failure.max_rotation_error_deg;
   bounds["max_direction_error_deg"] = plan.study.failure.max_direction_error_deg;
   VisitSeverity(result.problem.severity,
                 [&](const char* name, double value) { severity[name] = JsonNumber(value); });
-  return {{"format", "rcme trial 1"},
-          {"study", plan.study.name},
+  return {{"study", plan.study.name},
           {"seed", plan.study.seed},
           {"condition", condition.index},
           {"trial", result.problem.trial},
@@ -232,7 +209,7 @@ std::string MatchesInWords(const TrialData& data) {
 
 size_t MostTelling(const StudyPlan& plan, const TrialResult& result) {
   const auto is_telling = [&](const TrialRecord& record) {
-    return HasRefused(record) || HasFailed(record, plan.study.failure);
+    return HasFailedOrRefused(record, plan.study.failure);
   };
   const auto found = std::ranges::find_if(result.records, is_telling);
   return found == result.records.end() ? 0 : static_cast<size_t>(found - result.records.begin());
@@ -254,8 +231,7 @@ std::string TrialAsJson(const StudyPlan& plan, const TrialResult& result, const 
     json["estimators"].push_back(
         EstimateAsJson(plan, result, e, setting.scene ? setting.scene->baseline_m : 0.0));
   }
-  // Names are whatever bytes the study holds: what is no UTF-8 is replaced.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(kTrialFormat, json);
 }
 
 std::string TrialAsText(const StudyPlan& plan, const TrialResult& result) {
@@ -271,20 +247,19 @@ std::string TrialAsText(const StudyPlan& plan, const TrialResult& result) {
     text += fmt::format("  {} = {}\n", plan.factor_names[f], condition.levels[f]);
   }
   std::string parts;
-  for (const auto& [part, name] : ChosenParts(plan, result)) {
+  for (const auto& [part, name] : condition.source->ChosenParts()) {
     parts += fmt::format("{}{} {}", parts.empty() ? "  " : ", ", part, name);
   }
   text += fmt::format("{}{}  {}\n", parts, parts.empty() ? "" : "\n", MatchesInWords(result.data));
   VisitSeverity(result.problem.severity, [&](const std::string& name, double value) {
-    if (SimulationOf(plan, result) && !std::isnan(value))
-      text += fmt::format("  {:<24}{:.4g}\n", name, value);
+    if (!std::isnan(value)) text += fmt::format("  {:<24}{:.4g}\n", name, value);
   });
   std::vector<std::vector<std::string>> rows = {{"estimator", "outcome", "status", "rotation error",
                                                  "direction error", "inliers", "precision", "recall"}};
   for (size_t e = 0; e < result.records.size(); ++e) {
     const TrialRecord& r = result.records[e];
-    rows.push_back({plan.study.estimators[e].label, OutcomeOf(r, plan.study.failure), StatusName(r.status),
-                    Degrees(r.rotation_error_deg), Degrees(r.direction_error_deg),
+    rows.push_back({plan.study.estimators[e].label, Name(OutcomeOf(r, plan.study.failure)),
+                    StatusName(r.status), Degrees(r.rotation_error_deg), Degrees(r.direction_error_deg),
                     fmt::format("{}", r.num_inliers), Percentage(r.inlier_precision),
                     Percentage(r.inlier_recall)});
   }

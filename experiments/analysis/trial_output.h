@@ -27,7 +27,7 @@ size_t MostTelling(const StudyPlan& plan, const TrialResult& result);
 //   truth              R, t, baseline_m, F; t and F are null where the direction is not known
 //   selected           up to eight matches, spread over image 1, whose epipolar lines are drawn
 //   drawn              numbers of the estimators to draw, in this order
-//   estimators         all of them: label, status, message, outcome (success, failed, refused, not_scored),
+//   estimators         all of them: label, status, message, outcome (success, failure, refusal, not_scored),
 //                      errors, inliers, R, t, F, and centre2_in_cam1_m: where it puts camera 2, at the true
 //                      baseline's length
 //

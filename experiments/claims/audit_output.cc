@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/base/columns.h"
+#include "experiments/base/json_output.h"
 #include "experiments/claims/power.h"
 
 namespace rcme {
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 const char* BudgetName(Budget budget) { return budget == Budget::kQuick ? "quick" : "full"; }
 
 const char* VerdictName(const std::optional<Verdict>& verdict) {
-  return verdict ? Name(*verdict) : "measured";
+  return verdict ? Name(*verdict) : Name(ClaimVerdict::kMeasured);
 }
 
 Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(); }
@@ -314,8 +315,7 @@ std::string AuditAsTable(const Audit& audit) {
 }
 
 std::string AuditAsJson(const Audit& audit) {
-  Json json = {{"format", "rcme audit 1"},
-               {"seed", audit.options.seed},
+  Json json = {{"seed", audit.options.seed},
                {"budget", BudgetName(audit.options.budget)},
                {"confidence_per_target", audit.confidence},
                {"num_targets", audit.num_targets},
@@ -325,7 +325,7 @@ std::string AuditAsJson(const Audit& audit) {
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     json["claims"].push_back(ClaimAsJson(audit, audit.claims[i], audit.results[i]));
   }
-  return json.dump(1) + "\n";
+  return JsonText(kAuditFormat, json);
 }
 
 std::string AuditAsMarkdown(const Audit& audit) {

@@ -8,11 +8,11 @@ namespace rcme {
 const char* Name(ClaimVerdict verdict) {
   switch (verdict) {
     case ClaimVerdict::kHolds:
-      return "holds";
+      return Name(Verdict::kHolds);
     case ClaimVerdict::kSmallNoiseOnly:
       return "holds in the small-noise limit only";
     case ClaimVerdict::kDoesNotHold:
-      return "does not hold";
+      return Name(Verdict::kDoesNotHold);
     case ClaimVerdict::kMeasured:
       return "measured";
     case ClaimVerdict::kNotPossible:
@@ -20,7 +20,7 @@ const char* Name(ClaimVerdict verdict) {
     case ClaimVerdict::kUndecided:
       break;
   }
-  return "undecided";
+  return Name(Verdict::kUndecided);
 }
 
 std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdicts) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/base/json_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
@@ -120,10 +121,7 @@ void RunEstimate(const EstimateArguments& arguments) {
   const MotionEstimate estimate = Judged(estimator->Estimate(data.problem, rng), data.problem.matches.size());
   const TrialRecord record = Score(estimate, data, 0.0);
   if (arguments.as_json) {
-    // An estimator's message is whatever bytes it holds: what is no UTF-8 is replaced.
-    fmt::print(
-        "{}\n",
-        AsJson(estimate, record, spec.label).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}", JsonText(kEstimateFormat, AsJson(estimate, record, spec.label)));
   } else {
     PrintForPeople(estimate, record, spec.label);
     if (estimate.status == MotionStatus::kOk) PrintCaution(spec, data.problem, arguments.seed);

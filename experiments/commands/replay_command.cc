@@ -7,6 +7,7 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/result_file/result_store.h"
 #include "experiments/trial/trial_fields.h"
+#include "experiments/trial/trial_outcome.h"
 
 namespace rcme {
 namespace {
@@ -46,10 +47,8 @@ void PrintData(const StudyPlan& plan, const Condition& condition, std::uint32_t 
 
 void PrintEstimate(const std::string& label, const MotionEstimate& estimate, const TrialRecord& record,
                    const FailureBounds& bounds) {
-  const char* verdict = HasFailed(record, bounds)      ? "failed"
-                        : HasSucceeded(record, bounds) ? "success"
-                                                       : "no motion scored";
-  fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status), verdict, estimate.message);
+  fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status), Name(OutcomeOf(record, bounds)),
+             estimate.message);
   if (!HasRefused(record)) {
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
                MatrixText(57.29577951308232 * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));

@@ -8,6 +8,8 @@
 
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
+#include "experiments/data/settings.h"
+#include "simulator/scene.h"
 #include "simulator/severity/severity.h"
 #include "stats/random.h"
 
@@ -54,6 +56,13 @@ class DataSource {
   virtual TrialData Make(const StreamName& trial_name) const = 0;
   // What else the data depend on (file contents), as text: part of the study's identity. Empty: nothing.
   virtual std::string Identity() const { return {}; }
+  // The parts of a simulation that are chosen by name (scene, cameras, ...) with the names; empty: real
+  // pairs.
+  virtual Settings ChosenParts() const { return {}; }
+  // The exact scene of a trial; nothing where nobody knows it.
+  virtual std::optional<Scene> SceneOf(const StreamName&) const { return std::nullopt; }
+  // The real scene whose images all trials share, again and again; nothing: each trial draws its own.
+  virtual std::optional<std::string> SharedScene() const { return std::nullopt; }
 };
 
 }  // namespace rcme

@@ -89,10 +89,7 @@ struct Configured {
   std::vector<Parameter> AllParameters() { return simulated ? simulated->Parameters() : Parameters(folder); }
 
   Settings ChosenNames() const {
-    if (!simulated) return {{"scene", kMatchFilesScene}};
-    Settings names;
-    for (const auto& [name, field] : ChoiceKeys()) names.emplace_back(name, simulated->choices().*field);
-    return names;
+    return simulated ? simulated->ChosenParts() : Settings{{"scene", kMatchFilesScene}};
   }
 };
 

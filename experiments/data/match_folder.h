@@ -27,7 +27,7 @@ class MatchFolderData : public DataSource {
     return pairs_[trial_name.trial % pairs_.size()];
   }
   std::string Identity() const override { return identity_; }
-  const std::string& scene() const { return scene_; }
+  std::optional<std::string> SharedScene() const override { return scene_; }
 
  private:
   std::string scene_;

@@ -51,6 +51,14 @@ std::string SimulatedData::Identity() const {
   return std::isnan(baseline_m) ? "" : fmt::format("baseline_m {:.6g}", baseline_m);
 }
 
+Settings SimulatedData::ChosenParts() const {
+  return {{"scene", choices_.scene},
+          {"cameras", choices_.cameras},
+          {"motion", choices_.motion},
+          {"noise", choices_.noise},
+          {"outliers", choices_.outliers}};
+}
+
 Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
   RandomStream scene_rng = StreamFor(trial_name, StreamPurpose::kScene);
   return scenes_.Generate(scene_rng);

@@ -23,25 +23,27 @@ class SimulatedData : public DataSource {
  public:
   // Throws InputError that lists what is allowed.
   explicit SimulatedData(const Choices& choices);
-  const Choices& choices() const { return choices_; }  // none empty
   std::vector<Parameter> Parameters();
 
   // To be called once all parameters are set; see SceneGenerator.
   void FixBaseline();
   // The baseline, where it was found from a parallax.
   std::string Identity() const override;
+  Settings ChosenParts() const override;
 
   int NumTrials(int trials) const override { return trials; }
   TrialData Make(const StreamName& trial_name) const override {
     return MakeFrom(DrawScene(trial_name), trial_name);
   }
 
+  std::optional<Scene> SceneOf(const StreamName& trial_name) const override { return DrawScene(trial_name); }
+
   // The two halves of Make: the exact scene, and what the images give of it.
   Scene DrawScene(const StreamName& trial_name) const;
   TrialData MakeFrom(const Scene& scene, const StreamName& trial_name) const;
 
  private:
-  Choices choices_;
+  Choices choices_;  // none empty
   SceneGenerator scenes_;
   std::unique_ptr<NoiseModel> noise_;
   OutlierModel outliers_;

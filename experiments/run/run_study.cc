@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 
-#include "experiments/base/for_each_index.h"
 #include "experiments/base/message.h"
 #include "experiments/base/progress.h"
 #include "experiments/base/stop_request.h"
+#include "experiments/run/for_each_trial.h"
 
 namespace rcme {
 namespace {
@@ -18,34 +17,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // The trials of the plan that are not in the store, in the plan's order.
-class TrialsToRun {
- public:
-  TrialsToRun(const StudyPlan& plan, ResultStore* store) {
-    for (const Condition& condition : plan.conditions) {
-      const auto num_trials = static_cast<std::uint32_t>(condition.num_trials);
-      for (const TrialRange& range : store->MissingTrials(condition.index, num_trials)) {
-        parts_.push_back({size_, &condition, range.first});
-        size_ += range.end - range.first;
-      }
-    }
+std::vector<TrialsOfCondition> TrialsToRun(const StudyPlan& plan, ResultStore* store) {
+  std::vector<TrialsOfCondition> missing;
+  for (const Condition& condition : plan.conditions) {
+    const auto num_trials = static_cast<std::uint32_t>(condition.num_trials);
+    for (const TrialRange& range : store->MissingTrials(condition.index, num_trials))
+      missing.push_back({&condition, range});
   }
-
-  std::int64_t size() const { return size_; }
-
-  std::pair<const Condition*, std::uint32_t> operator[](std::int64_t index) const {
-    const Part& part = *std::prev(std::ranges::upper_bound(parts_, index, {}, &Part::first_index));
-    return {part.condition, part.first_trial + static_cast<std::uint32_t>(index - part.first_index)};
-  }
-
- private:
-  struct Part {
-    std::int64_t first_index;
-    const Condition* condition;
-    std::uint32_t first_trial;
-  };
-  std::vector<Part> parts_;
-  std::int64_t size_ = 0;
-};
+  return missing;
+}
 
 // Collects the records of finished trials; from time to time one thread writes them, while the others go on.
 class RecordBuffer {
@@ -108,22 +88,22 @@ class RecordBuffer {
 
 RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
   const Clock::time_point start = Clock::now();
-  const TrialsToRun trials(plan, store);
-  if (trials.size() > 0) {
+  const std::vector<TrialsOfCondition> trials = TrialsToRun(plan, store);
+  const std::int64_t num_to_run = NumTrials(trials), num_before = plan.NumTrials() - num_to_run;
+  if (num_to_run > 0) {
     const std::string warning = store->NoteOrigin(ThisProgram());
     if (!warning.empty()) PrintMessage("warning: {}\n", warning);
   }
-  Progress progress("trials", plan.NumTrials(), plan.NumTrials() - trials.size());
+  Progress progress("trials", plan.NumTrials(), num_before);
   RecordBuffer buffer(store);
-  std::atomic<std::int64_t> num_done = plan.NumTrials() - trials.size();
+  std::atomic<std::int64_t> num_done = num_before;
   try {
-    ForEachIndex(trials.size(), num_threads, [&](std::int64_t index) {
-      const auto [condition, trial] = trials[index];
-      const TrialResult result = RunTrial(plan, *condition, trial);
-      buffer.Add(result.problem, result.records);
-      ++num_done;
-      progress.Advance(1);
-    });
+    ForEachTrial(trials, num_threads, &progress,
+                 [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
+                   const TrialResult result = RunTrial(plan, condition, trial);
+                   buffer.Add(result.problem, result.records);
+                   ++num_done;
+                 });
   } catch (const Stopped&) {
     buffer.Flush();
     throw Stopped(fmt::format("stopped, {} trials kept; the same command resumes", num_done.load()));
@@ -133,7 +113,7 @@ RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
   }
   buffer.Flush();
   const std::chrono::duration<double> elapsed = Clock::now() - start;
-  return {plan.NumTrials(), trials.size(), elapsed.count()};
+  return {plan.NumTrials(), num_to_run, elapsed.count()};
 }
 
 }  // namespace rcme

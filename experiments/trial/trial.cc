@@ -106,6 +106,10 @@ bool HasFailed(const TrialRecord& record, const FailureBounds& bounds) {
                                                 record.direction_error_deg > bounds.max_direction_error_deg);
 }
 
+bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) {
+  return HasRefused(record) || HasFailed(record, bounds);
+}
+
 bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds) {
   return record.status == MotionStatus::kOk && IsScored(record) && !HasFailed(record, bounds);
 }

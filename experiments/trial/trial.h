@@ -47,6 +47,7 @@ bool IsScored(const TrialRecord& record);
 // An invalid answer, or a returned motion beyond a bound. False where no motion was returned, or no truth is
 // known.
 bool HasFailed(const TrialRecord& record, const FailureBounds& bounds);
+bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds);
 // A returned motion within the bounds.
 bool HasSucceeded(const TrialRecord& record, const FailureBounds& bounds);
 

@@ -5,10 +5,6 @@ namespace {
 
 bool Refused(const TrialRecord& record, const FailureBounds&) { return HasRefused(record); }
 
-bool HasFailedOrRefused(const TrialRecord& record, const FailureBounds& bounds) {
-  return HasRefused(record) || HasFailed(record, bounds);
-}
-
 }  // namespace
 
 const std::vector<TrialEvent>& TrialEvents() {

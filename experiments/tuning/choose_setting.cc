@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
+#include "experiments/claims/claim_verdict.h"
 #include "stats/intervals.h"
+#include "stats/pareto_front.h"
 #include "stats/risk_control.h"
 
 namespace rcme {
@@ -38,26 +39,20 @@ double PValue(const Tuning& tuning, const SettingCount& count) {
 
 // The settings worth testing: no other has a lower rate of what the target limits and as good an objective.
 // Those that tie in that rate all stay: the exploration may be too small to tell a safe one from a lucky one.
-std::vector<size_t> WeakParetoFront(const Tuning& tuning, const std::vector<SettingCount>& counts) {
-  std::vector<size_t> order(counts.size()), front;
-  std::iota(order.begin(), order.end(), 0);
-  const auto limited = [&](size_t s) { return RateOf(TargetedCount(tuning, counts[s])); };
-  std::ranges::stable_sort(order, {}, limited);
-  double best = std::numeric_limits<double>::infinity(), best_below = best;  // objective; of lower rates
-  for (size_t i = 0; i < order.size(); ++i) {
-    if (i > 0 && limited(order[i]) > limited(order[i - 1])) best_below = best;
-    const double objective = Objective(tuning, counts[order[i]]);
-    if (objective < best_below) front.push_back(order[i]);
-    best = std::min(best, objective);
+std::vector<size_t> Proposed(const Tuning& tuning, const std::vector<SettingCount>& counts) {
+  std::vector<double> limited, objective;
+  for (const SettingCount& count : counts) {
+    limited.push_back(RateOf(TargetedCount(tuning, count)));
+    objective.push_back(Objective(tuning, count));
   }
-  return front;
+  return ParetoFront(limited, objective, TiesOfFirst::kStay);
 }
 
 // In the order of how surely they meet the target; of equals first the one with most of what is to be least,
 // which is the more careful one.
 std::vector<size_t> PathOf(const Tuning& tuning, const std::vector<SettingCount>& explored) {
   std::vector<std::tuple<double, double, size_t>> path;
-  for (const size_t s : WeakParetoFront(tuning, explored)) {
+  for (const size_t s : Proposed(tuning, explored)) {
     path.emplace_back(PValue(tuning, explored[s]), -Objective(tuning, explored[s]), s);
   }
   std::ranges::sort(path);
@@ -145,10 +140,9 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
   return choice;
 }
 
-TargetVerdict VerdictOf(const ErrorCount& count, double at_most) {
-  const Interval interval = ExactBinomialInterval(count.errors, count.n);
-  if (interval.upper <= at_most) return TargetVerdict::kHolds;
-  return interval.lower > at_most ? TargetVerdict::kViolated : TargetVerdict::kUndecided;
+Verdict VerdictOf(const ErrorCount& count, double at_most) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return DecideEquivalence(ExactBinomialInterval(count.errors, count.n), {-kInfinity, at_most});
 }
 
 }  // namespace
@@ -157,29 +151,14 @@ ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count) {
   return tuning.target == TuneTarget::kFalseRefusal ? count.FalseRefusal() : count.Failure();
 }
 
-const char* VerdictName(TargetVerdict verdict) {
-  switch (verdict) {
-    case TargetVerdict::kHolds:
-      return "holds";
-    case TargetVerdict::kViolated:
-      return "violated";
-    case TargetVerdict::kUndecided:
-      break;
-  }
-  return "undecided";
-}
-
 bool HasRefusalLimit(const Tuning& tuning) {
   return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
 }
 
-TargetVerdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
-  const TargetVerdict targeted = VerdictOf(TargetedCount(tuning, count), tuning.at_most);
-  if (!HasRefusalLimit(tuning)) return targeted;
-  const TargetVerdict refusal = VerdictOf(count.Refusal(), tuning.max_refusal);
-  if (targeted == refusal) return targeted;
-  const bool is_violated = targeted == TargetVerdict::kViolated || refusal == TargetVerdict::kViolated;
-  return is_violated ? TargetVerdict::kViolated : TargetVerdict::kUndecided;
+Verdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
+  std::vector<std::optional<Verdict>> verdicts = {VerdictOf(TargetedCount(tuning, count), tuning.at_most)};
+  if (HasRefusalLimit(tuning)) verdicts.emplace_back(VerdictOf(count.Refusal(), tuning.max_refusal));
+  return *Together(verdicts);
 }
 
 double Risk(const Tuning& tuning, const SettingCount& count) {

@@ -15,6 +15,7 @@
 
 #include "experiments/study/tuning.h"
 #include "experiments/tuning/setting_counts.h"
+#include "stats/equivalence.h"
 
 namespace rcme {
 
@@ -32,13 +33,9 @@ ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count);
 // Whether the target limits refusals, too.
 bool HasRefusalLimit(const Tuning& tuning);
 
-enum class TargetVerdict { kHolds, kViolated, kUndecided };
-
-const char* VerdictName(TargetVerdict verdict);
-
-// Whether a setting meets the target on the trials of a count: the whole 95 % interval of every rate that it
-// limits below the limit, that of one above, or neither.
-TargetVerdict VerdictOf(const Tuning& tuning, const SettingCount& count);
+// Whether a setting meets the target on the trials of a count: it holds if the whole 95 % interval of every
+// rate that it limits lies below the limit, it does not if one lies above.
+Verdict VerdictOf(const Tuning& tuning, const SettingCount& count);
 
 // cost_of_failure * failure rate + cost_of_refusal * refusal rate.
 double Risk(const Tuning& tuning, const SettingCount& count);

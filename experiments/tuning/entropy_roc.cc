@@ -7,8 +7,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/ransac_estimator.h"
-#include "experiments/base/for_each_index.h"
-#include "experiments/data/match_folder.h"
+#include "experiments/run/for_each_trial.h"
 #include "experiments/study/tuning.h"
 #include "experiments/trial/trial.h"
 
@@ -75,10 +74,9 @@ std::vector<size_t> ScenesOf(const StudyPlan& plan, std::int64_t trials_per_cond
   std::map<std::string, size_t> common;
   size_t num_scenes = 0;
   for (const Condition& condition : plan.conditions) {
-    const auto* const folder = dynamic_cast<const MatchFolderData*>(condition.source.get());
+    const std::optional<std::string> shared = condition.source->SharedScene();
     for (std::int64_t trial = 0; trial < trials_per_condition; ++trial) {
-      const size_t scene =
-          folder ? common.try_emplace(folder->scene(), num_scenes).first->second : num_scenes;
+      const size_t scene = shared ? common.try_emplace(*shared, num_scenes).first->second : num_scenes;
       scenes.push_back(scene);
       num_scenes += scene == num_scenes;
     }
@@ -111,23 +109,20 @@ void AddRoc(size_t estimator, const std::string& of, const std::vector<Entropies
 std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange trials, int num_threads,
                                            Progress* progress) {
   const auto estimators = WithoutQualityTest(plan);
-  const auto per_condition = static_cast<std::int64_t>(trials.end - trials.first);
-  const std::int64_t num_trials = per_condition * static_cast<std::int64_t>(plan.conditions.size());
+  const std::vector<TrialsOfCondition> all = TrialsOfEach(plan, trials);
   std::vector<std::vector<Entropies>> entropies(estimators.size(),
-                                                std::vector<Entropies>(static_cast<size_t>(num_trials)));
-  ForEachIndex(num_trials, num_threads, [&](std::int64_t index) {
-    const Condition& condition = plan.conditions[static_cast<size_t>(index / per_condition)];
-    const auto trial = trials.first + static_cast<std::uint32_t>(index % per_condition);
-    const StreamName name{plan.study.seed, condition.index, trial, 0};
-    const TrialData data = condition.source->Make(name);
-    for (size_t e = 0; e < estimators.size(); ++e) {
-      if (!estimators[e]) continue;
-      entropies[e][static_cast<size_t>(index)] =
-          EntropiesOf(*AsRansac(*estimators[e]), data, name, plan.study.failure);
-    }
-    progress->Advance(1);
-  });
-  const std::vector<size_t> scenes = ScenesOf(plan, per_condition);
+                                                std::vector<Entropies>(static_cast<size_t>(NumTrials(all))));
+  ForEachTrial(all, num_threads, progress,
+               [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
+                 const StreamName name{plan.study.seed, condition.index, trial, 0};
+                 const TrialData data = condition.source->Make(name);
+                 for (size_t e = 0; e < estimators.size(); ++e) {
+                   if (!estimators[e]) continue;
+                   entropies[e][static_cast<size_t>(index)] =
+                       EntropiesOf(*AsRansac(*estimators[e]), data, name, plan.study.failure);
+                 }
+               });
+  const std::vector<size_t> scenes = ScenesOf(plan, trials.end - trials.first);
   std::vector<EntropyRoc> rocs;
   for (size_t e = 0; e < estimators.size(); ++e) {
     AddRoc(e, "samples", entropies[e], scenes, &Entropies::good_sample, &Entropies::bad_sample, &rocs);

@@ -6,15 +6,12 @@
 #include <atomic>
 #include <map>
 
-#include "experiments/base/for_each_index.h"
-#include "experiments/data/make_data.h"
-#include "experiments/trial/trial.h"
+#include "experiments/run/for_each_trial.h"
+#include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
-
-enum class Ending { kGood, kFailed, kRefused };
 
 // All settings in one trial.
 class TrialDecisions {
@@ -30,7 +27,7 @@ class TrialDecisions {
   template <typename Visit>
   void ForEachSetting(const SettingPlan& plan, const TraceGroup& group, Visit visit) {
     refinements_.clear();
-    endings_.clear();
+    outcomes_.clear();
     decided_.clear();
     const RansacEstimator* tracer = AsRansac(*group.tracer);
     if (tracer) {
@@ -38,11 +35,12 @@ class TrialDecisions {
       trace_ = tracer->Trace(data_.problem, rng);
     }
     for (const size_t s : group.settings) {
-      const Ending ending =
-          EndingOf(*plan.estimators[s], plan.settings[s].spec.options.least_explained_share);
+      const TrialOutcome outcome =
+          OutcomeUnder(*plan.estimators[s], plan.settings[s].spec.options.least_explained_share);
       const MotionEstimator* without = plan.without_limits[s].get();
       const auto known = decided_.find(without);
-      visit(s, ending, known == decided_.end() ? decided_[without] = EndingOf(*without, 0.0) : known->second);
+      visit(s, outcome,
+            known == decided_.end() ? decided_[without] = OutcomeUnder(*without, 0.0) : known->second);
     }
   }
 
@@ -50,25 +48,23 @@ class TrialDecisions {
   // What follows from a loop depends on the candidates it hands over, and on the share they have to explain.
   using Handover = std::pair<std::vector<Sample>, double>;
 
-  Ending EndingOf(const MotionEstimator& estimator, double least_share) {
+  TrialOutcome OutcomeUnder(const MotionEstimator& estimator, double least_share) {
     const RansacEstimator* parts = AsRansac(estimator);
     if (!parts) {
       RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
-      return EndingOf(estimator.Estimate(data_.problem, rng));
+      return JudgedOutcome(estimator.Estimate(data_.problem, rng));
     }
     const LoopResult loop = parts->Decide(trace_);
-    if (!loop.winner) return Ending::kRefused;
+    if (!loop.winner) return TrialOutcome::kRefusal;
     Handover handover{{loop.winner->sample}, least_share};
     for (const Candidate& candidate : loop.runners_up) handover.first.push_back(candidate.sample);
-    const auto known = endings_.find(handover);
-    if (known != endings_.end()) return known->second;
-    return endings_[handover] = EndingOf(parts->Finish(data_.problem, loop, &refinements_));
+    const auto known = outcomes_.find(handover);
+    if (known != outcomes_.end()) return known->second;
+    return outcomes_[handover] = JudgedOutcome(parts->Finish(data_.problem, loop, &refinements_));
   }
 
-  Ending EndingOf(const MotionEstimate& estimate) const {
-    const TrialRecord record = Score(estimate, data_, 0.0);
-    if (HasRefused(record)) return Ending::kRefused;
-    return HasFailed(record, bounds_) ? Ending::kFailed : Ending::kGood;
+  TrialOutcome JudgedOutcome(const MotionEstimate& estimate) const {
+    return OutcomeOf(Score(estimate, data_, 0.0), bounds_);
   }
 
   StreamName name_;
@@ -76,16 +72,17 @@ class TrialDecisions {
   TrialData data_;
   HypothesisTrace trace_;
   Refinements refinements_;
-  std::map<Handover, Ending> endings_;
-  std::map<const MotionEstimator*, Ending> decided_;
+  std::map<Handover, TrialOutcome> outcomes_;
+  std::map<const MotionEstimator*, TrialOutcome> decided_;
 };
 
 // Counters of one condition and setting that several threads add to.
 struct SharedCount {
   std::array<std::atomic<std::int64_t>, 4> of{};  // failures, refusals, good, false refusals
-  void Add(Ending ending, Ending without_limits) {
-    const bool is_refused = ending == Ending::kRefused, is_good = without_limits == Ending::kGood;
-    of[0] += ending == Ending::kFailed;
+  void Add(TrialOutcome outcome, TrialOutcome without_limits) {
+    const bool is_refused = outcome == TrialOutcome::kRefusal,
+               is_good = without_limits == TrialOutcome::kSuccess;
+    of[0] += outcome == TrialOutcome::kFailure;
     of[1] += is_refused;
     of[2] += is_good;
     of[3] += is_refused && is_good;
@@ -93,8 +90,8 @@ struct SharedCount {
 };
 
 void CheckTrialsAreFresh(const StudyPlan& plan) {
-  for (const auto& [key, value] : plan.study.data) {
-    if (key == "scene" && value == kMatchFilesScene) {
+  for (const Condition& condition : plan.conditions) {
+    if (condition.source->SharedScene()) {
       throw InputError(
           "tune: scene: match_files: the pairs of a folder repeat, so that no fresh trials are left to "
           "verify a setting on; tune in simulation, then `rcme run` the pairs with --add-estimator");
@@ -117,19 +114,19 @@ SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, 
                             int num_threads, Progress* progress) {
   CheckTrialsAreFresh(plan);
   const auto num_settings = settings.settings.size(), num_conditions = plan.conditions.size();
-  const auto per_condition = static_cast<std::int64_t>(trials.end - trials.first);
+  const std::int64_t per_condition = trials.end - trials.first;
   std::vector<SharedCount> shared(num_conditions * num_settings);
-  ForEachIndex(per_condition * static_cast<std::int64_t>(num_conditions), num_threads,
-               [&](std::int64_t index) {
-                 const auto condition = static_cast<size_t>(index / per_condition);
-                 const auto trial = trials.first + static_cast<std::uint32_t>(index % per_condition);
-                 TrialDecisions decisions(plan, plan.conditions[condition], trial);
+  ForEachTrial(TrialsOfEach(plan, trials), num_threads, progress,
+               [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
+                 // Its place in the plan, which may be a part of a study's.
+                 const auto place = static_cast<size_t>(index / per_condition);
+                 TrialDecisions decisions(plan, condition, trial);
                  for (const TraceGroup& group : settings.groups) {
-                   decisions.ForEachSetting(settings, group, [&](size_t s, Ending ending, Ending without) {
-                     shared[condition * num_settings + s].Add(ending, without);
-                   });
+                   decisions.ForEachSetting(settings, group,
+                                            [&](size_t s, TrialOutcome outcome, TrialOutcome without) {
+                                              shared[place * num_settings + s].Add(outcome, without);
+                                            });
                  }
-                 progress->Advance(1);
                });
   SettingCounts counts(num_conditions, std::vector<SettingCount>(num_settings));
   for (size_t i = 0; i < shared.size(); ++i) {

@@ -6,6 +6,7 @@
 
 #include "experiments/base/columns.h"
 #include "experiments/base/file_output.h"
+#include "experiments/base/json_output.h"
 #include "experiments/tuning/tune_output.h"
 
 namespace rcme {
@@ -14,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The other families on which a family's choice has this verdict.
-std::vector<std::string> OthersWith(TargetVerdict verdict, const Tuning& tuning, const TransferResult& result,
+std::vector<std::string> OthersWith(Verdict verdict, const Tuning& tuning, const TransferResult& result,
                                     size_t family) {
   std::vector<std::string> words;
   for (size_t other = 0; other < result.families.size(); ++other) {
@@ -30,20 +31,21 @@ std::vector<std::string> OthersWith(TargetVerdict verdict, const Tuning& tuning,
 std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result) {
   const Tuning& tuning = *plan.study.tuning;
   std::vector<std::vector<std::string>> rows = {{"tuned on", "setting", "there, fresh trials",
-                                                 "others: holds", "undecided", "violated", "violated on"}};
+                                                 "others: holds", "undecided", "does not hold",
+                                                 "does not hold on"}};
   for (size_t f = 0; f < result.families.size(); ++f) {
     const Family& family = result.families[f];
     if (!family.choice.setting) {
       rows.push_back({family.words, "none: " + family.choice.why, "", "", "", "", ""});
       continue;
     }
-    const auto with = [&](TargetVerdict verdict) { return OthersWith(verdict, tuning, result, f); };
-    const std::vector<std::string> violated = with(TargetVerdict::kViolated);
+    const auto with = [&](Verdict verdict) { return OthersWith(verdict, tuning, result, f); };
+    const std::vector<std::string> violated = with(Verdict::kDoesNotHold);
     rows.push_back({family.words, result.settings[*family.choice.setting],
                     RateForTable(TargetedCount(tuning, result.verified[f][*family.choice.setting])),
-                    fmt::format("{}", with(TargetVerdict::kHolds).size()),
-                    fmt::format("{}", with(TargetVerdict::kUndecided).size()),
-                    fmt::format("{}", violated.size()), fmt::format("{}", fmt::join(violated, "; "))});
+                    fmt::format("{}", with(Verdict::kHolds).size()),
+                    fmt::format("{}", with(Verdict::kUndecided).size()), fmt::format("{}", violated.size()),
+                    fmt::format("{}", fmt::join(violated, "; "))});
   }
   return fmt::format(
       "{}: {} tuned on one family, verified on all; {} trials to verify a family of one condition\nTarget: "
@@ -68,18 +70,17 @@ std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, c
                        {"failure", RateAsJson(count.Failure())},
                        {"refusal", RateAsJson(count.Refusal())},
                        {"false_refusal", RateAsJson(count.FalseRefusal())},
-                       {"verdict", VerdictName(VerdictOf(tuning, count))}});
+                       {"verdict", Name(VerdictOf(tuning, count))}});
     }
   }
-  const Json json = {{"kind", "transfer"},
-                     {"study", plan.study.name},
+  const Json json = {{"study", plan.study.name},
                      {"estimator", tuning.estimator},
                      {"seed", plan.study.seed},
                      {"target", TargetAsJson(tuning)},
                      {"options", OptionsAsJson(tuning)},
                      {"families", families},
                      {"cells", cells}};
-  return json.dump(1) + "\n";
+  return JsonText(kTransferFormat, json);
 }
 
 }  // namespace rcme

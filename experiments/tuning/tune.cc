@@ -114,9 +114,9 @@ Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int
       continue;
     }
     ++repetitions.num_chosen[*choice.setting];
-    const TargetVerdict verdict = VerdictOf(tuning, repetitions.reference[*choice.setting]);
-    repetitions.num_violated += verdict == TargetVerdict::kViolated;
-    repetitions.num_undecided += verdict == TargetVerdict::kUndecided;
+    const Verdict verdict = VerdictOf(tuning, repetitions.reference[*choice.setting]);
+    repetitions.num_violated += verdict == Verdict::kDoesNotHold;
+    repetitions.num_undecided += verdict == Verdict::kUndecided;
   }
   return repetitions;
 }

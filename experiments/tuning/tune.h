@@ -40,7 +40,7 @@ void CheckTrialsSuffice(const Tuning& tuning, size_t num_conditions);
 // A tuning repeated with fresh seeds: how often does what it chose violate the target?
 struct Repetitions {
   std::int64_t num_done = 0, num_without_choice = 0;
-  std::int64_t num_violated = 0, num_undecided = 0;  // verdicts of `reference` on what was chosen
+  std::int64_t num_violated = 0, num_undecided = 0;  // by `reference`, of what was chosen
   std::vector<std::int64_t> num_chosen;              // per setting
   std::vector<SettingCount> reference;               // per setting: many trials that no repetition saw
 };

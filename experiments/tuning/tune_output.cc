@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
-#include <numeric>
 
 #include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
 #include "experiments/base/file_output.h"
+#include "experiments/base/json_output.h"
 #include "stats/intervals.h"
+#include "stats/pareto_front.h"
+#include "stats/thresholds.h"
 
 namespace rcme {
 namespace {
@@ -95,11 +96,11 @@ std::string VerdictInWords(const Tuning& tuning, const TuneResult& result) {
                        Risk(tuning, verified), result.choice.risk_bound, tuning.delta);
   }
   switch (VerdictOf(tuning, verified)) {
-    case TargetVerdict::kHolds:
+    case Verdict::kHolds:
       return "on fresh trials the target holds (95 % intervals)";
-    case TargetVerdict::kViolated:
+    case Verdict::kDoesNotHold:
       return "on fresh trials the target is VIOLATED (95 % intervals)";
-    case TargetVerdict::kUndecided:
+    case Verdict::kUndecided:
       break;
   }
   return "on fresh trials too few to decide whether the target holds (95 % intervals)";
@@ -150,30 +151,42 @@ Json OthersAsJson(const Tuning& tuning, const std::vector<VerifiedEstimator>& es
   return others;
 }
 
-double ShareAtMost(const std::vector<double>& values, double limit) {
-  return static_cast<double>(std::ranges::count_if(values, [&](double x) { return x <= limit; })) /
-         static_cast<double>(values.size());
+// Accepted is what has psi at most mu. A good model is a positive, and the lower its psi the higher its
+// score.
+std::vector<RocPoint> CurveOf(const EntropyRoc& roc) {
+  const auto scores = [](std::vector<double> psi) {
+    for (double& x : psi) x = -x;
+    return psi;
+  };
+  return RocCurve(scores(roc.bad), scores(roc.good));
 }
 
-// [mu, share of the bad ones accepted, share of the good ones accepted], psi at most mu.
-Json CurveAsJson(const EntropyRoc& roc) {
-  std::vector<double> thresholds = roc.good;
-  thresholds.insert(thresholds.end(), roc.bad.begin(), roc.bad.end());
-  std::ranges::sort(thresholds);
-  Json curve = Json::array({Json::array({nullptr, 0.0, 0.0})});
-  const size_t step = 1 + thresholds.size() / kMaxCurvePoints;
-  for (size_t i = 0; i < thresholds.size(); i += step) {
-    const double mu = thresholds[i];
-    curve.push_back({mu, ShareAtMost(roc.bad, mu), ShareAtMost(roc.good, mu)});
+// The point of the curve at a threshold mu.
+RocPoint PointAt(const std::vector<RocPoint>& curve, double mu) {
+  RocPoint point = curve.front();
+  for (const RocPoint& next : curve) {
+    if (next.threshold >= -mu) point = next;
   }
-  curve.push_back({nullptr, 1.0, 1.0});
-  return curve;
+  return point;
+}
+
+// [mu, share of the bad ones accepted, share of the good ones accepted] of some points, ends included.
+Json CurveAsJson(const std::vector<RocPoint>& curve) {
+  Json points = Json::array({Json::array({nullptr, 0.0, 0.0})});
+  const size_t step = 1 + curve.size() / kMaxCurvePoints;
+  for (size_t i = 1; i < curve.size(); i += step) {
+    points.push_back({-curve[i].threshold, curve[i].false_positive_rate, curve[i].true_positive_rate});
+  }
+  points.push_back({nullptr, 1.0, 1.0});
+  return points;
 }
 
 Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
   const EstimatorSpec& spec = plan.study.estimators[roc.estimator];
   const double mu = spec.options.MuOrDefault();
   const bool is_printed = spec.options.reading == Reading::kAsPrinted;
+  const std::vector<RocPoint> curve = CurveOf(roc);
+  const RocPoint at_mu = PointAt(curve, mu);
   return {
       {"estimator", spec.label},
       {"of", roc.of},
@@ -182,26 +195,23 @@ Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
        {{"value", roc.area.value}, {"lower", roc.area.interval.lower}, {"upper", roc.area.interval.upper}}},
       {"num_good", roc.good.size()},
       {"num_bad", roc.bad.size()},
-      {"curve", CurveAsJson(roc)},
+      {"curve", CurveAsJson(curve)},
       {"marks", Json::array({{{"words", fmt::format("mu = {}", mu)},
-                              {"false_accept_rate", ShareAtMost(roc.bad, mu)},
-                              {"true_accept_rate", ShareAtMost(roc.good, mu)}}})}};
+                              {"false_accept_rate", at_mu.false_positive_rate},
+                              {"true_accept_rate", at_mu.true_positive_rate}}})}};
 }
 
 // Per setting, whether it is on the Pareto front: none fails and is refused as seldom, and one of the two
 // less often.
 std::vector<bool> AreOnFront(const std::vector<SettingCount>& counts) {
-  std::vector<size_t> order(counts.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto rates = [&](size_t s) { return std::pair(counts[s].refusals, counts[s].failures); };
-  std::ranges::sort(order, {}, rates);
-  std::vector<bool> are_on_front(counts.size());
-  auto last = std::pair(std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::max());
-  for (const size_t s : order) {
-    if (rates(s).second >= last.second && rates(s) != last) continue;
-    are_on_front[s] = true;
-    last = rates(s);
+  std::vector<double> refusals, failures;
+  for (const SettingCount& count : counts) {
+    refusals.push_back(static_cast<double>(count.refusals));
+    failures.push_back(static_cast<double>(count.failures));
   }
+  std::vector<bool> are_on_front(counts.size());
+  for (const size_t s : ParetoFront(refusals, failures, TiesOfFirst::kLeastSecondStays))
+    are_on_front[s] = true;
   return are_on_front;
 }
 
@@ -241,10 +251,10 @@ std::string ChosenAsTable(const Tuning& tuning, const SettingPlan& settings, con
   for (size_t i = 0; i < chosen.size(); ++i) {
     const size_t s = chosen[i];
     const SettingCount& count = repetitions.reference[s];
-    const TargetVerdict verdict = VerdictOf(tuning, count);
-    if (i >= kMaxChosenRows && verdict == TargetVerdict::kHolds) continue;
+    const Verdict verdict = VerdictOf(tuning, count);
+    if (i >= kMaxChosenRows && verdict == Verdict::kHolds) continue;
     rows.push_back({names[s], fmt::format("{}", repetitions.num_chosen[s]), RateForTable(count.Failure()),
-                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()), VerdictName(verdict)});
+                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()), Name(verdict)});
   }
   return FormatColumns(rows);
 }
@@ -339,8 +349,7 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
 std::string TuneAsJson(const StudyPlan& plan, const SettingPlan& settings, const TuneResult& result,
                        const std::vector<EntropyRoc>& rocs) {
   const Tuning& tuning = *plan.study.tuning;
-  Json json = {{"kind", "tune"},
-               {"study", plan.study.name},
+  Json json = {{"study", plan.study.name},
                {"estimator", tuning.estimator},
                {"seed", plan.study.seed},
                {"target", TargetAsJson(tuning)},
@@ -357,7 +366,7 @@ std::string TuneAsJson(const StudyPlan& plan, const SettingPlan& settings, const
     json["others"] = OthersAsJson(tuning, result.estimators);
   }
   for (const EntropyRoc& roc : rocs) json["roc"].push_back(RocAsJson(plan, roc));
-  return json.dump(1) + "\n";
+  return JsonText(kTuningFormat, json);
 }
 
 std::vector<std::pair<std::string, std::string>> ProvenanceOf(const StudyPlan& plan,

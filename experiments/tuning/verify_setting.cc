@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-#include "experiments/base/for_each_index.h"
+#include "experiments/run/for_each_trial.h"
 #include "experiments/trial/trial.h"
 
 namespace rcme {
@@ -10,14 +10,15 @@ namespace {
 
 void AddTrial(const std::vector<TrialRecord>& records, const FailureBounds& bounds,
               std::vector<VerifiedEstimator>* verified) {
-  const auto is_bad = [&](const TrialRecord& r) { return HasRefused(r) || HasFailed(r, bounds); };
+  std::vector<bool> is_bad;
+  for (const TrialRecord& record : records) is_bad.push_back(HasFailedOrRefused(record, bounds));
   for (size_t e = 0; e < records.size(); ++e) {
     VerifiedEstimator& of = (*verified)[e];
     for (ErrorCount* count : {&of.failure, &of.refusal, &of.failure_or_refusal}) ++count->n;
     of.failure.errors += HasFailed(records[e], bounds);
     of.refusal.errors += HasRefused(records[e]);
-    of.failure_or_refusal.errors += is_bad(records[e]);
-    of.against_first.Add(is_bad(records[0]), is_bad(records[e]));
+    of.failure_or_refusal.errors += is_bad[e];
+    of.against_first.Add(is_bad[0], is_bad[e]);
   }
 }
 
@@ -27,17 +28,13 @@ std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRang
                                                 Progress* progress) {
   std::vector<VerifiedEstimator> verified;
   for (const EstimatorSpec& spec : plan.study.estimators) verified.push_back({spec, {}, {}, {}, {}});
-  const auto per_condition = static_cast<std::int64_t>(trials.end - trials.first);
-  const std::int64_t num_trials = per_condition * static_cast<std::int64_t>(plan.conditions.size());
   std::mutex mutex;  // of `verified`; sums do not depend on the order of the trials
-  ForEachIndex(num_trials, num_threads, [&](std::int64_t index) {
-    const Condition& condition = plan.conditions[static_cast<size_t>(index / per_condition)];
-    const auto trial = trials.first + static_cast<std::uint32_t>(index % per_condition);
-    const std::vector<TrialRecord> records = RunTrial(plan, condition, trial).records;
-    const std::lock_guard lock(mutex);
-    AddTrial(records, plan.study.failure, &verified);
-    progress->Advance(1);
-  });
+  ForEachTrial(TrialsOfEach(plan, trials), num_threads, progress,
+               [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
+                 const std::vector<TrialRecord> records = RunTrial(plan, condition, trial).records;
+                 const std::lock_guard lock(mutex);
+                 AddTrial(records, plan.study.failure, &verified);
+               });
   return verified;
 }
 

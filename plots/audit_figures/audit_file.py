@@ -123,8 +123,7 @@ def read_claim(node):
 
 def read_audit(path):
     """The Audit in the file `path`; a cut-off or foreign file is an error, never a shorter audit."""
-    node = read_object(path, "rcme audit --out DIR")
-    node.one_of("format", (FORMAT,))
+    node = read_object(path, "rcme audit --out DIR", FORMAT)
     audit = Audit(path, study=node.text("study"), seed=node.whole_number("seed"),
                   budget=node.text("budget"), confidence_per_target=node.fraction("confidence_per_target"),
                   claims=tuple(map(read_claim, node.nodes("claims", "claim"))))

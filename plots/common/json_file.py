@@ -98,8 +98,9 @@ def refuse_constant(name):
     raise ValueError(f"{name} is not a number of JSON")
 
 
-def read_object(path, origin):
-    """The Node of the whole file `path`, which the command `origin` wrote; a cut-off or foreign file is an error."""
+def read_object(path, origin, stamp):
+    """The Node of the whole file `path`, which the command `origin` wrote in the format `stamp`; a cut-off or foreign
+    file is an error, and so is one of another format."""
     try:
         with open(path, encoding="utf-8-sig") as file:
             value = json.load(file, parse_constant=refuse_constant)
@@ -107,4 +108,8 @@ def read_object(path, origin):
         raise PlotError(f"{path}: cannot be read ({error.strerror}).")
     except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: is not a whole JSON file ({error}); is it cut off?")
-    return Node(path, "the file", value, origin)
+    file = Node(path, "the file", value, origin)
+    if file.text("format") != stamp:
+        raise file.error(f"has 'format': {shown(value['format'])}, which is not known here; expected '{stamp}', the output "
+                         f"of '{origin}' of the same version")
+    return file

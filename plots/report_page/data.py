@@ -1,13 +1,14 @@
 """Reads what `rcme report` writes for its page: a folder run_NNNN per run with run.json, summary.csv and, where there is
 more than one estimator, comparison.csv (experiments/analysis/report_data.h)."""
 
-import json
 import pathlib
 from dataclasses import dataclass
 
 from common.command_line import PlotError
+from common.json_file import read_object
 from common.summary_csv import Summary, numbers, read_comparison, read_summary
 
+FORMAT = "rcme report 1"
 NEEDED = {  # key of run.json: its type
     "run": str, "rcme_version": str, "name": str, "description": str, "seed": int, "trials_done": int,
     "trials_planned": int, "until": str, "study_yaml": str, "reference": str, "factors": list, "estimators": list, "conditions": list,
@@ -43,14 +44,9 @@ class Run:
 
 
 def read_facts(path):
-    try:
-        facts = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise PlotError(f"{path}: cannot be read ({error.strerror}).")
-    except ValueError as error:
-        raise PlotError(f"{path}: is not a JSON file ({error}).")
+    facts = read_object(str(path), "rcme report", FORMAT).value
     for key, kind in NEEDED.items():
-        if not isinstance(facts, dict) or not isinstance(facts.get(key), kind):
+        if not isinstance(facts.get(key), kind):
             raise PlotError(f"{path}: has no {key}, or not as {kind.__name__}; expected what 'rcme report' writes.")
     return facts
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from common.command_line import PlotError
 
-FORMAT = "rcme trial 1"
+FORMAT = "rcme trial 2"
 KINDS = ("inlier", "outlier", "undetectable")
-OUTCOMES = ("success", "failed", "refused", "not_scored")
+OUTCOMES = ("success", "failure", "refusal", "not_scored")
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from common import style
 
-OUTCOMES = {"success": "within the bounds", "failed": "failed", "refused": "refused", "not_scored": "not scored"}
+OUTCOMES = {"success": "within the bounds", "failure": "failure", "refusal": "refusal", "not_scored": "not scored"}
 
 
 def number(value, unit=""):

@@ -1,8 +1,8 @@
 """Reads tune.json, which `rcme tune` writes, and transfer.json, of `rcme transfer`. It checks and names; it computes
 nothing.
 
-    tune.json: kind, study, estimator, seed, target, options, settings, tuned, others, roc
-    transfer.json: kind, study, estimator, seed, target, options, families, cells
+    tune.json: format, study, estimator, seed, target, options, settings, tuned, others, roc
+    transfer.json: format, study, estimator, seed, target, options, families, cells
     rate: value, lower, upper, n; a null value: n is 0
 Keys that are not drawn are not looked at. Levels are texts, in the order of the options.
 """
@@ -16,8 +16,8 @@ from common.factor_axis import is_number
 from common.json_file import is_finite, read_object
 from common.number_text import number_text
 
-ORIGINS = {"tune": "rcme tune", "transfer": "rcme transfer"}  # of each kind
-FALSE_REFUSAL, VIOLATED, UNDECIDED = "false_refusal", "violated", "undecided"
+TUNING, TRANSFER = ("rcme tune", "rcme tuning 1"), ("rcme transfer", "rcme transfer 1")  # command, format
+FALSE_REFUSAL, VIOLATED, UNDECIDED = "false_refusal", "does not hold", "undecided"
 TARGETS, VERDICTS = (FALSE_REFUSAL, "failure", "risk"), ("holds", VIOLATED, UNDECIDED)
 SETTING_RATES = ("failure", "refusal", "false_refusal")
 SAMPLES, WINNERS = "samples", "winners"
@@ -273,15 +273,14 @@ def read_mark(node):
 
 def read_head(path, kind):
     """(the file's node, what both kinds begin with)."""
-    file = read_object(path, ORIGINS[kind])
-    file.one_of("kind", (kind,))
+    file = read_object(path, *kind)
     return file, (path, file.text("study"), file.text("estimator"), file.whole_number("seed"),
                   read_target(file.node("target")), read_options(file))
 
 
 def read_tune(path):
     """The Tune in the file `path`; a cut-off or foreign file is an error."""
-    file, head = read_head(path, "tune")
+    file, head = read_head(path, TUNING)
     options = head[-1]
     return Tune(*head, read_settings(file, options), read_tuned(file.node_or_none("tuned"), options),
                 tuple(read_other(node, options) for node in file.nodes("others", "other")),
@@ -308,7 +307,7 @@ def read_cell(node, families):
 
 def read_transfer(path):
     """The Transfer in the file `path`; errors as read_tune."""
-    file, head = read_head(path, "transfer")
+    file, head = read_head(path, TRANSFER)
     families = tuple(read_family(node, head[-1]) for node in file.nodes("families", "family"))
     if not families:
         raise file.error("has no families ('families' is empty), so there is nothing to draw")

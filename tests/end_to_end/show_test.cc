@@ -78,7 +78,7 @@ TEST_F(Show, DrawsWhatHasNoDirectionNoSceneOrNoMotion) {
   EXPECT_TRUE(Shown()["truth"]["F"].is_null());
   ExpectDrawn(ShowTrial(study_, {"--condition", "0", "--trial", "0", "--set", "outlier_ratio=1", "--set",
                                  "num_matches=7", "--set", "severity=skipped"}));
-  EXPECT_EQ(Shown()["estimators"][0]["outcome"], "refused");
+  EXPECT_EQ(Shown()["estimators"][0]["outcome"], "refusal");
 
   std::filesystem::create_directory(folder_.Path("pairs"));
   folder_.Write("pairs/a.csv", MatchHeader() + MatchRows(40));

@@ -31,7 +31,7 @@ BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "
 
 def facts(**changes):
     """run.json of a run with one factor, two conditions and two estimators."""
-    return {"run": "runs/a b.sqlite", "rcme_version": "0.1.0", "name": "demo", "description": "What fails?", "seed": 7,
+    return {"format": "rcme report 1", "run": "runs/a b.sqlite", "rcme_version": "0.1.0", "name": "demo", "description": "What fails?", "seed": 7,
             "trials_done": 15, "trials_planned": 20, "until": "", "study_yaml": "name: demo\nseed: 7\n",
             "reference": "standard", "factors": ["noise"], "estimators": ["standard", "mine"],
             "conditions": [{"index": index, "levels": [level], "trials_done": 10 - 5 * index,
@@ -339,7 +339,7 @@ class Refusals(ReportTest):
 
     def test_files_that_are_missing_or_damaged(self):
         self.add_run()
-        for name, text, message in (("run.json", "{", "not a JSON file"), ("run.json", "{}", "has no run"),
+        for name, text, message in (("run.json", "{", "not a whole JSON file"), ("run.json", "{}", "has no key 'format'"),
                                     ("summary.csv", "a,b\n", "has no column study"),
                                     ("summary.csv", summary().replace(",10\n", ",\n", 1), "column n must be a number"),
                                     ("comparison.csv", comparison().replace("-0.1,", ",", 1), "risk_difference is empty")):

@@ -28,17 +28,17 @@ VERTICAL = [0, 0, 1, 0, 0, 0, -1, 0, 0]
 def estimator(label, outcome="success", inliers=(0, 1), **changes):
     """Every number is different."""
     motion = dict(R=[1, 0, 0, 0, 1, 0, 0, 0, 1], t=[1, 0, 0], F=VERTICAL, centre2_in_cam1_m=[-0.2, 0.1, 0.45])
-    if outcome == "refused":
+    if outcome == "refusal":
         motion = dict.fromkeys(motion)
-    return {"label": label, "status": "no_candidate" if outcome == "refused" else "ok", "message": "nothing passed the test",
+    return {"label": label, "status": "no_candidate" if outcome == "refusal" else "ok", "message": "nothing passed the test",
             "outcome": outcome, "rotation_error_deg": 1.234, "direction_error_deg": 23.45, "inlier_precision": 0.567,
-            "inlier_recall": 0.789, "inliers": [] if outcome == "refused" else list(inliers), **motion, **changes}
+            "inlier_recall": 0.789, "inliers": [] if outcome == "refusal" else list(inliers), **motion, **changes}
 
 
 def trial(**changes):
     """Six matches: three true, two wrong, one wrong on its true line; the last point lies far away."""
     cameras = [dict(fx=500, fy=500, cx=width / 2, cy=height / 2, width=width, height=height) for width, height in SIZES]
-    return {"format": "rcme trial 1", "study": "demo", "seed": 7, "condition": 2, "trial": 17, "trials_planned": 10,
+    return {"format": "rcme trial 2", "study": "demo", "seed": 7, "condition": 2, "trial": 17, "trials_planned": 10,
             "factors": [["sigma_px", "0.5"], ["motion", "forward"]], "parts": [["scene", "corridor"], ["cameras", "kitti"]],
             "origin": "simulated", "sigma_px": 0.5,
             "bounds": {"max_rotation_error_deg": 3, "max_direction_error_deg": 15},
@@ -53,7 +53,7 @@ def trial(**changes):
                       for centre in ([0, 0, 0], [0.5, 0, 0])],
             "truth": {"R": [1, 0, 0, 0, 1, 0, 0, 0, 1], "t": [-1, 0, 0], "baseline_m": 0.5, "F": HORIZONTAL},
             "selected": [0, 2], "drawn": [1],
-            "estimators": [estimator("standard", inliers=(0, 1, 2)), estimator("mine", "failed", inliers=(0, 3, 4))],
+            "estimators": [estimator("standard", inliers=(0, 1, 2)), estimator("mine", "failure", inliers=(0, 3, 4))],
             **changes}
 
 
@@ -150,7 +150,7 @@ class Images(unittest.TestCase):
     def test_a_row_per_estimator_with_its_outcome(self):
         figure = drawn(drawn=[1, 0])
         self.assertEqual(sum(axes.get_xlabel().startswith("Image 1") for axes in figure.axes), 2)
-        self.assertIn("mine: failed; rotation 1.23\u00b0 off, direction 23.4\u00b0 off; 3 of 6 matches accepted",
+        self.assertIn("mine: failure; rotation 1.23\u00b0 off, direction 23.4\u00b0 off; 3 of 6 matches accepted",
                       words_of(figure))
         self.assertIn("Standard: within the bounds", words_of(figure))
 
@@ -201,9 +201,9 @@ class Words(unittest.TestCase):
             self.assertIn(part, words)
 
     def test_a_refusal_shows_its_reason_and_neither_rings_nor_lines(self):
-        figure = drawn(estimators=[estimator("standard", "refused", rotation_error_deg=None, direction_error_deg=None)],
+        figure = drawn(estimators=[estimator("standard", "refusal", rotation_error_deg=None, direction_error_deg=None)],
                        drawn=[0])
-        self.assertIn("refused (no_candidate): nothing passed the test", words_of(figure))
+        self.assertIn("refusal (no_candidate): nothing passed the test", words_of(figure))
         panel = panels_of(figure)["Image 2"]
         self.assertEqual(straight_lines_of(panel, dashed=True), [])
         self.assertEqual(marks_of(panel, "X"), set())
@@ -213,9 +213,9 @@ class Words(unittest.TestCase):
     def test_an_invalid_answer_is_a_failure_with_its_reason_and_no_motion(self):
         nothing = dict(R=None, t=None, F=None, centre2_in_cam1_m=None, rotation_error_deg=None, direction_error_deg=None,
                        inliers=[])
-        figure = drawn(estimators=[estimator("mine", "failed", status="invalid_motion", message="|t| = 0", **nothing)],
+        figure = drawn(estimators=[estimator("mine", "failure", status="invalid_motion", message="|t| = 0", **nothing)],
                        drawn=[0])
-        self.assertIn("failed (invalid_motion): |t| = 0", words_of(figure))
+        self.assertIn("failure (invalid_motion): |t| = 0", words_of(figure))
         panel = panels_of(figure)["Image 2"]
         self.assertEqual(straight_lines_of(panel, dashed=True), [])
         self.assertNotIn("rejected", " ".join(text.get_text() for text in figure.legends[0].get_texts()))
@@ -236,12 +236,12 @@ class Words(unittest.TestCase):
         self.assertIn("The true motion is not known", words_of(figure))
 
     def test_a_trial_without_matches_is_drawn_empty(self):
-        none = dict(matches=[], selected=[], drawn=[0], estimators=[estimator("mine", "refused", status="too_few_matches")])
+        none = dict(matches=[], selected=[], drawn=[0], estimators=[estimator("mine", "refusal", status="too_few_matches")])
         for changes in (dict(kinds=None, points_in_cam1_m=None, views=None, truth=None, severity={}, origin="pair.csv"),
                         dict(kinds=[], points_in_cam1_m=[])):
             figure = drawn(**none, **changes)
             self.assertIn("0 matches", words_of(figure))
-            self.assertIn("refused (too_few_matches)", words_of(figure))
+            self.assertIn("refusal (too_few_matches)", words_of(figure))
             self.assertTrue({"Image 1", "Image 2"} <= set(panels_of(figure)))
 
     def test_names_are_only_text_and_long_ones_are_broken(self):
@@ -303,7 +303,7 @@ class Command(unittest.TestCase):
         self.assert_refused(self.run_main(json.dumps(trial())[:300]), "trial.json", "not a whole file")
         self.assert_refused(self.run_main("{}"), "trial.json", "'format'", "rcme show --json")
         self.assert_refused(self.run_main("[]"), "trial.json")
-        self.assert_refused(self.run_main(json.dumps(trial(format="rcme audit 1"))), "rcme audit 1", "rcme trial 1")
+        self.assert_refused(self.run_main(json.dumps(trial(format="rcme audit 1"))), "rcme audit 1", "rcme trial 2")
         self.assert_refused(self.run_main(json.dumps(trial(kinds=["inlier"]))), "kinds", "undetectable")
         self.assert_refused(self.run_main(json.dumps(trial()), "figure.png"), "without .png")
         self.assert_refused(self.run_main(json.dumps(trial()), "none/figure"), "no folder")

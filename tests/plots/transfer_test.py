@@ -35,7 +35,7 @@ def small(**changes):
     families = [{"words": "scene = room", "levels": ["1.5", "soft"], "why": ""},
                 {"words": "scene = wall", "levels": None, "why": "unreachable: nearest 7 %"},
                 {"words": "scene = cube", "levels": ["-3", "hard"], "why": ""}]
-    cells = [cell(0, 0, 0.03), cell(0, 1, 0.2, "violated", 0.95), cell(0, 2, 0.06, "undecided"),
+    cells = [cell(0, 0, 0.03), cell(0, 1, 0.2, "does not hold", 0.95), cell(0, 2, 0.06, "undecided"),
              cell(2, 0, fake.rate(None)), cell(2, 1, 0.123)]
     options = [fake.option("mu", ("-3", "0", "1.5"), "nats"), fake.option("rule", ("soft", "hard"))]
     return fake.transfer(3, families=families, cells=cells, options=options, **changes)
@@ -202,8 +202,8 @@ class Command(TransferTest):
     def test_files_that_are_no_transfer(self):
         whole = small()
         self.assert_refused(self.run_main(json.dumps(whole)[:200]), "transfer.json", "not a whole JSON file")
-        self.assert_refused(self.run_main(fake.tune()), "'kind'", "'transfer'")
-        for key in ("kind", "study", "estimator", "seed", "target", "options", "families", "cells"):
+        self.assert_refused(self.run_main(fake.tune()), "'format'", "'rcme transfer 1'")
+        for key in ("format", "study", "estimator", "seed", "target", "options", "families", "cells"):
             self.assert_refused(self.run_main({name: part for name, part in whole.items() if name != key}),
                                 f"no key '{key}'", "expected the output of 'rcme transfer'")
         for changes, named in (

@@ -367,9 +367,9 @@ class TheCommand(TuneTest):
     def test_files_that_are_no_tuning(self):
         whole = fake.tune(GRID)
         self.assert_refused(self.run_main(json.dumps(whole)[:300]), "tune.json", "not a whole JSON file")
-        self.assert_refused(self.run_main("{}"), "'kind'", "rcme tune")
+        self.assert_refused(self.run_main("{}"), "'format'", "rcme tune")
         self.assert_refused(self.run_main("[]"), "must be an object")
-        self.assert_refused(self.run_main(fake.transfer()), "'kind'", "'tune'")
+        self.assert_refused(self.run_main(fake.transfer()), "'format'", "'rcme tuning 1'")
         for key in ("study", "estimator", "seed", "target", "options", "settings", "tuned", "others", "roc"):
             self.assert_refused(self.run_main({name: part for name, part in whole.items() if name != key}),
                                 f"no key '{key}'")

@@ -130,7 +130,7 @@ TEST(TrialAsJson, SaysWhichTrialItIsAndHowItEnded) {
   const StudyPlan plan = MakePlan(SmallStudy());
   const TrialResult result = RunLast(plan, 2);
   const Json json = JsonOf(plan, result, {1, 0});
-  EXPECT_EQ(json["format"], "rcme trial 1");
+  EXPECT_EQ(json["format"], "rcme trial 2");
   EXPECT_EQ(json["study"], "small");
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["condition"], 1);
@@ -208,7 +208,7 @@ TEST(TrialAsJson, ARefusalHasItsReasonAndNoMotion) {
   plan.estimators[1] = std::make_shared<RefusingEstimator>();
   const TrialResult result = RunLast(plan);
   const Json refusal = JsonOf(plan, result)["estimators"][1];
-  EXPECT_EQ(refusal["outcome"], "refused");
+  EXPECT_EQ(refusal["outcome"], "refusal");
   EXPECT_EQ(refusal["status"], "no_candidate");
   EXPECT_EQ(refusal["message"], "no, thank you");
   EXPECT_EQ(refusal["inliers"], Json::array());
@@ -226,12 +226,12 @@ TEST(TrialAsJson, AnInvalidAnswerIsAFailureWithItsReasonAndNoMotion) {
   ASSERT_EQ(result.records[0].status, MotionStatus::kInvalidMotion);
   EXPECT_EQ(MostTelling(plan, result), 0u);
   const Json json = JsonOf(plan, result)["estimators"][0];
-  EXPECT_EQ(json["outcome"], "failed");
+  EXPECT_EQ(json["outcome"], "failure");
   EXPECT_EQ(json["status"], "invalid_motion");
   EXPECT_EQ(json["message"], "inlier 1000000000 is not an index of one of the 60 matches");
   EXPECT_EQ(json["inliers"], Json::array());
   EXPECT_TRUE(json["R"].is_null() && json["F"].is_null());
-  EXPECT_NE(TrialAsText(plan, result).find("failed"), std::string::npos);
+  EXPECT_NE(TrialAsText(plan, result).find("failure"), std::string::npos);
 }
 
 TEST(TrialAsJson, RealPairsHaveNeitherSceneNorLabels) {

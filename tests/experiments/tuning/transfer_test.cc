@@ -91,7 +91,8 @@ TEST(Transfer, WhatHasNoPromiseOrNoOtherFamilyIsRefused) {
   one.conditions.resize(1);
   EXPECT_TRUE(ThrowsInputError([&] { Transfer(one, ""); }, {"one family", "two are needed"}));
   plan.study.tuning->calibrate = 6;  // 0.65^6 = 0.075; two conditions together would do
-  EXPECT_TRUE(ThrowsInputError([&] { Transfer(plan, ""); }, {"calibrate: 6 in each of 1 conditions", "7 trials would do"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Transfer(plan, ""); },
+                               {"calibrate: 6 in each of 1 conditions", "7 trials would do"}));
   EXPECT_NO_THROW(Transfer(plan, "sigma_px"));
   plan.study.tuning->target = TuneTarget::kRisk;
   EXPECT_TRUE(ThrowsInputError([&] { Transfer(plan, ""); }, {"transfer", "risk"}));
@@ -103,13 +104,13 @@ TEST(TargetVerdict, TheWholeIntervalOnOneSideOfTheLimit) {
   tuning.at_most = 0.1;
   tuning.max_refusal = 1.0;
   // 95 % intervals of 100: 4 [1.1, 9.9], 5 [1.6, 11.3], 17 [10.2, 25.8], 16 [9.4, 24.7] %.
-  EXPECT_EQ(VerdictOf(tuning, {100, 4, 90, 0, 0}), TargetVerdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {100, 5, 0, 0, 0}), TargetVerdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 16, 0, 0, 0}), TargetVerdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 17, 0, 0, 0}), TargetVerdict::kViolated);
+  EXPECT_EQ(VerdictOf(tuning, {100, 4, 90, 0, 0}), Verdict::kHolds);
+  EXPECT_EQ(VerdictOf(tuning, {100, 5, 0, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOf(tuning, {100, 16, 0, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOf(tuning, {100, 17, 0, 0, 0}), Verdict::kDoesNotHold);
   tuning.target = TuneTarget::kFalseRefusal;
-  EXPECT_EQ(VerdictOf(tuning, {1000, 900, 4, 100, 4}), TargetVerdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {1000, 0, 0, 0, 0}), TargetVerdict::kUndecided) << "no trial is good";
+  EXPECT_EQ(VerdictOf(tuning, {1000, 900, 4, 100, 4}), Verdict::kHolds);
+  EXPECT_EQ(VerdictOf(tuning, {1000, 0, 0, 0, 0}), Verdict::kUndecided) << "no trial is good";
 }
 
 // The target limits refusals as well: a setting that refuses everything never fails.
@@ -118,10 +119,10 @@ TEST(TargetVerdict, RefusalsAreLimitedToo) {
   tuning.target = TuneTarget::kFailure;
   tuning.at_most = 0.1;
   tuning.max_refusal = 0.5;
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 100, 0, 0}), TargetVerdict::kViolated);
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 50, 0, 0}), TargetVerdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 20, 0, 0}), TargetVerdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {100, 30, 50, 0, 0}), TargetVerdict::kViolated);
+  EXPECT_EQ(VerdictOf(tuning, {100, 0, 100, 0, 0}), Verdict::kDoesNotHold);
+  EXPECT_EQ(VerdictOf(tuning, {100, 0, 50, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOf(tuning, {100, 0, 20, 0, 0}), Verdict::kHolds);
+  EXPECT_EQ(VerdictOf(tuning, {100, 30, 50, 0, 0}), Verdict::kDoesNotHold);
 }
 
 TEST(TransferOutput, CellsAndCountsOfTheOthers) {
@@ -139,7 +140,7 @@ TEST(TransferOutput, CellsAndCountsOfTheOthers) {
   const auto json = nlohmann::json::parse(TransferAsJson(plan, SettingsOf(plan), result));
   ASSERT_EQ(json["cells"].size(), 6u);  // of two families
   EXPECT_EQ(json["cells"][1]["verified_on"], 1);
-  EXPECT_EQ(json["cells"][1]["verdict"], "violated");
+  EXPECT_EQ(json["cells"][1]["verdict"], "does not hold");
   EXPECT_EQ(json["cells"][1]["rate"]["value"], 0.9);
   EXPECT_EQ(json["cells"][2]["verdict"], "undecided");
   EXPECT_EQ(json["cells"][3]["tuned_on"], 2);

@@ -225,7 +225,7 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
   EXPECT_EQ(log.seeds.size(), 9u);
   std::vector<std::int64_t> num_chosen(6, 0);
   std::int64_t num_without = 0;
-  std::map<TargetVerdict, std::int64_t> num_with;
+  std::map<Verdict, std::int64_t> num_with;
   Progress progress("trials", 1);
   const std::vector<SettingCount> reference =
       SumOver(CountOutcomes(plan, SettingsOf(plan), {30, 40}, 1, &progress), {0, 1});
@@ -244,8 +244,8 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
   EXPECT_EQ(repetitions.num_done, 8);
   EXPECT_EQ(repetitions.num_without_choice, num_without);
   EXPECT_EQ(repetitions.num_chosen, num_chosen);
-  EXPECT_EQ(repetitions.num_violated, num_with[TargetVerdict::kViolated]);
-  EXPECT_EQ(repetitions.num_undecided, num_with[TargetVerdict::kUndecided]);
+  EXPECT_EQ(repetitions.num_violated, num_with[Verdict::kDoesNotHold]);
+  EXPECT_EQ(repetitions.num_undecided, num_with[Verdict::kUndecided]);
 }
 
 TEST(RepeatTuning, ARiskIsNoPromise) {

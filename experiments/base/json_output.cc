@@ -1,0 +1,11 @@
+#include "experiments/base/json_output.h"
+
+namespace rcme {
+
+std::string JsonText(const char* format, const nlohmann::ordered_json& object) {
+  nlohmann::ordered_json stamped = {{"format", format}};
+  stamped.update(object);
+  return stamped.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace rcme

@@ -1,0 +1,24 @@
+// JSON as the program writes it: one object that begins with its format.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace rcme {
+
+// A program that reads one of these refuses a format that it does not know; the number rises whenever a key
+// goes or changes its meaning. docs/output_formats.md has the same list.
+inline constexpr const char* kAuditFormat = "rcme audit 1";
+inline constexpr const char* kComparisonFormat = "rcme comparison 1";
+inline constexpr const char* kEstimateFormat = "rcme estimate 1";
+inline constexpr const char* kReportFormat = "rcme report 1";
+inline constexpr const char* kSummaryFormat = "rcme summary 1";
+inline constexpr const char* kTransferFormat = "rcme transfer 1";
+inline constexpr const char* kTrialFormat = "rcme trial 2";
+inline constexpr const char* kTuningFormat = "rcme tuning 1";
+
+// The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no
+// UTF-8 is replaced.
+std::string JsonText(const char* format, const nlohmann::ordered_json& object);
+
+}  // namespace rcme

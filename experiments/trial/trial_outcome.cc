@@ -1,0 +1,40 @@
+#include "experiments/trial/trial_outcome.h"
+
+namespace rcme {
+
+TrialOutcome OutcomeOf(const TrialRecord& record, const FailureBounds& bounds) {
+  if (HasRefused(record)) return TrialOutcome::kRefusal;
+  if (HasFailed(record, bounds)) return TrialOutcome::kFailure;
+  return IsScored(record) ? TrialOutcome::kSuccess : TrialOutcome::kNotScored;
+}
+
+const char* Name(TrialOutcome outcome) {
+  switch (outcome) {
+    case TrialOutcome::kSuccess:
+      return "success";
+    case TrialOutcome::kFailure:
+      return "failure";
+    case TrialOutcome::kRefusal:
+      return "refusal";
+    case TrialOutcome::kNotScored:
+      break;
+  }
+  return "not_scored";
+}
+
+std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds) {
+  return record.status == MotionStatus::kOk ? Name(OutcomeOf(record, bounds)) : StatusName(record.status);
+}
+
+std::vector<std::string> AllOutcomesInFull() {
+  std::vector<std::string> words;
+  for (const TrialOutcome outcome :
+       {TrialOutcome::kSuccess, TrialOutcome::kFailure, TrialOutcome::kNotScored})
+    words.emplace_back(Name(outcome));
+  for (const MotionStatus status : AllStatuses()) {
+    if (status != MotionStatus::kOk) words.emplace_back(StatusName(status));
+  }
+  return words;
+}
+
+}  // namespace rcme

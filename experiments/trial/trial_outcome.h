@@ -1,0 +1,25 @@
+// How a trial ended for one estimator: the words for it, once for every table, file and page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/trial/trial.h"
+
+namespace rcme {
+
+enum class TrialOutcome { kSuccess, kFailure, kRefusal, kNotScored };
+
+TrialOutcome OutcomeOf(const TrialRecord& record, const FailureBounds& bounds);
+
+// "success", "failure", "refusal", "not_scored".
+const char* Name(TrialOutcome outcome);
+
+// The same with the reason, where there is one: the status in the place of "refusal", and of "failure" where
+// the answer is not valid.
+std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds);
+
+// Every word that OutcomeInFull may give.
+std::vector<std::string> AllOutcomesInFull();
+
+}  // namespace rcme
