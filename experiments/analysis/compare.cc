@@ -10,14 +10,14 @@
 namespace rcme {
 namespace {
 
-size_t IndexOf(const std::string& label, const Study& study) {
+size_t IndexOf(const std::string& label, const RunDescription& run) {
   if (label.empty()) return 0;
   std::vector<std::string> labels;
-  for (const EstimatorSpec& spec : study.estimators) {
-    if (spec.label == label) return labels.size();
-    labels.push_back(spec.label);
+  for (const DescribedEstimator& estimator : run.estimators) {
+    if (estimator.label == label) return labels.size();
+    labels.push_back(estimator.label);
   }
-  throw InputError(fmt::format("--against: study '{}' has no estimator '{}'; allowed: {}", study.name, label,
+  throw InputError(fmt::format("--against: study '{}' has no estimator '{}'; allowed: {}", run.study, label,
                                fmt::join(labels, ", ")));
 }
 
@@ -25,11 +25,11 @@ size_t IndexOf(const std::string& label, const Study& study) {
 // reads.
 class PairCounts {
  public:
-  PairCounts(const StudyPlan& plan, size_t reference)
-      : bounds_(plan.study.failure),
+  PairCounts(const RunDescription& run, size_t reference)
+      : bounds_(run.failure),
         reference_(reference),
-        num_conditions_(plan.conditions.size()),
-        num_estimators_(plan.study.estimators.size()),
+        num_conditions_(run.conditions.size()),
+        num_estimators_(run.estimators.size()),
         cells_(num_conditions_ * num_estimators_ * TrialEvents().size()) {}
 
   void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
@@ -93,38 +93,33 @@ void AdjustForAllTests(std::vector<ComparisonRow>* rows) {
 }  // namespace
 
 Comparison Compare(const ResultStore& store, const std::string& reference) {
-  const StudyPlan plan = store.Plan();
-  const std::vector<EstimatorSpec>& estimators = plan.study.estimators;
-  const size_t reference_index = IndexOf(reference, plan.study);
-  PairCounts pairs(plan, reference_index);
+  const RunDescription run = store.Description();
+  const std::vector<DescribedEstimator>& estimators = run.estimators;
+  const size_t reference_index = IndexOf(reference, run);
+  PairCounts pairs(run, reference_index);
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     pairs.Add(problem, records);
   });
-  Comparison comparison{plan.study.name,
-                        estimators[reference_index].label,
-                        plan.factor_names,
-                        {},
-                        pairs.num_trials(),
-                        plan.NumTrials(),
-                        {}};
+  Comparison comparison{
+      run.study, estimators[reference_index].label, run.factors, {}, pairs.num_trials(), run.NumTrials(), {}};
   if (pairs.is_weighted()) {
     comparison.caution =
         "trials are weighted (tilted_to): counts of them say nothing, so there are none here";
     return comparison;
   }
-  if (!store.StoppingRule().empty()) {
+  if (!run.stopping_rule.empty()) {
     comparison.caution =
         "the number of trials depended on their outcomes (--until): p-values and intervals here hold for a "
         "number "
         "fixed beforehand only";
   }
-  for (const Condition& condition : plan.conditions) {
+  for (std::uint32_t c = 0; c < run.conditions.size(); ++c) {
     for (size_t e = 0; e < estimators.size(); ++e) {
       if (e == reference_index) continue;
       for (size_t v = 0; v < TrialEvents().size(); ++v) {
-        ComparisonRow row = RowOf(pairs.Of(condition.index, e, v));
-        row.condition = condition.index;
-        row.levels = condition.levels;
+        ComparisonRow row = RowOf(pairs.Of(c, e, v));
+        row.condition = c;
+        row.levels = run.conditions[c].levels;
         row.estimator = estimators[e].label;
         row.event = TrialEvents()[v].name;
         comparison.rows.push_back(std::move(row));

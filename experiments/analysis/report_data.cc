@@ -28,16 +28,16 @@ struct ConditionProgress {
   std::vector<FirstTrials> first;  // one per estimator
 };
 
-// One pass over a store whose records are known to belong to the plan.
-std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const StudyPlan& plan) {
-  std::vector<ConditionProgress> progress(plan.conditions.size(),
-                                          {0, 0, std::vector<FirstTrials>(plan.study.estimators.size())});
+// One pass.
+std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const RunDescription& run) {
+  std::vector<ConditionProgress> progress(run.conditions.size(),
+                                          {0, 0, std::vector<FirstTrials>(run.estimators.size())});
   store.ForEachRecord([&](const TrialRecord& record) {
     ConditionProgress& condition = progress.at(record.condition);
     if (record.estimator == 0) ++condition.num_trials_done;
     condition.trials_end = record.trial + 1;
     FirstTrials& first = condition.first.at(record.estimator);
-    if (HasFailed(record, plan.study.failure) && !first.failure) first.failure = record.trial;
+    if (HasFailed(record, run.failure) && !first.failure) first.failure = record.trial;
     if (HasRefused(record) && !first.refusal) first.refusal = record.trial;
   });
   return progress;
@@ -46,59 +46,58 @@ std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const StudyP
 Json TrialOrNull(const std::optional<std::uint32_t>& trial) { return trial ? Json(*trial) : Json(); }
 
 // Conditions with their levels, their progress, and per estimator the first failure and refusal.
-Json ConditionsAsJson(const ResultStore& store, const StudyPlan& plan) {
+Json ConditionsAsJson(const ResultStore& store, const RunDescription& run) {
   Json conditions = Json::array();
-  const std::vector<ConditionProgress> progress = ProgressOf(store, plan);
-  for (const Condition& condition : plan.conditions) {
-    const ConditionProgress& done = progress[condition.index];
+  const std::vector<ConditionProgress> progress = ProgressOf(store, run);
+  for (size_t c = 0; c < run.conditions.size(); ++c) {
+    const ConditionProgress& done = progress[c];
     Json first = Json::array();
     for (const FirstTrials& trials : done.first) {
       first.push_back({{"failure", TrialOrNull(trials.failure)}, {"refusal", TrialOrNull(trials.refusal)}});
     }
-    conditions.push_back({{"index", condition.index},
-                          {"levels", condition.levels},
+    conditions.push_back({{"index", c},
+                          {"levels", run.conditions[c].levels},
                           {"trials_done", done.num_trials_done},
                           {"trials_end", done.trials_end},
-                          {"trials_planned", condition.num_trials},
+                          {"trials_planned", run.conditions[c].num_trials},
                           {"first", first}});
   }
   return conditions;
 }
 
-// The study's ADEMP block as a list of [key, text]; empty without one.
-Json AdempAsJson(const Study& study) {
-  Json parts = Json::array();
-  if (!study.ademp) return parts;
-  Ademp ademp = *study.ademp;
-  for (const auto& [key, text] : Parts(ademp)) parts.push_back({key, *text});
-  return parts;
+// A list of [key, text].
+Json AsPairs(const Settings& settings) {
+  Json pairs = Json::array();
+  for (const auto& [key, text] : settings) pairs.push_back({key, text});
+  return pairs;
 }
 
-Json RunAsJson(const std::string& run, const ResultStore& store, const StudyPlan& plan) {
+Json RunAsJson(const std::string& path, const ResultStore& store) {
+  const RunDescription run = store.Description();
   Json estimators = Json::array(), quantities = Json::array(), events = Json::array(), bounds = Json::array();
-  for (const EstimatorSpec& spec : plan.study.estimators) estimators.push_back(spec.label);
+  for (const DescribedEstimator& estimator : run.estimators) estimators.push_back(estimator.label);
   for (const QuantityHelp& q : SummaryQuantities()) {
     quantities.push_back({{"name", q.name}, {"kind", q.kind}, {"doc", q.doc}});
   }
   for (const TrialEvent& event : TrialEvents()) {
     events.push_back({{"name", event.name}, {"doc", event.doc}});
   }
-  FailureBounds failure = plan.study.failure;
+  FailureBounds failure = run.failure;
   for (const Parameter& p : Parameters(failure)) {
     bounds.push_back({{"name", p.name()}, {"value", p.Value()}, {"unit", p.unit()}});
   }
-  return {{"run", run},
+  return {{"run", path},
           {"rcme_version", RCME_VERSION},
-          {"name", plan.study.name},
-          {"description", plan.study.description},
-          {"ademp", AdempAsJson(plan.study)},
-          {"seed", plan.study.seed},
-          {"trials_planned", plan.NumTrials()},
-          {"until", store.UntilOptionsOfAll()},
-          {"study_yaml", plan.study_yaml},
-          {"factors", plan.factor_names},
+          {"name", run.study},
+          {"description", run.description},
+          {"ademp", AsPairs(run.ademp)},
+          {"seed", run.seed},
+          {"trials_planned", run.NumTrials()},
+          {"until", run.until_options},
+          {"study_yaml", run.study_yaml},
+          {"factors", run.factors},
           {"estimators", estimators},
-          {"conditions", ConditionsAsJson(store, plan)},
+          {"conditions", ConditionsAsJson(store, run)},
           {"failure_bounds", bounds},
           {"quantities", quantities},
           {"events", events}};
@@ -111,7 +110,7 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
     throw InputError(fmt::format("{}: holds no trial yet; `rcme run` with --out {} adds them", run, run));
   }
   const Comparison comparison = Compare(store, against);
-  Json json = RunAsJson(run, store, store.Plan());
+  Json json = RunAsJson(run, store);
   json["trials_done"] = summary.num_trials_done;
   json["reference"] = comparison.reference;
   json["caution"] = comparison.caution;

@@ -249,26 +249,26 @@ std::string KindName(SummaryRow::Kind kind) {
 }
 
 Summary Summarize(const ResultStore& store, bool with_times) {
-  const StudyPlan plan = store.Plan();
-  Summary summary{plan.study.name, plan.factor_names, {}, 0, plan.NumTrials()};
-  const size_t num_estimators = plan.study.estimators.size();
+  const RunDescription run = store.Description();
+  Summary summary{run.study, run.factors, {}, 0, run.NumTrials()};
+  const size_t num_estimators = run.estimators.size();
   const Accumulator<TrialRecord> empty(TrialQuantities());
-  std::vector<Cell> cells(plan.conditions.size(), Cell{std::vector(num_estimators, empty)});
+  std::vector<Cell> cells(run.conditions.size(), Cell{std::vector(num_estimators, empty)});
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     ++summary.num_trials_done;
     Cell& cell = cells[problem.condition];
-    cell.problems.Add(problem, problem.weight, plan.study.failure);
+    cell.problems.Add(problem, problem.weight, run.failure);
     for (size_t e = 0; e < num_estimators; ++e)
-      cell.estimators[e].Add(records[e], problem.weight, plan.study.failure);
+      cell.estimators[e].Add(records[e], problem.weight, run.failure);
   });
-  for (const Condition& condition : plan.conditions) {
-    const Cell& cell = cells[condition.index];
+  for (std::uint32_t c = 0; c < run.conditions.size(); ++c) {
+    const Cell& cell = cells[c];
     SummaryRow row;
-    row.condition = condition.index;
-    row.levels = condition.levels;
-    if (!store.StoppingRule().empty()) row.interval_kind = IntervalKind::kAnytimeValid;
+    row.condition = c;
+    row.levels = run.conditions[c].levels;
+    if (!run.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
     for (size_t e = 0; e < num_estimators; ++e) {
-      row.estimator = plan.study.estimators[e].label;
+      row.estimator = run.estimators[e].label;
       cell.estimators[e].AppendRows(row, &summary.rows);
     }
     row.estimator = kSceneLabel;

@@ -9,22 +9,12 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
-
-bool WriteAll(const std::string& path, const std::string& text) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (!file) return false;
-  const bool is_written =
-      std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
-  const int error = errno;
-  const bool is_closed = std::fclose(file) == 0;
-  if (!is_written) errno = error;
-  return is_written && is_closed;
-}
 
 // A device, a pipe, a folder: nothing can be renamed over it.
 bool IsSpecial(const std::string& path) {
@@ -50,23 +40,54 @@ void CheckIsNoResultStore(const std::string& path) {
 
 }  // namespace
 
-void WriteFileWhole(const std::string& path, const std::string& text) {
-  const bool is_special = IsSpecial(path);
-  if (!is_special) CheckIsNoResultStore(path);
-  const std::string target = is_special ? path : PartOf(path);
-  if (WriteAll(target, text) && (is_special || std::rename(target.c_str(), path.c_str()) == 0)) return;
+FileInPieces::FileInPieces(const std::string& path) : path_(path) {
+  if (path.empty()) {
+    file_ = stdout;
+    return;
+  }
+  if (!IsSpecial(path)) {
+    CheckIsNoResultStore(path);
+    part_ = PartOf(path);
+  }
+  file_ = std::fopen(part_.empty() ? path.c_str() : part_.c_str(), "wb");
+  if (!file_) ThrowCannotWrite(path, errno);
+}
+
+FileInPieces::~FileInPieces() {
+  if (!file_ || file_ == stdout) return;
+  std::fclose(file_);
+  std::error_code ignored;
+  if (!part_.empty()) std::filesystem::remove(part_, ignored);
+}
+
+void FileInPieces::Write(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size())
+    ThrowCannotWrite(path_.empty() ? "standard output" : path_, errno);
+}
+
+void FileInPieces::Finish() {
+  if (std::fflush(file_) != 0) ThrowCannotWrite(path_.empty() ? "standard output" : path_, errno);
+  if (file_ == stdout) return;
+  const bool is_closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (is_closed && (part_.empty() || std::rename(part_.c_str(), path_.c_str()) == 0)) return;
   const int error = errno;
   std::error_code ignored;
-  if (!is_special) std::filesystem::remove(target, ignored);
-  ThrowCannotWrite(path, error);
+  if (!part_.empty()) std::filesystem::remove(part_, ignored);
+  ThrowCannotWrite(path_, error);
+}
+
+void WriteFileWhole(const std::string& path, const std::string& text) {
+  if (path.empty()) ThrowCannotWrite(path, ENOENT);
+  FileInPieces file(path);
+  file.Write(text);
+  file.Finish();
 }
 
 void CheckCanBeWritten(const std::string& path) {
   if (std::filesystem::is_directory(path)) ThrowCannotWrite(path, EISDIR);
   if (IsSpecial(path)) return;  // to open a pipe may take a reader
   CheckIsNoResultStore(path);
-  if (!WriteAll(PartOf(path), "")) ThrowCannotWrite(path, errno);
-  std::filesystem::remove(PartOf(path));
+  const FileInPieces opened(path);
 }
 
 void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inputs) {
@@ -79,11 +100,9 @@ void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inp
 }
 
 void PrintOrWrite(const std::string& path, const std::string& text) {
-  if (path.empty()) {
-    fmt::print("{}", text);
-  } else {
-    WriteFileWhole(path, text);
-  }
+  FileInPieces file(path);
+  file.Write(text);
+  file.Finish();
 }
 
 void MakeResultFolder(const std::string& path) {

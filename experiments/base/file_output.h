@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,24 @@ namespace rcme {
 // or pipe is written directly; a result store is never replaced: it may hold hours of work. Throws InputError
 // that names the path and the reason.
 void WriteFileWhole(const std::string& path, const std::string& text);
+
+// A file that is written piece by piece, whole or not at all: it takes its place at Finish, and without that
+// call nothing is left of it. Standard output where `path` is empty. Errors are those of WriteFileWhole.
+class FileInPieces {
+ public:
+  explicit FileInPieces(const std::string& path);
+  ~FileInPieces();
+  FileInPieces(const FileInPieces&) = delete;
+  FileInPieces& operator=(const FileInPieces&) = delete;
+
+  void Write(const std::string& text);
+  void Finish();
+
+ private:
+  const std::string path_;  // as the user gave it
+  std::string part_;        // beside it; empty: written in place
+  std::FILE* file_ = nullptr;
+};
 
 // Before long work whose result goes to this file: throws as WriteFileWhole would, changes nothing.
 void CheckCanBeWritten(const std::string& path);

@@ -42,7 +42,7 @@ std::string NotSoundText(const SalvagedCondition& condition, std::int64_t num_pl
                      num_more > 0 ? fmt::format(" and {} more", num_more) : "");
 }
 
-std::string DamageAsTable(const StudyPlan& plan, const std::vector<SalvagedCondition>& conditions) {
+std::string DamageAsTable(const RunDescription& run, const std::vector<SalvagedCondition>& conditions) {
   std::vector<std::vector<std::string>> rows = {
       {"condition", "sound", "counted", "damaged, lost or not run"}};
   size_t num_more = 0;
@@ -54,7 +54,7 @@ std::string DamageAsTable(const StudyPlan& plan, const std::vector<SalvagedCondi
     const std::string counted =
         condition.num_counted ? fmt::format("{}", *condition.num_counted) : "not known";
     rows.push_back({fmt::format("{}", c), fmt::format("{}", condition.num_sound), counted,
-                    NotSoundText(condition, plan.conditions[c].num_trials)});
+                    NotSoundText(condition, run.conditions[c].num_trials)});
   }
   const std::string more = num_more > 0 ? fmt::format("... and {} more conditions\n", num_more) : "";
   return rows.size() > 1 ? FormatColumns(rows) + more : "";
@@ -86,9 +86,7 @@ class SoundTrials {
 std::vector<SalvagedCondition> SaveGood(Salvage* salvage, const std::string& out) {
   if (std::filesystem::exists(out))
     throw InputError(fmt::format("--save-good: {} exists already; give the path of a new file", out));
-  ResultStore store = ResultStore::OpenForRun(out, salvage->plan());
-  store.NoteOrigin(salvage->origin());
-  if (!salvage->stopping_rule().empty()) store.NoteStoppingRule(salvage->stopping_rule());
+  ResultStore store = ResultStore::Create(out, salvage->description());
   SoundTrials trials(&store);
   std::vector<SalvagedCondition> conditions =
       salvage->ForEachSoundTrial([&](const StoredTrial& trial) { trials.Add(trial); });
@@ -98,7 +96,7 @@ std::vector<SalvagedCondition> SaveGood(Salvage* salvage, const std::string& out
 }
 
 void PrintSound(const std::string& run, const ResultStore& store) {
-  const TrialOrigin origin = store.Origin();
+  const TrialOrigin origin = store.Description().origin;
   fmt::print("{}: sound: {} trials, every checksum is right; of {} ({})\n", run, store.NumTrials(),
              origin.program.empty() ? "a program not noted" : origin.program,
              origin.instruction_set.empty() ? "instruction set not noted" : origin.instruction_set);
@@ -116,7 +114,7 @@ void ReportDamage(const CheckArguments& arguments, const InputError& error) {
   for (const SalvagedCondition& condition : conditions) num_sound += condition.num_sound;
   fmt::print("{}: damaged; {} trials are sound\n", arguments.run, num_sound);
   for (const std::string& finding : salvage.findings()) fmt::print("  {}\n", finding);
-  fmt::print("{}", DamageAsTable(salvage.plan(), conditions));
+  fmt::print("{}", DamageAsTable(salvage.description(), conditions));
   if (arguments.save_good.empty()) {
     const bool is_study_lost = num_sound == 0 && arguments.study.empty();
     fmt::print(

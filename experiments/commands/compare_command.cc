@@ -17,7 +17,7 @@ struct CompareArguments {
 void RunCompare(const CompareArguments& arguments) {
   const ResultStore store = ResultStore::OpenForReading(arguments.run);
   const Comparison comparison = Compare(store, arguments.against);
-  if (comparison.rows.empty() && store.Plan().study.estimators.size() == 1) {
+  if (comparison.rows.empty() && store.Description().estimators.size() == 1) {
     throw InputError(fmt::format("{}: study '{}' has one estimator, '{}'; a comparison needs two",
                                  arguments.run, comparison.study, comparison.reference));
   }

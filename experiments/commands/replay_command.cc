@@ -73,7 +73,7 @@ bool AreEqual(const TrialRecord& a, const TrialRecord& b) {
 }
 
 void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t trial) {
-  const ResultStore store = ResultStore::OpenForReading(run);
+  const ResultStore store = ResultStore::OpenForSingleTrials(run);
   const StudyPlan plan = store.Plan();
   const Condition& condition = ChosenCondition(plan, condition_index);
   const TrialResult result = RunTrial(plan, condition, trial);

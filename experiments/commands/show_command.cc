@@ -46,7 +46,7 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
                     "and --seed go with a study file (YAML)",
                     arguments.study));
   }
-  return ResultStore::OpenForReading(arguments.study).Plan();
+  return ResultStore::OpenForSingleTrials(arguments.study).Plan();
 }
 
 // Numbers of the estimators with these labels, each once, in the order asked for.

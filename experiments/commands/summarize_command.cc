@@ -3,28 +3,56 @@
 #include <memory>
 
 #include "experiments/analysis/summary_output.h"
+#include "experiments/analysis/trial_table.h"
 #include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
 
 namespace rcme {
+namespace {
+
+void WriteTrials(const ResultStore& store, bool with_times, const std::string& out) {
+  FileInPieces file(out);
+  WriteTrialTable(store, with_times, [&](const std::string& text) { file.Write(text); });
+  file.Finish();
+}
+
+}  // namespace
 
 void AddSummarizeCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "summarize", "Rates with exact 95 % intervals and means with standard errors, from a result file");
   struct Arguments {
-    std::string run, format = "table", out;
+    std::string run, format = "table", raw, out;
     bool with_times = false;
   };
+  command->footer(
+      "--raw gives the trials themselves: one row per trial and estimator with the study, the condition, "
+      "the\n"
+      "level of each factor, the outcome as a word (success, failure, not_scored, or the status of an "
+      "answer\n"
+      "that is refused or not valid), every number of the result file, and what the problem was like. It is\n"
+      "written as it is read, in memory that does not grow with the trials.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme summarize run.sqlite\n"
+      "  rcme summarize run.sqlite --format csv --out summary.csv\n"
+      "  rcme summarize run.sqlite --raw csv --out trials.csv");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
-  command->add_option("--format", arguments->format, "table (for people), csv or json (every quantity)")
-      ->check(CLI::IsMember({"table", "csv", "json"}))
-      ->capture_default_str();
+  CLI::Option* format =
+      command->add_option("--format", arguments->format, "table (for people), csv or json (every quantity)")
+          ->check(CLI::IsMember({"table", "csv", "json"}))
+          ->capture_default_str();
+  command->add_option("--raw", arguments->raw, "csv: every trial in a row of its own, nothing summarized")
+      ->check(CLI::IsMember({"csv"}))
+      ->excludes(format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->add_flag("--times", arguments->with_times,
                     "add the time per call; without it, equal studies give equal bytes");
   command->callback([arguments] {
-    const Summary summary = Summarize(ResultStore::OpenForReading(arguments->run), arguments->with_times);
+    const ResultStore store = ResultStore::OpenForReading(arguments->run);
+    if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
+    const Summary summary = Summarize(store, arguments->with_times);
     const std::string text = arguments->format == "csv"    ? SummaryAsCsv(summary)
                              : arguments->format == "json" ? SummaryAsJson(summary)
                                                            : SummaryAsTable(summary);

@@ -9,27 +9,29 @@
 #include <type_traits>
 #include <vector>
 
+#include "experiments/result_file/column_meaning.h"
 #include "experiments/result_file/column_range.h"
 #include "experiments/result_file/database.h"
+#include "experiments/result_file/schema.h"
 #include "experiments/trial/trial_fields.h"
 
 namespace rcme {
 
-// `kExtra` are columns that are no fields; they come last.
+// `kNumExtra` columns are no fields; they come last.
 template <typename Record>
 struct RecordTable;
 template <>
 struct RecordTable<ProblemRecord> {
   static constexpr const char* kName = "problems";
   static constexpr const char* kKey = "condition, trial";
-  static constexpr const char* kExtra = ", checksum INTEGER NOT NULL";
+  static constexpr int kNumExtra = 1;  // the checksum
   static void Visit(auto& record, auto&& visit) { VisitProblemFields(record, visit); }
 };
 template <>
 struct RecordTable<TrialRecord> {
   static constexpr const char* kName = "trials";
   static constexpr const char* kKey = "condition, trial, estimator";
-  static constexpr const char* kExtra = "";
+  static constexpr int kNumExtra = 0;
   static void Visit(auto& record, auto&& visit) { VisitFields(record, visit); }
 };
 
@@ -43,19 +45,22 @@ std::string JoinFields(Make make) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-template <typename Record>
-std::string CreateRecordTable() {
-  using Table = RecordTable<Record>;
-  const std::string columns = JoinFields<Record>([](const char* name, const auto& field) {
+// The columns of the table, `extra` after those of the fields.
+template <typename Record, typename... Extra>
+std::vector<ResultColumn> RecordColumns(const Extra&... extra) {
+  std::vector<ResultColumn> columns;
+  Record record;
+  RecordTable<Record>::Visit(record, [&](const char* name, const auto& field) {
     using Field = std::decay_t<decltype(field)>;
     const char* type = std::is_same_v<Field, double>         ? "REAL"
                        : std::is_same_v<Field, MotionStatus> ? "TEXT"
                                                              : "INTEGER";
     const bool may_be_null = std::is_same_v<Field, double> && RangeOf(name).may_be_unknown;
-    return fmt::format("{} {}{}", name, type, may_be_null ? "" : " NOT NULL");
+    const ColumnMeaning& meaning = MeaningOf(name);
+    columns.push_back({name, type, meaning.unit, meaning.text, may_be_null});
   });
-  return fmt::format("CREATE TABLE {} ({}{}, PRIMARY KEY ({})) WITHOUT ROWID", Table::kName, columns,
-                     Table::kExtra, Table::kKey);
+  (columns.push_back(extra), ...);
+  return columns;
 }
 
 template <typename Record>
@@ -63,7 +68,7 @@ std::string InsertIntoRecordTable() {
   using Table = RecordTable<Record>;
   return fmt::format("INSERT INTO {} VALUES ({}{})", Table::kName,
                      JoinFields<Record>([](const char*, const auto&) { return "?"; }),
-                     *Table::kExtra ? ", ?" : "");
+                     Table::kNumExtra > 0 ? ", ?" : "");
 }
 
 // `rest` begins with " WHERE" or " ORDER BY"; empty: all rows, in the table's own order.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "experiments/base/progress.h"
 #include "experiments/result_file/checksum.h"
 #include "experiments/result_file/schema.h"
@@ -16,28 +18,35 @@ bool ResultFile::IsNew() {
          database.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() == 0;
 }
 
-void ResultFile::Create(const StudyPlan& plan) {
+void ResultFile::Create(const RunDescription& run) {
   SQLite::Transaction creation(database);
   CreateTables(database);
-  run = RunTable::Write(database, plan);
-  totals = TrialTotals::Write(database, plan.conditions.size());
+  WriteDescription(database, run);
+  totals = TrialTotals::Write(database, run.conditions.size());
   creation.commit();
+  description = run;
 }
 
-void ResultFile::CreateAnew(const StudyPlan& plan) {
+void ResultFile::CreateAnew(const RunDescription& run) {
   SQLite::Transaction replacement(database);
   DropTables(database);
   CreateTables(database);
-  run = RunTable::Write(database, plan);
-  totals = TrialTotals::Write(database, plan.conditions.size());
+  WriteDescription(database, run);
+  totals = TrialTotals::Write(database, run.conditions.size());
   replacement.commit();
+  description = run;
 }
 
-void ResultFile::Load() {
+void ResultFile::LoadDescription() {
   CheckFormat(database, path);
   CheckSchema(database);
-  run = RunTable::Read(database);
+  description = ReadDescription(database);
   totals = TrialTotals::Read(database);
+  if (totals.num_conditions() != description.conditions.size())
+    throw Damage("table totals has other conditions than the study");
+}
+
+void ResultFile::CheckTrials() const {
   Progress progress("trials checked", totals.NumTrials());
   ForEachTrial(std::nullopt, [&](const StoredTrial&) { progress.Advance(1); });
 }
@@ -47,19 +56,15 @@ void ResultFile::CheckPages() {
   if (finding != "ok") throw Damage(finding);
 }
 
-void ResultFile::CheckFits(const StudyPlan& plan) const {
-  if (plan.conditions.size() != totals.num_conditions() || plan.estimators.size() != run.num_estimators())
-    throw Damage("its tables are not those of its study");
-}
-
 TrialFrame ResultFile::Frame() const {
-  return {ChecksumOf({run.Value("identity")}), totals.num_conditions(), run.num_estimators()};
+  return {ChecksumOf({description.identity}), totals.num_conditions(), description.estimators.size()};
 }
 
-void ResultFile::SetValues(const std::map<std::string, std::string>& values) {
+void ResultFile::SetDescription(const RunDescription& run) {
   SQLite::Transaction change(database);
-  run.Set(database, values);
+  WriteDescription(database, run);
   change.commit();
+  description = run;
 }
 
 void ResultFile::ForEachTrial(std::optional<std::uint32_t> condition,

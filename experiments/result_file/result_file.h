@@ -2,12 +2,11 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 
 #include "experiments/result_file/database.h"
-#include "experiments/result_file/run_table.h"
+#include "experiments/result_file/description_tables.h"
 #include "experiments/result_file/trial_reader.h"
 #include "experiments/result_file/trial_totals.h"
 
@@ -20,19 +19,18 @@ class ResultFile {
 
   // A file that no one has written to, or one whose first run ended before it had made the tables.
   bool IsNew();
-  void Create(const StudyPlan& plan);
+  void Create(const RunDescription& run);
   // In place of all that the file holds.
-  void CreateAnew(const StudyPlan& plan);
-  // Reads all there is, and so checks it. Shows progress.
-  void Load();
+  void CreateAnew(const RunDescription& run);
+  // Reads and checks everything but the trials.
+  void LoadDescription();
+  // Reads all trials, and so checks them. Shows progress.
+  void CheckTrials() const;
   // Checks what SQLite would write over: its free pages and the trees that hold the tables.
   void CheckPages();
 
-  // Checks that the tables are those of a plan with the same identity.
-  void CheckFits(const StudyPlan& plan) const;
-
   TrialFrame Frame() const;
-  void SetValues(const std::map<std::string, std::string>& values);
+  void SetDescription(const RunDescription& run);
   // Every trial, or those of one condition; throws Damage at the first that is not sound, or at the end if
   // they are not those that were counted.
   void ForEachTrial(std::optional<std::uint32_t> condition,
@@ -40,7 +38,7 @@ class ResultFile {
 
   const std::string path;
   SQLite::Database database;
-  RunTable run;
+  RunDescription description;
   TrialTotals totals;
 };
 

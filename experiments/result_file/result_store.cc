@@ -46,6 +46,34 @@ std::string WithName(const std::string& names, const std::string& name) {
   return has_it ? names : names + ", " + name;
 }
 
+// The run as a plan asks for it, in a file that earlier runs have written to: what they asked for is still
+// asked for, and what they noted stays.
+RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {
+  RunDescription run = Describe(plan);
+  if (earlier.trials > run.trials) {
+    Study study = plan.study;
+    study.trials = run.trials = earlier.trials;
+    run.study_yaml = ToYaml(study);
+  }
+  for (size_t c = 0; c < run.conditions.size(); ++c) {
+    run.conditions[c].num_trials = std::max(run.conditions[c].num_trials, earlier.conditions[c].num_trials);
+  }
+  run.stopping_rule = earlier.stopping_rule;
+  run.until_options = earlier.until_options;
+  run.until_trials = earlier.until_trials;
+  run.origin = earlier.origin;
+  return run;
+}
+
+// Throws Damage if a description is not that of its study.
+void CheckFits(const RunDescription& run, const StudyPlan& plan) {
+  if (plan.conditions.size() != run.conditions.size() || plan.estimators.size() != run.estimators.size())
+    throw Damage("its tables are not those of its study");
+}
+
+// A read-write connection that no other run shares.
+constexpr const char* kTakeLock = "PRAGMA locking_mode = EXCLUSIVE; BEGIN IMMEDIATE; COMMIT";
+
 }  // namespace
 
 TrialOrigin ThisProgram() { return {"rcme " RCME_VERSION, InstructionSetName()}; }
@@ -53,22 +81,14 @@ TrialOrigin ThisProgram() { return {"rcme " RCME_VERSION, InstructionSetName()};
 struct ResultStore::Connection {
   Connection(const std::string& path, int sqlite_flags) : file(path, sqlite_flags) {}
 
-  void Set(const std::map<std::string, std::string>& values) {
+  void Set(const RunDescription& run) {
     if (writer) writer->Commit();
-    file.SetValues(values);
-  }
-
-  // The study with the trials that earlier runs asked for, if those were more.
-  void KeepStudy(const StudyPlan& plan) {
-    const std::string earlier = file.run.Value("study");
-    Study study = plan.study;
-    study.trials = std::max(study.trials, ParseStudy(earlier, file.path + " (its study)").trials);
-    const std::string yaml = ToYaml(study);
-    if (yaml != earlier) Set({{"study", yaml}});
+    file.SetDescription(run);
   }
 
   ResultFile file;
   std::optional<TrialWriter> writer;
+  bool are_trials_checked = false;
 };
 
 ResultStore::ResultStore(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
@@ -88,51 +108,96 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
   return NamingFile(path, [&] {
     auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     ResultFile& file = connection->file;
-    file.database.exec("PRAGMA locking_mode = EXCLUSIVE");
-    file.database.exec("BEGIN IMMEDIATE; COMMIT");  // take the lock now: a second run stops here
+    file.database.exec(kTakeLock);  // now: a second run stops here
     if (file.IsNew()) {
-      file.Create(plan);
+      file.Create(Describe(plan));
     } else {
-      file.Load();
+      file.LoadDescription();
+      file.CheckTrials();
       file.CheckPages();
     }
     // A file without a trial (its run failed at once) takes any study.
-    const std::string identity = file.run.Value("identity");
+    const std::string& identity = file.description.identity;
     if (identity != plan.identity && file.totals.NumTrials() > 0) {
       throw InputError(
           fmt::format("{}: holds the results of another study; first difference: {}. Give another --out",
                       path, FirstDifference(identity, plan.identity)));
     }
-    if (identity != plan.identity) file.CreateAnew(plan);
-    file.CheckFits(plan);
-    connection->KeepStudy(plan);
+    if (identity != plan.identity) {
+      file.CreateAnew(Describe(plan));
+    } else {
+      CheckFits(file.description, plan);
+      const RunDescription run = Continued(file.description, plan);
+      if (run.study_yaml != file.description.study_yaml) file.SetDescription(run);
+    }
     connection->writer.emplace(&file);
     return ResultStore(std::move(connection));
   });
 }
 
-ResultStore ResultStore::OpenForReading(const std::string& path) {
+ResultStore ResultStore::Create(const std::string& path, const RunDescription& run) {
+  CheckPathToWrite(path);
+  if (std::filesystem::exists(path))
+    throw InputError(fmt::format("{}: exists already; give a new file", path));
+  return NamingFile(path, [&] {
+    auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    connection->file.database.exec(kTakeLock);
+    connection->file.Create(run);
+    connection->writer.emplace(&connection->file);
+    return ResultStore(std::move(connection));
+  });
+}
+
+ResultStore ResultStore::OpenUnchecked(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
   return NamingFile(path, [&] {
     // Read-write where that is allowed: rolling back the journal of a run that was killed needs to write.
     auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE);
     connection->file.database.exec("BEGIN");  // what is checked is what will be read, whoever writes
-    connection->file.Load();
+    connection->file.LoadDescription();
     return ResultStore(std::move(connection));
   });
 }
 
-StudyPlan ResultStore::Plan() const {
+void ResultStore::CheckTrials() const {
+  NamingFile(connection_->file.path, [&] { connection_->file.CheckTrials(); });
+  connection_->are_trials_checked = true;
+}
+
+ResultStore ResultStore::OpenForReading(const std::string& path) {
+  ResultStore store = OpenUnchecked(path);
+  store.CheckTrials();
+  return store;
+}
+
+ResultStore ResultStore::OpenForSingleTrials(const std::string& path) {
+  ResultStore store = OpenUnchecked(path);
+  // Under a stopping rule the number of trials is that of the totals, which only the trials can confirm.
+  if (!store.Description().stopping_rule.empty()) store.CheckTrials();
+  return store;
+}
+
+RunDescription ResultStore::Description() const {
   const ResultFile& file = connection_->file;
-  StudyPlan plan = PlanOf(ParseStudy(file.run.Value("study"), file.path + " (its study)"), file.path);
-  if (plan.identity != file.run.Value("identity")) {
-    throw InputError(fmt::format("{}: the data of its study have changed since: {}", file.path,
-                                 FirstDifference(file.run.Value("identity"), plan.identity)));
+  RunDescription run = file.description;
+  if (run.until_trials != file.totals.NumTrials()) run.until_options.clear();
+  if (run.stopping_rule.empty()) return run;
+  for (size_t c = 0; c < run.conditions.size(); ++c)
+    run.conditions[c].num_trials = file.totals.Of(c).num_trials;
+  return run;
+}
+
+StudyPlan ResultStore::Plan() const {
+  const std::string& path = connection_->file.path;
+  const RunDescription run = Description();
+  StudyPlan plan = PlanOf(ParseStudy(run.study_yaml, path + " (its study)"), path);
+  if (plan.identity != run.identity) {
+    throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
+                                 FirstDifference(run.identity, plan.identity)));
   }
-  NamingFile(file.path, [&] { file.CheckFits(plan); });
-  if (StoppingRule().empty()) return plan;
+  NamingFile(path, [&] { CheckFits(run, plan); });
   for (Condition& condition : plan.conditions) {
-    condition.num_trials = static_cast<int>(file.totals.Of(condition.index).num_trials);
+    condition.num_trials = static_cast<int>(run.conditions[condition.index].num_trials);
   }
   return plan;
 }
@@ -163,43 +228,36 @@ void ResultStore::Commit() {
   NamingFile(connection_->file.path, [&] { connection_->writer.value().Commit(); });
 }
 
-void ResultStore::Set(const std::map<std::string, std::string>& values) {
-  NamingFile(connection_->file.path, [&] { connection_->Set(values); });
+void ResultStore::Set(const RunDescription& run) {
+  NamingFile(connection_->file.path, [&] { connection_->Set(run); });
 }
 
-void ResultStore::NoteStoppingRule(const std::string& rule) { Set({{"stopping rule", rule}}); }
-
-std::string ResultStore::StoppingRule() const { return connection_->file.run.Value("stopping rule"); }
+void ResultStore::NoteStoppingRule(const std::string& rule) {
+  RunDescription run = connection_->file.description;
+  run.stopping_rule = rule;
+  Set(run);
+}
 
 void ResultStore::NoteUntilOptions(const std::string& options, std::int64_t num_trials) {
-  Set({{"until options", options}, {"until trials", std::to_string(num_trials)}});
-}
-
-std::string ResultStore::UntilOptionsOfAll() const {
-  const RunTable& run = connection_->file.run;
-  const bool is_all = run.Value("until trials") == std::to_string(connection_->file.totals.NumTrials());
-  return is_all ? run.Value("until options") : std::string();
+  RunDescription run = connection_->file.description;
+  run.until_options = options;
+  run.until_trials = num_trials;
+  Set(run);
 }
 
 std::int64_t ResultStore::NumTrials() const { return connection_->file.totals.NumTrials(); }
 
 std::string ResultStore::NoteOrigin(const TrialOrigin& origin) {
-  const TrialOrigin before = Origin();
-  const TrialOrigin all{WithName(before.program, origin.program),
-                        WithName(before.instruction_set, origin.instruction_set)};
-  const bool is_known = all.program == before.program && all.instruction_set == before.instruction_set;
-  if (!is_known) Set({{"program", all.program}, {"instruction set", all.instruction_set}});
-  const bool is_only = all.program == origin.program && all.instruction_set == origin.instruction_set;
-  if (is_only || connection_->file.totals.NumTrials() == 0) return {};
+  RunDescription run = connection_->file.description;
+  const TrialOrigin before = run.origin;
+  run.origin = {WithName(before.program, origin.program),
+                WithName(before.instruction_set, origin.instruction_set)};
+  if (run.origin != before) Set(run);
+  if (run.origin == origin || connection_->file.totals.NumTrials() == 0) return {};
   return fmt::format(
       "{}: its trials are of {} ({}), the further ones will be of {} ({}): they may differ in their last "
       "bits",
       connection_->file.path, before.program, before.instruction_set, origin.program, origin.instruction_set);
-}
-
-TrialOrigin ResultStore::Origin() const {
-  const RunTable& run = connection_->file.run;
-  return {run.Value("program"), run.Value("instruction set")};
 }
 
 void ResultStore::ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const {
@@ -218,11 +276,13 @@ void ResultStore::ForEachTrial(
 }
 
 std::vector<TrialRecord> ResultStore::RecordsOf(std::uint32_t condition, std::uint32_t trial) const {
-  return NamingFile(connection_->file.path, [&] {
+  const auto found = NamingFile(connection_->file.path, [&] {
     const ResultFile& file = connection_->file;
-    const std::optional<StoredTrial> found = ReadStoredTrial(file.database, file.Frame(), condition, trial);
-    return found ? found->records : std::vector<TrialRecord>();
+    return ReadStoredTrial(file.database, file.Frame(), condition, trial);
   });
+  if (found) return found->records;
+  if (!connection_->writer && !connection_->are_trials_checked) CheckTrials();
+  return {};
 }
 
 }  // namespace rcme

@@ -1,30 +1,26 @@
 // The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and
-// again. The tables stand in result_file/schema.h, the columns of records in trial_fields.h; unknown numbers
-// are NULL.
+// again. docs/result_file.md has its tables.
 //
-// Opening a file checks all of it, every checksum included, so that no command takes a damaged file for a
-// sound one. Damage is an InputError; `rcme check` (check_result_file.h) says more.
+// Who reads results opens the file with a check of all of it, every checksum included, so that no command
+// takes a damaged file for a sound one. Damage is an InputError; `rcme check` (check_result_file.h) says
+// more.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/study/run_description.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial.h"
 #include "experiments/trial/trial_range.h"
 
 namespace rcme {
 
-// Who computes trials: last bits may depend on it.
-struct TrialOrigin {
-  std::string program;          // with its version
-  std::string instruction_set;  // estimator/instruction_set.h
-};
+// Of the trials that this program computes.
 TrialOrigin ThisProgram();
 
 // One thread at a time may call it.
@@ -34,15 +30,23 @@ class ResultStore {
   // study keeps the greatest number of trials. Throws InputError if the path cannot be written, is no result
   // file or a damaged one, is in use by another run, or holds another study (the message says what differs).
   static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan);
+  // Makes a new file for a run that is described, whatever it was run by. Throws InputError if the path
+  // cannot be written or holds a file.
+  static ResultStore Create(const std::string& path, const RunDescription& run);
   // Opens an existing file to read. Throws InputError if it is not a result file, or damaged.
   static ResultStore OpenForReading(const std::string& path);
+  // The same to run or read single trials, without a pass over all of them: RecordsOf checks the one it
+  // reads, and all of them where it finds none, so that a lost trial is not taken for one that was never run.
+  static ResultStore OpenForSingleTrials(const std::string& path);
 
   ResultStore(ResultStore&&) noexcept;
   ~ResultStore();  // commits what has been added
 
-  // The plan of the study in the file; a condition's trials are those that runs asked for, under a stopping
-  // rule those that it took. Throws InputError if its data (a folder of pairs) are gone or have
-  // changed.
+  // What the file says of its run. A condition's trials are those that runs asked for, under a stopping rule
+  // those that it took; the options of --until are there as long as they alone give the trials in the file.
+  RunDescription Description() const;
+  // The study in the file made ready to run: needed to compute its trials again, not to read them. Throws
+  // InputError if its data (a folder of pairs) are gone or have changed.
   StudyPlan Plan() const;
 
   // Those of the first `num_trials` trials of a condition that are not in the file, ascending.
@@ -61,18 +65,12 @@ class ResultStore {
   // How many trials a condition has may depend on their outcomes (run_until.h). Noted before the first trial
   // of such a run and for good: intervals that look once no longer hold.
   void NoteStoppingRule(const std::string& rule);
-  // Empty: the number of trials was fixed beforehand.
-  std::string StoppingRule() const;
   // Options of `rcme run` that alone give the trials in the file, `num_trials` in all.
   void NoteUntilOptions(const std::string& options, std::int64_t num_trials);
-  // Empty: not known, or the file holds other trials since.
-  std::string UntilOptionsOfAll() const;
 
   // Noted before trials are added. Returns a sentence of warning if trials in the file are of another program
   // or instruction set, else nothing.
   std::string NoteOrigin(const TrialOrigin& origin);
-  // Of all trials in the file; several names are separated by commas, none known is empty.
-  TrialOrigin Origin() const;
 
   // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
   void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;
@@ -85,7 +83,9 @@ class ResultStore {
 
  private:
   struct Connection;
-  void Set(const std::map<std::string, std::string>& values);
+  static ResultStore OpenUnchecked(const std::string& path);
+  void CheckTrials() const;
+  void Set(const RunDescription& run);
   explicit ResultStore(std::unique_ptr<Connection> connection);
   std::unique_ptr<Connection> connection_;
 };

@@ -94,51 +94,60 @@ void Append(std::uint32_t trial, std::vector<TrialRange>* ranges) {
 }  // namespace
 
 Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
-    : file_(path, SQLite::OPEN_READWRITE),
-      stopping_rule_("not known: that part of the file was damaged"),
-      origin_{"not known", "not known"} {
+    : file_(path, SQLite::OPEN_READWRITE) {
   const auto note = [&](const char* what) { Note(what); };
+  std::optional<RunDescription> stored;
   NamingFile(path, [&] {
     file_.database.exec("BEGIN");
     CheckTables(file_.database, {"problems", "trials"});
-    plan_ = PlanOf(study ? *study : ReadStudy(), path);
+    if (!study) CheckFormat(file_.database, path);
+    stored = ReadStored();
+    description_ = study ? Describe(PlanOf(*study, path)) : stored ? *stored : DescribeStudy();
   });
-  frame_ = {ChecksumOf({plan_.identity}), plan_.conditions.size(), plan_.estimators.size()};
-  IsUndamaged([&] { CheckSchema(file_.database); }, note);
-  if (!IsUndamaged([&] { ReadFacts(); }, note))
+  if (study && stored) {
+    if (stored->identity != description_.identity) Note("the study is another than that of the file");
+    description_.stopping_rule = stored->stopping_rule;
+    description_.origin = stored->origin;
+  }
+  if (!stored) {
+    description_.stopping_rule = "not known: that part of the file was damaged";
+    description_.origin = {"not known", "not known"};
     Note("what stopped its run is not known: rates saved from it have anytime-valid intervals");
+  }
+  const size_t num_conditions = description_.conditions.size();
+  frame_ = {ChecksumOf({description_.identity}), num_conditions, description_.estimators.size()};
+  IsUndamaged([&] { CheckSchema(file_.database); }, note);
   IsUndamaged([&] { totals_ = TrialTotals::Read(file_.database); }, note);
-  if (totals_ && totals_->num_conditions() != plan_.conditions.size()) {
+  if (totals_ && totals_->num_conditions() != num_conditions) {
     Note("table totals has other conditions than the study");
     totals_.reset();
   }
 }
 
-Study Salvage::ReadStudy() {
-  CheckFormat(file_.database, file_.path);
+std::optional<RunDescription> Salvage::ReadStored() {
+  std::optional<RunDescription> stored;
+  const auto read = [&] {
+    CheckTables(file_.database, DescriptionTables());
+    stored = ReadDescription(file_.database);
+  };
+  IsUndamaged(read, [&](const char* what) { Note(what); });
+  return stored;
+}
+
+RunDescription Salvage::DescribeStudy() {
   CheckTables(file_.database, {"run"});
-  const RunTable run = RunTable::ReadUnchecked(file_.database);
-  Study study = ParseStudy(run.Value("study"), file_.path + " (its study)");
-  if (IsUndamaged([&] { RunTable::Read(file_.database); }, [](const char*) {})) return study;
+  Study study = ParseStudy(UncheckedRunValue(file_.database, "study"), file_.path + " (its study)");
   study.trials = 1;
   study.description.clear();
   study.ademp.reset();
-  return study;
-}
-
-void Salvage::ReadFacts() {
-  const RunTable run = RunTable::Read(file_.database);
-  stopping_rule_ = run.Value("stopping rule");
-  origin_ = {run.Value("program"), run.Value("instruction set")};
-  if (run.Value("identity") != plan_.identity) Note("the study is another than that of the file");
+  return Describe(PlanOf(study, file_.path));
 }
 
 std::vector<SalvagedCondition> Salvage::ForEachSoundTrial(
     const std::function<void(const StoredTrial&)>& keep) {
   std::vector<SalvagedCondition> conditions;
-  for (const Condition& condition : plan_.conditions) {
-    conditions.push_back(SalvageCondition(condition.index, keep));
-  }
+  for (std::uint32_t c = 0; c < description_.conditions.size(); ++c)
+    conditions.push_back(SalvageCondition(c, keep));
   return conditions;
 }
 

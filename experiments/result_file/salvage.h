@@ -26,12 +26,10 @@ class Salvage {
   // saved: the study or the table of problems or trials is gone.
   explicit Salvage(const std::string& path, const std::optional<Study>& study = std::nullopt);
 
-  // A run of it computes what is not saved. Where the study in the file is damaged, it asks for one trial per
-  // condition, for how many there were is not known: who runs it says so again.
-  const StudyPlan& plan() const { return plan_; }
-  // As in the file; where that is damaged, a rule that says so: intervals then hold whatever the rule was.
-  const std::string& stopping_rule() const { return stopping_rule_; }
-  const TrialOrigin& origin() const { return origin_; }
+  // Of a run that computes what is not saved. Where the description in the file is damaged, it asks for one
+  // trial per condition, for how many there were is not known: who runs it says so again; its stopping rule
+  // then says that the rule is not known, so that intervals hold whatever it was.
+  const RunDescription& description() const { return description_; }
 
   // Hands every sound trial to `keep`, ordered by condition and trial; returns what each condition holds.
   std::vector<SalvagedCondition> ForEachSoundTrial(const std::function<void(const StoredTrial&)>& keep);
@@ -39,19 +37,17 @@ class Salvage {
   const std::vector<std::string>& findings() const { return findings_; }
 
  private:
-  // The study in the file.
-  Study ReadStudy();
-  // The stopping rule and the origin.
-  void ReadFacts();
+  // The one in the file; nothing if it is damaged.
+  std::optional<RunDescription> ReadStored();
+  // Of the study in the file, which may be readable where the other tables are not.
+  RunDescription DescribeStudy();
   SalvagedCondition SalvageCondition(std::uint32_t condition,
                                      const std::function<void(const StoredTrial&)>& keep);
   void Note(const std::string& finding);
 
   ResultFile file_;
   TrialFrame frame_;
-  StudyPlan plan_;
-  std::string stopping_rule_;
-  TrialOrigin origin_;
+  RunDescription description_;
   std::optional<TrialTotals> totals_;
   std::vector<std::string> findings_;
 };

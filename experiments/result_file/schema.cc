@@ -13,18 +13,17 @@ namespace {
 
 // The SQL of each table, word for word as the file keeps it.
 const std::map<std::string, std::string>& Tables() {
-  static const std::map<std::string, std::string> tables = {
-      {"run", "CREATE TABLE run (key TEXT NOT NULL PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID"},
-      {"conditions",
-       "CREATE TABLE conditions (condition INTEGER NOT NULL, factor TEXT NOT NULL, level TEXT NOT NULL, "
-       "PRIMARY KEY (condition, factor)) WITHOUT ROWID"},
-      {"estimators", "CREATE TABLE estimators (estimator INTEGER PRIMARY KEY, label TEXT NOT NULL)"},
-      {"totals",
-       "CREATE TABLE totals (condition INTEGER PRIMARY KEY, num_trials INTEGER NOT NULL, checksum INTEGER "
-       "NOT "
-       "NULL)"},
-      {"problems", CreateRecordTable<ProblemRecord>()},
-      {"trials", CreateRecordTable<TrialRecord>()}};
+  static const std::map<std::string, std::string> tables = [] {
+    std::map<std::string, std::string> sql;
+    for (const ResultTable& table : ResultTables()) {
+      std::string columns;
+      for (const ResultColumn& column : table.columns)
+        columns += fmt::format("{} {}{}, ", column.name, column.type, column.may_be_null ? "" : " NOT NULL");
+      sql[table.name] = fmt::format("CREATE TABLE {} ({}PRIMARY KEY ({})) WITHOUT ROWID", table.name, columns,
+                                    fmt::join(table.key, ", "));
+    }
+    return sql;
+  }();
   return tables;
 }
 
@@ -45,7 +44,100 @@ std::map<std::string, std::string> SchemaOf(SQLite::Database& database) {
   return entries;
 }
 
+const ResultColumn kCondition = {"condition", "INTEGER", "", "number of the condition, from 0"};
+
+const ResultColumn kChecksumColumn = {
+    "checksum", "INTEGER", "",
+    "CRC-32 of the problem and its trials, begun with that of the study's identity"};
+
 }  // namespace
+
+const std::vector<ResultTable>& ResultTables() {
+  static const std::vector<ResultTable> tables = {
+      {"run",
+       "What is known of the run as a whole; the rows are below.",
+       {{"key", "TEXT", "", "one of the keys below"}, {"value", "TEXT", "", "its value as text"}},
+       {"key"}},
+      {"factors",
+       "What the study varies. For a folder of real pairs the last one is `pair_scene`, which the folder "
+       "brings.",
+       {{"factor", "INTEGER", "", "number of the factor, from 0"},
+        {"name", "TEXT", "", "the data key that it varies; the key's name has its unit"}},
+       {"factor"}},
+      {"conditions",
+       "The conditions of the study: one combination of levels each.",
+       {kCondition, {"num_trials", "INTEGER", "trials", "trials asked for, by whichever run asked for most"}},
+       {"condition"}},
+      {"levels",
+       "The level of every factor in every condition.",
+       {kCondition,
+        {"factor", "INTEGER", "", "number of the factor, from 0"},
+        {"level", "TEXT", "of the factor", "its level, as the study has it"}},
+       {"condition", "factor"}},
+      {"estimators",
+       "The estimators of the study.",
+       {{"estimator", "INTEGER", "", "number of the estimator, from 0"},
+        {"label", "TEXT", "", "what tables and figures call it; unique"},
+        {"name", "TEXT", "", "what `rcme list estimators` calls it"}},
+       {"estimator"}},
+      {"options",
+       "Every option of every estimator, defaults included; the program that reads need not know them.",
+       {{"estimator", "INTEGER", "", "number of the estimator, from 0"},
+        {"name", "TEXT", "", "name of the option"},
+        {"value", "TEXT", "of the option", "its value as text"}},
+       {"estimator", "name"}},
+      {"totals",
+       "What the file holds of every condition, written together with the trials: lost trials are noticed.",
+       {kCondition,
+        {"num_trials", "INTEGER", "trials", "trials in the file"},
+        {"checksum", "INTEGER", "", "sum of their checksums"}},
+       {"condition"}},
+      {"problems",
+       "One row per trial: the problem, whoever solves it.",
+       RecordColumns<ProblemRecord>(kChecksumColumn),
+       {"condition", "trial"}},
+      {"trials",
+       "One row per trial and estimator: what became of the call.",
+       RecordColumns<TrialRecord>(),
+       {"condition", "trial", "estimator"}}};
+  return tables;
+}
+
+const std::vector<RunKey>& RunKeys() {
+  static const std::vector<RunKey> keys = {
+      {"format", "the format of the file"},
+      {"name", "the name of the study"},
+      {"description", "the study in its own words"},
+      {"ademp_aims",
+       "the study's aims, in its own words; this and the next four empty without an ADEMP block"},
+      {"ademp_data", "how its data come about"},
+      {"ademp_estimands", "what is estimated"},
+      {"ademp_methods", "what is compared"},
+      {"ademp_performance", "what is measured"},
+      {"seed", "the seed of all random streams"},
+      {"trials",
+       "trials per condition that were asked for; for a folder of real pairs, passes over each pair"},
+      {"max_rotation_error_deg", "failure bound: a motion with a greater rotation error has failed"},
+      {"max_direction_error_deg", "failure bound: a motion with a greater error of the direction has failed"},
+      {"stopping_rule", "not empty: the number of trials depended on their outcomes, in these words"},
+      {"until_options", "options of `rcme run` that alone gave `until_trials` trials; empty: none"},
+      {"until_trials", "how many trials those gave in all conditions"},
+      {"program",
+       "programs that computed trials, with their versions; separated by commas, empty: not known"},
+      {"instruction_set", "instruction sets they used, likewise"},
+      {"study", "the study in full (YAML), for `rcme run`, `rcme replay` and `rcme show`"},
+      {"identity", "what two runs must have in common to share a file: study, seed, digest of real data"},
+      {"checksum",
+       "CRC-32 of all rows of the tables "
+       "run, factors, conditions, levels, estimators and options but this one"}};
+  return keys;
+}
+
+const std::vector<std::string>& DescriptionTables() {
+  static const std::vector<std::string> names = {"run",    "factors",    "conditions",
+                                                 "levels", "estimators", "options"};
+  return names;
+}
 
 void CreateTables(SQLite::Database& database) {
   for (const auto& [name, sql] : Tables()) database.exec(sql);

@@ -1,6 +1,5 @@
-// The tables of a result file: `run` (key, value), `conditions` (the level of each factor), `estimators`
-// (labels), `totals` (per condition, how many trials there are and the sum of their checksums), `problems`
-// and `trials` (the records).
+// The tables of a result file, column by column: their SQL, their page in the documents (docs/result_file.md)
+// and what is checked of a file all follow from this one list.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -10,7 +9,32 @@
 
 namespace rcme {
 
-inline constexpr const char* kResultFormat = "rcme results 4";  // `run` holds it as "format"
+inline constexpr const char* kResultFormat = "rcme results 5";  // `run` holds it as "format"
+
+struct ResultColumn {
+  std::string name, type;  // INTEGER, REAL or TEXT
+  std::string unit;        // empty: none
+  std::string meaning;
+  bool may_be_null = false;  // not known
+};
+
+struct ResultTable {
+  std::string name, meaning;
+  std::vector<ResultColumn> columns;
+  std::vector<std::string> key;  // the columns that tell rows apart
+};
+
+// In the order in which a reader wants them.
+const std::vector<ResultTable>& ResultTables();
+
+// The rows of the table `run`, which every file has, all of them.
+struct RunKey {
+  std::string name, meaning;
+};
+const std::vector<RunKey>& RunKeys();
+
+// The tables that describe the run: all but the totals, problems and trials.
+const std::vector<std::string>& DescriptionTables();
 
 void CreateTables(SQLite::Database& database);
 void DropTables(SQLite::Database& database);

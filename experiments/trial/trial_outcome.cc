@@ -26,15 +26,4 @@ std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds
   return record.status == MotionStatus::kOk ? Name(OutcomeOf(record, bounds)) : StatusName(record.status);
 }
 
-std::vector<std::string> AllOutcomesInFull() {
-  std::vector<std::string> words;
-  for (const TrialOutcome outcome :
-       {TrialOutcome::kSuccess, TrialOutcome::kFailure, TrialOutcome::kNotScored})
-    words.emplace_back(Name(outcome));
-  for (const MotionStatus status : AllStatuses()) {
-    if (status != MotionStatus::kOk) words.emplace_back(StatusName(status));
-  }
-  return words;
-}
-
 }  // namespace rcme

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "experiments/trial/trial.h"
 
@@ -18,8 +17,5 @@ const char* Name(TrialOutcome outcome);
 // The same with the reason, where there is one: the status in the place of "refusal", and of "failure" where
 // the answer is not valid.
 std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds);
-
-// Every word that OutcomeInFull may give.
-std::vector<std::string> AllOutcomesInFull();
 
 }  // namespace rcme

@@ -34,10 +34,19 @@ TEST_F(ChangedResultFile, EveryColumnOfEveryTable) {
       {"run WHERE key = 'format'", "value"},
       {"run WHERE key = 'checksum'", "value"},
       {"run WHERE key = 'study'", "key"},
-      {"conditions WHERE condition = 1", "factor"},
-      {"conditions WHERE condition = 1", "level"},
+      {"run WHERE key = 'seed'", "value"},
+      {"run WHERE key = 'max_rotation_error_deg'", "value"},
+      {"factors WHERE factor = 0", "name"},
+      {"factors WHERE factor = 0", "factor"},
+      {"conditions WHERE condition = 1", "num_trials"},
       {"conditions WHERE condition = 1", "condition"},
+      {"levels WHERE condition = 1", "level"},
+      {"levels WHERE condition = 1", "factor"},
+      {"levels WHERE condition = 1", "condition"},
       {"estimators WHERE estimator = 1", "label"},
+      {"estimators WHERE estimator = 1", "name"},
+      {"options WHERE estimator = 1 AND name = 'mu'", "value"},
+      {"options WHERE estimator = 1 AND name = 'mu'", "estimator"},
       {"estimators WHERE estimator = 1", "estimator"},
       {"totals WHERE condition = 1", "condition"},
       {"totals WHERE condition = 1", "num_trials"},
@@ -109,11 +118,16 @@ TEST_F(ChangedResultFile, RowsLostDoubledSwappedAndForeign) {
            "DELETE FROM trials; DELETE FROM problems",
            "DELETE FROM run",
            "DELETE FROM run WHERE key = 'checksum'",
-           "DELETE FROM run WHERE key = 'instruction set'",
-           "INSERT INTO run VALUES ('stopping rule', 'a reason')",
+           "DELETE FROM run WHERE key = 'instruction_set'",
+           "UPDATE run SET value = 'a reason' WHERE key = 'stopping_rule'",
            "DELETE FROM conditions",
+           "INSERT INTO conditions VALUES (2, 6)",
+           "DELETE FROM factors",
+           "DELETE FROM levels WHERE condition = 1",
+           "INSERT INTO levels VALUES (2, 0, '0.5')",
+           "DELETE FROM options WHERE estimator = 1 AND name = 'mu'",
            "DELETE FROM estimators WHERE estimator = 1",
-           "INSERT INTO estimators VALUES (2, 'foreign')",
+           "INSERT INTO estimators VALUES (2, 'foreign', 'foreign')",
            "DELETE FROM totals",
            "DELETE FROM totals WHERE condition = 1",
            "INSERT INTO totals VALUES (2, 0, 0)",
@@ -131,6 +145,26 @@ TEST_F(ChangedResultFile, RowsLostDoubledSwappedAndForeign) {
     ASSERT_TRUE(Change(sql)) << sql;
     ExpectRefused(sql);
   }
+}
+
+// To read one trial not all are read: the one that is must be sound, and one that is not found is looked for.
+TEST_F(ChangedResultFile, ASingleTrialIsNeverTakenForAnother) {
+  const auto read = [&](std::uint32_t trial) {
+    return ResultStore::OpenForSingleTrials(path_).RecordsOf(1, trial).size();
+  };
+  const std::string trial = " WHERE condition = 1 AND trial = 3";
+  ASSERT_TRUE(Change("UPDATE trials SET seconds = seconds + 1e-9" + trial));
+  EXPECT_EQ(read(2), 2u) << "damage elsewhere was not read";
+  EXPECT_TRUE(ThrowsInputError([&] { read(3); }, {path_, "checksum"}));
+  EXPECT_TRUE(ThrowsInputError([&] { read(99); }, {path_, "checksum"})) << "not there, or lost";
+  ASSERT_TRUE(Change("DELETE FROM trials" + trial + "; DELETE FROM problems" + trial));
+  EXPECT_TRUE(ThrowsInputError([&] { read(3); }, {path_, "trials were counted"}));
+  ASSERT_TRUE(Change("UPDATE options SET value = '1' WHERE name = 'mu'"));
+  EXPECT_TRUE(ThrowsInputError([&] { read(2); }, {path_, "checksum"}))
+      << "what describes the run is always read";
+  Write(*bytes_);
+  EXPECT_EQ(read(3), 2u);
+  EXPECT_EQ(read(99), 0u);
 }
 
 TEST_F(ChangedResultFile, AnotherSchema) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
@@ -14,6 +15,7 @@
 #include "experiments/analysis/compare.h"
 #include "experiments/analysis/comparison_output.h"
 #include "experiments/analysis/summary_output.h"
+#include "experiments/analysis/trial_table.h"
 #include "experiments/result_file/salvage.h"
 #include "experiments/run/run_study.h"
 #include "tests/test_support/small_study.h"
@@ -37,8 +39,12 @@ inline bool Execute(const std::string& path, const std::string& sql) {
 inline std::string ResultsOf(const std::string& path) {
   const ResultStore store = ResultStore::OpenForReading(path);
   std::string text = SummaryAsCsv(Summarize(store, /*with_times=*/true)) +
-                     ComparisonAsCsv(Compare(store, "")) + store.Plan().study_yaml + store.StoppingRule() +
-                     store.UntilOptionsOfAll() + store.Origin().program + store.Origin().instruction_set;
+                     ComparisonAsCsv(Compare(store, "")) + store.Plan().study_yaml;
+  WriteTrialTable(store, /*with_times=*/true, [&](const std::string& row) { text += row; });
+  const RunDescription run = store.Description();
+  text += fmt::format("{} {} {} {} {}", run.description, run.stopping_rule, run.until_options,
+                      run.origin.program, run.origin.instruction_set);
+  for (const DescribedEstimator& estimator : run.estimators) text += fmt::format(" {}", estimator.options);
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     for (const TrialRecord& record : store.RecordsOf(trial % 2, trial)) text += RecordText(record);
   }
@@ -110,7 +116,9 @@ class DamagedResultFile : public testing::Test {
     std::int64_t num_sound = 0;
     Salvage salvage(path_, plan_->study);
     {
-      ResultStore store = ResultStore::OpenForRun(saved, salvage.plan());
+      RunDescription run = salvage.description();
+      run.stopping_rule.clear();  // where it is damaged, the intervals are others, so that they hold
+      ResultStore store = ResultStore::Create(saved, run);
       salvage.ForEachSoundTrial([&](const StoredTrial& trial) {
         store.Add({trial.problem}, trial.records);
         ++num_sound;

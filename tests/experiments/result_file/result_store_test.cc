@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 
+#include "experiments/result_file/schema.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
@@ -121,11 +122,22 @@ TEST_F(ResultStoreTest, TablesAreReadableWithoutUs) {
     ResultStore store = ResultStore::OpenForRun(path_, plan_);
     AddRecords(store, RecordsOfTrial(1, 2));
   }
-  EXPECT_EQ(Query(path_, "SELECT level FROM conditions WHERE condition = 1 AND factor = 'outlier_ratio'"),
+  EXPECT_EQ(Query(path_,
+                  "SELECT level FROM levels NATURAL JOIN factors WHERE condition = 1 AND name = "
+                  "'outlier_ratio'"),
             "0.3");
   EXPECT_EQ(Query(path_, "SELECT label FROM estimators WHERE estimator = 1"), "ours");
   EXPECT_EQ(Query(path_, "SELECT count(*) FROM trials WHERE status = 'ok'"), "2");
   EXPECT_EQ(Query(path_, "PRAGMA integrity_check"), "ok");
+}
+
+TEST_F(ResultStoreTest, TheTableRunHasTheKeysThatAreWrittenDown) {
+  { ResultStore::OpenForRun(path_, plan_); }
+  EXPECT_EQ(Query(path_, "SELECT count(*) FROM run"), fmt::format("{}", RunKeys().size()));
+  for (const RunKey& key : RunKeys()) {
+    EXPECT_EQ(Query(path_, fmt::format("SELECT count(*) FROM run WHERE key = '{}'", key.name)), "1")
+        << key.name;
+  }
 }
 
 TEST_F(ResultStoreTest, UnknownNumbersAreNull) {
@@ -200,8 +212,8 @@ TEST_F(ResultStoreTest, ASecondOriginIsNotedAndWarnedOf) {
   for (const std::string& part : {path_, std::string("AVX2"), std::string("AVX-512")}) {
     EXPECT_NE(warning.find(part), std::string::npos) << warning;
   }
-  EXPECT_EQ(store.Origin().program, "rcme 1");
-  EXPECT_EQ(store.Origin().instruction_set, "AVX2, AVX-512");
+  EXPECT_EQ(store.Description().origin.program, "rcme 1");
+  EXPECT_EQ(store.Description().origin.instruction_set, "AVX2, AVX-512");
   EXPECT_NE(store.NoteOrigin({"rcme 1", "AVX2"}), "") << "a part of the trials is of another";
 }
 
@@ -261,12 +273,12 @@ TEST_F(ResultStoreTest, UnderAStoppingRuleThePlanIsWhatWasDone) {
 
 TEST_F(ResultStoreTest, UntilOptionsAreKnownAsLongAsTheyAloneGiveTheTrials) {
   ResultStore store = ResultStore::OpenForRun(path_, plan_);
-  EXPECT_EQ(store.UntilOptionsOfAll(), "");
+  EXPECT_EQ(store.Description().until_options, "");
   AddRecords(store, RecordsOfTrial(0, 0));
   store.NoteUntilOptions("--until ci=0.1", 1);
-  EXPECT_EQ(store.UntilOptionsOfAll(), "--until ci=0.1");
+  EXPECT_EQ(store.Description().until_options, "--until ci=0.1");
   AddRecords(store, RecordsOfTrial(0, 1));
-  EXPECT_EQ(store.UntilOptionsOfAll(), "");
+  EXPECT_EQ(store.Description().until_options, "");
 }
 
 TEST_F(ResultStoreTest, RefusesAnotherStudyAndSaysWhatDiffers) {
@@ -314,7 +326,7 @@ TEST_F(ResultStoreTest, RefusesFilesOfOthers) {
   const std::string later = folder_.Path("later.sqlite");
   { ResultStore::OpenForRun(later, plan_); }
   Query(later, "UPDATE run SET value = 'rcme results 99' WHERE key = 'format'");
-  EXPECT_TRUE(RefusesToRun(later, {"another version", "'rcme results 99'", "'rcme results 4'"}));
+  EXPECT_TRUE(RefusesToRun(later, {"another version", "'rcme results 99'", "'rcme results 5'"}));
   EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(later); }, {later, "another version"}));
 }
 

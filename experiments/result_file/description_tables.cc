@@ -1,0 +1,215 @@
+#include "experiments/result_file/description_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "experiments/result_file/checksum.h"
+#include "experiments/result_file/database.h"
+#include "experiments/result_file/schema.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char* kChecksum = "checksum";
+
+// Every row of the tables but the checksum's, column by column: a whole number as its digits.
+std::string ChecksumOfRows(SQLite::Database& database) {
+  std::vector<std::string> texts;
+  for (const ResultTable& table : ResultTables()) {
+    if (std::ranges::count(DescriptionTables(), table.name) == 0) continue;
+    SQLite::Statement row(database, fmt::format("SELECT * FROM {}{} ORDER BY {}", table.name,
+                                                table.name == "run" ? " WHERE key <> 'checksum'" : "",
+                                                fmt::join(table.key, ", ")));
+    while (row.executeStep()) {
+      for (int c = 0; c < row.getColumnCount(); ++c) {
+        const SQLite::Column column = row.getColumn(c);
+        const bool is_number = table.columns[static_cast<size_t>(c)].type == "INTEGER";
+        texts.push_back(is_number ? std::to_string(IntegerIn(column, table.name.c_str()))
+                                  : TextIn(column, table.name.c_str()));
+      }
+    }
+    texts.push_back(table.name);  // which rows are whose
+  }
+  return fmt::format("{:08x}", ChecksumOf(texts));
+}
+
+template <typename... Values>
+void Insert(SQLite::Database& database, const char* table, const Values&... values) {
+  const std::vector<const char*> places(sizeof...(values), "?");
+  SQLite::Statement statement(database,
+                              fmt::format("INSERT INTO {} VALUES ({})", table, fmt::join(places, ", ")));
+  int parameter = 1;
+  (statement.bind(parameter++, values), ...);
+  statement.exec();
+}
+
+// The rows of the table `run` but the checksum.
+std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
+  std::map<std::string, std::string> values = {{"format", kResultFormat},
+                                               {"name", run.study},
+                                               {"description", run.description},
+                                               {"seed", std::to_string(run.seed)},
+                                               {"trials", std::to_string(run.trials)},
+                                               {"stopping_rule", run.stopping_rule},
+                                               {"until_options", run.until_options},
+                                               {"until_trials", std::to_string(run.until_trials)},
+                                               {"program", run.origin.program},
+                                               {"instruction_set", run.origin.instruction_set},
+                                               {"study", run.study_yaml},
+                                               {"identity", run.identity}};
+  Ademp keys;
+  for (const auto& [key, text] : Parts(keys)) values["ademp_" + key] = "";
+  for (const auto& [key, text] : run.ademp) values["ademp_" + key] = text;
+  for (const auto& [key, text] : TextsOf(run.failure)) values[key] = text;
+  return values;
+}
+
+// The table `run`, every key of which there has to be.
+class RunValues {
+ public:
+  explicit RunValues(SQLite::Database& database) {
+    SQLite::Statement query(database, "SELECT key, value FROM run");
+    while (query.executeStep())
+      values_[TextIn(query.getColumn(0), "run")] = TextIn(query.getColumn(1), "run");
+  }
+
+  const std::string& Text(const std::string& key) const {
+    const auto found = values_.find(key);
+    if (found == values_.end()) throw Damage(fmt::format("table run lacks '{}'", key));
+    return found->second;
+  }
+
+  std::int64_t WholeNumber(const std::string& key, std::int64_t max) const {
+    long long value = 0;
+    if (!ParseInteger(Text(key), &value) || value < 0 || value > max)
+      throw Damage(fmt::format("'{}' of table run is not possible", key));
+    return value;
+  }
+
+  FailureBounds Failure() const {
+    FailureBounds bounds;
+    for (const Parameter& bound : Parameters(bounds)) {
+      try {
+        bound.SetFromText(Text(bound.name()));
+      } catch (const InputError&) {
+        throw Damage(fmt::format("'{}' of table run is not possible", bound.name()));
+      }
+    }
+    return bounds;
+  }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+RunDescription ReadRun(SQLite::Database& database) {
+  const RunValues values(database);
+  RunDescription run;
+  run.study = values.Text("name");
+  run.description = values.Text("description");
+  Ademp keys;
+  for (const auto& [key, text] : Parts(keys)) {
+    if (!values.Text("ademp_" + key).empty()) run.ademp.emplace_back(key, values.Text("ademp_" + key));
+  }
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+  run.seed = static_cast<std::uint64_t>(values.WholeNumber("seed", kMax));
+  run.trials = static_cast<int>(values.WholeNumber("trials", std::numeric_limits<int>::max()));
+  run.failure = values.Failure();
+  run.study_yaml = values.Text("study");
+  run.identity = values.Text("identity");
+  run.stopping_rule = values.Text("stopping_rule");
+  run.until_options = values.Text("until_options");
+  run.until_trials = values.WholeNumber("until_trials", kMax);
+  run.origin = {values.Text("program"), values.Text("instruction_set")};
+  return run;
+}
+
+// The number in the first column has to be that of the row.
+void CheckNumber(SQLite::Statement& row, const char* table, size_t number) {
+  if (IntegerIn(row.getColumn(0), table) != static_cast<std::int64_t>(number))
+    throw Damage(fmt::format("table {} lacks row {}", table, number));
+}
+
+// Calls `visit` for the rows of a table of which the first column is their number.
+template <typename Visit>
+void ForEachNumbered(SQLite::Database& database, const char* table, Visit visit) {
+  SQLite::Statement row(database, fmt::format("SELECT * FROM {} ORDER BY 1", table));
+  for (size_t number = 0; row.executeStep(); ++number) {
+    CheckNumber(row, table, number);
+    visit(row);
+  }
+}
+
+void ReadLevels(SQLite::Database& database, RunDescription* run) {
+  SQLite::Statement row(database, "SELECT * FROM levels ORDER BY condition, factor");
+  for (size_t c = 0; c < run->conditions.size(); ++c) {
+    for (size_t f = 0; f < run->factors.size(); ++f) {
+      if (!row.executeStep() || IntegerIn(row.getColumn(0), "levels") != static_cast<std::int64_t>(c) ||
+          IntegerIn(row.getColumn(1), "levels") != static_cast<std::int64_t>(f))
+        throw Damage(fmt::format("table levels lacks factor {} of condition {}", f, c));
+      run->conditions[c].levels.push_back(TextIn(row.getColumn(2), "levels"));
+    }
+  }
+  if (row.executeStep()) throw Damage("table levels has more rows than conditions and factors");
+}
+
+void ReadOptions(SQLite::Database& database, RunDescription* run) {
+  SQLite::Statement row(database, "SELECT * FROM options ORDER BY estimator, name");
+  while (row.executeStep()) {
+    const std::int64_t estimator = IntegerIn(row.getColumn(0), "options");
+    if (estimator < 0 || estimator >= std::ssize(run->estimators))
+      throw Damage("table options has an estimator that there is not");
+    run->estimators[static_cast<size_t>(estimator)].options.emplace_back(TextIn(row.getColumn(1), "options"),
+                                                                         TextIn(row.getColumn(2), "options"));
+  }
+}
+
+}  // namespace
+
+RunDescription ReadDescription(SQLite::Database& database) {
+  RunDescription run = ReadRun(database);
+  if (UncheckedRunValue(database, kChecksum) != ChecksumOfRows(database))
+    throw Damage("the checksum of the tables that describe the run is not theirs");
+  ForEachNumbered(database, "factors", [&](SQLite::Statement& row) {
+    run.factors.push_back(TextIn(row.getColumn(1), "factors"));
+  });
+  ForEachNumbered(database, "conditions", [&](SQLite::Statement& row) {
+    run.conditions.push_back({{}, IntegerIn(row.getColumn(1), "conditions")});
+  });
+  ForEachNumbered(database, "estimators", [&](SQLite::Statement& row) {
+    run.estimators.push_back(
+        {TextIn(row.getColumn(1), "estimators"), TextIn(row.getColumn(2), "estimators"), {}});
+  });
+  ReadLevels(database, &run);
+  ReadOptions(database, &run);
+  return run;
+}
+
+void WriteDescription(SQLite::Database& database, const RunDescription& run) {
+  for (const std::string& table : DescriptionTables()) database.exec("DELETE FROM " + table);
+  for (const auto& [key, value] : ValuesOf(run)) Insert(database, "run", key, value);
+  const auto number = [](size_t index) { return static_cast<std::int64_t>(index); };
+  for (size_t f = 0; f < run.factors.size(); ++f) Insert(database, "factors", number(f), run.factors[f]);
+  for (size_t c = 0; c < run.conditions.size(); ++c) {
+    Insert(database, "conditions", number(c), run.conditions[c].num_trials);
+    for (size_t f = 0; f < run.factors.size(); ++f)
+      Insert(database, "levels", number(c), number(f), run.conditions[c].levels[f]);
+  }
+  for (size_t e = 0; e < run.estimators.size(); ++e) {
+    const DescribedEstimator& estimator = run.estimators[e];
+    Insert(database, "estimators", number(e), estimator.label, estimator.name);
+    for (const auto& [name, value] : estimator.options) Insert(database, "options", number(e), name, value);
+  }
+  Insert(database, "run", std::string(kChecksum), ChecksumOfRows(database));
+}
+
+std::string UncheckedRunValue(SQLite::Database& database, const std::string& key) {
+  SQLite::Statement query(database, "SELECT value FROM run WHERE key = ?");
+  query.bind(1, key);
+  return query.executeStep() ? TextIn(query.getColumn(0), "run") : std::string();
+}
+
+}  // namespace rcme

@@ -1,0 +1,56 @@
+#include "experiments/study/run_description.h"
+
+#include <algorithm>
+
+namespace rcme {
+namespace {
+
+Settings TextsOf(const std::vector<Parameter>& parameters) {
+  Settings texts;
+  for (const Parameter& p : parameters) texts.emplace_back(p.name(), p.Value());
+  return texts;
+}
+
+DescribedEstimator Describe(EstimatorSpec spec) {
+  DescribedEstimator estimator{spec.label, spec.name, TextsOf(Parameters(spec.options))};
+  std::ranges::sort(estimator.options);
+  return estimator;
+}
+
+Settings AdempOf(const Study& study) {
+  Settings parts;
+  Ademp ademp = study.ademp.value_or(Ademp());
+  for (const auto& [key, text] : Parts(ademp)) {
+    if (!text->empty()) parts.emplace_back(key, *text);
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::int64_t RunDescription::NumTrials() const {
+  std::int64_t sum = 0;
+  for (const DescribedCondition& condition : conditions) sum += condition.num_trials;
+  return sum;
+}
+
+RunDescription Describe(const StudyPlan& plan) {
+  RunDescription run;
+  run.study = plan.study.name;
+  run.description = plan.study.description;
+  run.ademp = AdempOf(plan.study);
+  run.seed = plan.study.seed;
+  run.trials = plan.study.trials;
+  run.failure = plan.study.failure;
+  run.factors = plan.factor_names;
+  for (const Condition& condition : plan.conditions)
+    run.conditions.push_back({condition.levels, condition.num_trials});
+  for (const EstimatorSpec& spec : plan.study.estimators) run.estimators.push_back(Describe(spec));
+  run.study_yaml = plan.study_yaml;
+  run.identity = plan.identity;
+  return run;
+}
+
+Settings TextsOf(FailureBounds bounds) { return TextsOf(Parameters(bounds)); }
+
+}  // namespace rcme

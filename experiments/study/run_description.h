@@ -1,0 +1,59 @@
+// What a reader of results has to know of a run, in plain values and texts: a result file holds it, and no
+// estimator and no data are needed to read it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "experiments/data/settings.h"
+#include "experiments/study/study_plan.h"
+
+namespace rcme {
+
+// Who computes trials: last bits may depend on it.
+struct TrialOrigin {
+  std::string program;          // with its version
+  std::string instruction_set;  // estimator/instruction_set.h
+
+  bool operator==(const TrialOrigin&) const = default;
+};
+
+struct DescribedCondition {
+  std::vector<std::string> levels;  // one per factor
+  std::int64_t num_trials = 0;      // asked for
+};
+
+struct DescribedEstimator {
+  std::string label, name;
+  Settings options;  // by name
+};
+
+struct RunDescription {
+  std::string study, description;  // its name, and its own words
+  Settings ademp;                  // the parts of its ADEMP block that are not empty
+  std::uint64_t seed = 1;
+  int trials = 0;  // asked for per condition; for a folder of pairs, passes over each pair
+  FailureBounds failure;
+  std::vector<std::string> factors;
+  std::vector<DescribedCondition> conditions;
+  std::vector<DescribedEstimator> estimators;
+  std::string study_yaml, identity;  // as in StudyPlan: for who runs the study
+
+  // Not empty: the number of trials depended on their outcomes, in these words.
+  std::string stopping_rule;
+  // Options of `rcme run` that alone gave `until_trials` trials in all; empty: none.
+  std::string until_options;
+  std::int64_t until_trials = 0;
+  TrialOrigin origin;  // of all trials; several names are separated by commas, none known is empty
+
+  std::int64_t NumTrials() const;
+};
+
+// Of a run that has not begun.
+RunDescription Describe(const StudyPlan& plan);
+
+// The failure bounds, one by one, as (name, text): "max_rotation_error_deg", "3".
+Settings TextsOf(FailureBounds bounds);
+
+}  // namespace rcme
