@@ -156,7 +156,7 @@ class WrittenFiles(Written):
         with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as end:
             audit.main(["--help"])
         self.assertEqual(end.exception.code, 0)
-        self.assertIn("rcme audit --out audit\n  plots/audit.py audit", out.getvalue())
+        self.assertIn("rcme audit --out audit\n  rcme plot audit audit", out.getvalue())
 
 
 class Curves(unittest.TestCase):
