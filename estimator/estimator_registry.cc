@@ -2,23 +2,42 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "estimator/estimators/rcme.h"
 #include "estimator/estimators/standard.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
 std::vector<EstimatorEntry>& Table() {
   static std::vector<EstimatorEntry> registry = {
-      {"standard", "RANSAC by inlier count, then Gold Standard refinement",
-       [](const RansacOptions& o) { return MakeStandard(o); }},
+      {"standard", "RANSAC by inlier count, then Gold Standard refinement", StandardModel},
       {"prcme", "RCME without the test of the model against its sample",
-       [](const RansacOptions& o) { return MakeRcme(o, SampleTest::kOff); }},
+       [] { return RcmeModel(SampleTest::kOff); }},
       {"rcme", "RCME: model-sample test, inlier set quality test, selection by entropy, refinement",
-       [](const RansacOptions& o) { return MakeRcme(o, SampleTest::kOn); }},
+       [] { return RcmeModel(SampleTest::kOn); }},
   };
   return registry;
+}
+
+void CheckOptions(const EstimatorEntry& entry) {
+  const std::unique_ptr<EstimatorModel> model = entry.make();
+  const std::vector<Parameter> options = model->Parameters();
+  for (const Parameter& option : options) {
+    if (option.name().empty() || option.name().find_first_of(".=") != std::string::npos ||
+        std::ranges::count(options, option.name(), &Parameter::name) > 1) {
+      throw InputError(fmt::format("estimator '{}': option {}: the name is empty, taken or holds . or =",
+                                   entry.name, Quoted(option.name())));
+    }
+    try {
+      option.SetFromText(option.Value());
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("estimator '{}': default of option {}", entry.name, error.what()));
+    }
+  }
 }
 
 }  // namespace
@@ -26,11 +45,10 @@ std::vector<EstimatorEntry>& Table() {
 const std::vector<EstimatorEntry>& EstimatorRegistry() { return Table(); }
 
 void AddEstimator(EstimatorEntry entry) {
-  for (const EstimatorEntry& known : Table()) {
-    if (entry.name.empty() || known.name == entry.name) {
-      throw InputError(fmt::format("estimator name '{}' is taken or empty", entry.name));
-    }
+  if (entry.name.empty() || std::ranges::count(Table(), entry.name, &EstimatorEntry::name) > 0) {
+    throw InputError(fmt::format("estimator name '{}' is taken or empty", entry.name));
   }
+  CheckOptions(entry);
   Table().push_back(std::move(entry));
 }
 
@@ -40,7 +58,28 @@ const EstimatorEntry& FindEstimator(const std::string& name) {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }
-  throw InputError(fmt::format("unknown estimator '{}'; known: {}", name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown estimator {}; known: {}", Quoted(name), fmt::join(names, ", ")));
+}
+
+const Parameter& FindOption(const std::string& estimator, const std::vector<Parameter>& options,
+                            const std::string& name) {
+  const auto found = std::ranges::find(options, name, &Parameter::name);
+  if (found != options.end()) return *found;
+  std::vector<std::string> names;
+  for (const Parameter& option : options) names.push_back(option.name());
+  throw InputError(fmt::format("estimator {} has no option {}; its options: {}", estimator, Quoted(name),
+                               names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+}
+
+std::unique_ptr<EstimatorModel> ConfigureEstimator(const std::string& name, const Settings& options) {
+  std::unique_ptr<EstimatorModel> model = FindEstimator(name).make();
+  const std::vector<Parameter> parameters = model->Parameters();
+  for (const auto& [option, value] : options) FindOption(name, parameters, option).SetFromText(value);
+  return model;
+}
+
+std::unique_ptr<MotionEstimator> MakeEstimator(const std::string& name, const Settings& options) {
+  return ConfigureEstimator(name, options)->Make();
 }
 
 }  // namespace rcme

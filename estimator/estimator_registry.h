@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "estimator/motion_estimator.h"
-#include "estimator/ransac_options.h"
+#include "estimator/estimator_model.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 
@@ -15,15 +15,27 @@ namespace rcme {
 struct EstimatorEntry {
   std::string name;
   std::string doc;
-  std::function<std::unique_ptr<MotionEstimator>(const RansacOptions&)> make;
+  std::function<std::unique_ptr<EstimatorModel>()> make;  // with default options
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 
 // Adds a user-defined estimator to the table; to be called before anything reads it, from one thread. Throws
-// InputError if the name is taken or empty.
+// InputError if its name is taken or empty, or if an option of it has no name, a name that another has, a
+// name that a command line cannot take (`.`, `=`), or a default that is not allowed.
 void AddEstimator(EstimatorEntry entry);
 
 // The entry called `name`; throws InputError that lists the known names.
 const EstimatorEntry& FindEstimator(const std::string& name);
+
+// The option of an estimator; `options` are its model's Parameters(). Throws InputError that lists those it
+// has.
+const Parameter& FindOption(const std::string& estimator, const std::vector<Parameter>& options,
+                            const std::string& name);
+
+// The estimator called `name` with these options, the others at their defaults. Throws InputError: an unknown
+// estimator, an option it does not have, a value that is not allowed; MakeEstimator also where two options
+// contradict each other.
+std::unique_ptr<EstimatorModel> ConfigureEstimator(const std::string& name, const Settings& options);
+std::unique_ptr<MotionEstimator> MakeEstimator(const std::string& name, const Settings& options = {});
 
 }  // namespace rcme

@@ -25,6 +25,10 @@ class RansacEstimator : public MotionEstimator {
   // Takes from `refinements` what is there already, and adds what is not.
   virtual MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
                                 Refinements* refinements) const = 0;
+  virtual const RansacOptions& options() const = 0;
+  // The same estimator with options that differ in those of kDecisionOptions and the levels of the tests of
+  // the refined motion alone.
+  virtual std::unique_ptr<RansacEstimator> With(const RansacOptions& options) const = 0;
 };
 
 // The options that act on scores and on what refinements explain alone.

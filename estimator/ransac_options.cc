@@ -34,32 +34,13 @@ double RansacOptions::ChanceLevelOrDefault() const {
 }
 
 std::vector<Parameter> Parameters(RansacOptions& o) {
-  const std::vector<std::pair<std::string, double>> automatic_or_off = {
-      {"auto", std::numeric_limits<double>::quiet_NaN()}, {"off", 1.0}};
   return {
       Parameter::Integer("num_iterations", &o.num_iterations, {1, 1e6}, "hypotheses N of Algorithm 1"),
       Parameter::Real("significance_level", &o.significance_level, {1e-9, 0.5}, "",
-                      "alpha of the sample, inlier and quality tests"),
-      Parameter::RealOrWord("sample_significance_level", &o.sample_significance_level, {1e-9, 0.5},
-                            "significance_level", "", "alpha of the sample test, where it has its own"),
-      Parameter::Choice<Reading>("reading", &o.reading,
-                                 {{"as_printed", Reading::kAsPrinted}, {"rank_aware", Reading::kRankAware}},
-                                 "how the covariance of the Sampson vector is read"),
-      Parameter::RealOrWord("mu", &o.mu, {-1000.0, 1000.0}, "auto", "nats",
-                            "entropy threshold; auto: -3.53 as printed, 6 nats of excess entropy rank-aware"),
-      Parameter::Choice<QualityTest>(
-          "quality_test", &o.quality_test,
-          {{"as_printed", QualityTest::kAsPrinted}, {"level_alpha", QualityTest::kLevelAlpha}},
-          "Z-test of the mean entropy: Z <= +1.645 (as printed) or Z <= -1.645 (level alpha)"),
+                      "alpha of the tests of the loop, and of which matches agree with the refined motion"),
       Parameter::Real("lambda", &o.lambda, {0.0, 1.0}, "", "least inlier share as a fraction of omega_p"),
       Parameter::RealOrWord("inlier_ratio", &o.inlier_ratio, {0.0, 1.0}, "inferred", "",
                             "omega_p, the expected share of inliers"),
-      Parameter::Choice<Selection>("selection", &o.selection,
-                                   {{"mean_entropy", Selection::kMeanEntropy},
-                                    {"predictive_likelihood", Selection::kPredictiveLikelihood}},
-                                   "which candidate wins"),
-      Parameter::RealOrWord("early_stop_entropy", &o.early_stop_entropy, {-1000.0, 1000.0}, "off", "nats",
-                            "stop at the first candidate whose mean entropy is at most this"),
       Parameter::Choice<Refinement>(
           "refinement", &o.refinement,
           {{"none", Refinement::kNone}, {"mle", Refinement::kMle}, {"robust", Refinement::kRobust}},
@@ -78,18 +59,54 @@ std::vector<Parameter> Parameters(RansacOptions& o) {
                          "number of top candidates refined; the motion that explains the most matches wins"),
       Parameter::Real("least_explained_share", &o.least_explained_share, {0.0, 1.0}, "",
                       "refuse a refined motion that explains a smaller share of the matches"),
-      Parameter::RealOrWords(
-          "observability_significance_level", &o.observability_significance_level, {1e-9, 1.0},
-          automatic_or_off, "",
-          "a rotation without a translation is taken for a motion with at most this "
-          "probability, else the answer is direction_not_observable; auto: off as printed, "
-          "0.001 rank-aware"),
-      Parameter::RealOrWords("chance_significance_level", &o.chance_significance_level, {1e-9, 1.0},
-                             automatic_or_off, "",
-                             "random matches are taken for a motion with at most this probability, else the "
-                             "answer is not_better_than_chance; auto: off as printed, 0.001 rank-aware"),
       Parameter::Real("kappa", &o.kappa, {0.0, 1.0}, "",
                       "failure flag: consistent matches after over before the refinement <= kappa"),
+  };
+}
+
+std::vector<Parameter> EntropyParameters(RansacOptions& o) {
+  return {
+      Parameter::Choice<Reading>("reading", &o.reading,
+                                 {{"as_printed", Reading::kAsPrinted}, {"rank_aware", Reading::kRankAware}},
+                                 "how the covariance of the Sampson vector is read"),
+      Parameter::RealOrWord("mu", &o.mu, {-1000.0, 1000.0}, "auto", "nats",
+                            "entropy threshold; auto: -3.53 as printed, 6 nats of excess entropy rank-aware"),
+      Parameter::Choice<QualityTest>(
+          "quality_test", &o.quality_test,
+          {{"as_printed", QualityTest::kAsPrinted}, {"level_alpha", QualityTest::kLevelAlpha}},
+          "Z-test of the mean entropy: Z <= +1.645 (as printed) or Z <= -1.645 (level alpha)"),
+      Parameter::Choice<Selection>("selection", &o.selection,
+                                   {{"mean_entropy", Selection::kMeanEntropy},
+                                    {"predictive_likelihood", Selection::kPredictiveLikelihood}},
+                                   "which candidate wins"),
+      Parameter::RealOrWord("early_stop_entropy", &o.early_stop_entropy, {-1000.0, 1000.0}, "off", "nats",
+                            "stop at the first candidate whose mean entropy is at most this"),
+  };
+}
+
+Parameter SampleTestParameter(RansacOptions& o) {
+  return Parameter::RealOrWord("sample_significance_level", &o.sample_significance_level, {1e-9, 0.5},
+                               "significance_level", "", "alpha of the sample test, where it has its own");
+}
+
+std::vector<Parameter> MotionTestParameters(RansacOptions& o, bool depend_on_reading) {
+  std::vector<std::pair<std::string, double>> words = {{"off", 1.0}};
+  std::string rule;
+  if (depend_on_reading) {
+    words.insert(words.begin(), {"auto", std::numeric_limits<double>::quiet_NaN()});
+    rule = "; auto: off as printed, 0.001 rank-aware";
+  }
+  return {
+      Parameter::RealOrWords("observability_significance_level", &o.observability_significance_level,
+                             {1e-9, 1.0}, words, "",
+                             "a rotation without a translation is taken for a motion with at most this "
+                             "probability, else the answer is direction_not_observable" +
+                                 rule),
+      Parameter::RealOrWords("chance_significance_level", &o.chance_significance_level, {1e-9, 1.0}, words,
+                             "",
+                             "random matches are taken for a motion with at most this probability, else the "
+                             "answer is not_better_than_chance" +
+                                 rule),
   };
 }
 

@@ -46,7 +46,8 @@ enum class Implementation {
   kReference,  // one by one, small matrices: the oracle of the tests
 };
 
-// Options of the RANSAC family (standard, prcme, rcme). Defaults are the paper's where it gives a value.
+// Options of the loop and the refinement of the RANSAC family (standard, prcme, rcme), each of which shows
+// those that have an effect on it. Defaults are the paper's where it gives a value.
 struct RansacOptions {
   int num_iterations = 200;          // N; fewer only where early_stop_entropy stops the loop
   double significance_level = 0.05;  // alpha of every test, the sample test's unless that has its own
@@ -79,8 +80,18 @@ struct RansacOptions {
   double ChanceLevelOrDefault() const;
 };
 
-// The fields by name, for study files and the command line. Valid as long as `options` lives.
+// A mu above any entropy, the upper end of its range: every inlier set passes.
+inline constexpr double kNoQualityTest = 1000.0;
+
+// The fields by name, for study files and the command line; valid as long as `options` lives. Those that
+// every estimator of the family has;
 std::vector<Parameter> Parameters(RansacOptions& options);
+// of estimators that have entropies;
+std::vector<Parameter> EntropyParameters(RansacOptions& options);
+// of those that test a model against its sample;
+Parameter SampleTestParameter(RansacOptions& options);
+// the levels of the tests of the refined motion, by default off, or as the reading says.
+std::vector<Parameter> MotionTestParameters(RansacOptions& options, bool depend_on_reading);
 
 // Throws InputError where two options contradict each other.
 void Validate(const RansacOptions& options);

@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "experiments/base/message.h"
+#include "experiments/base/program_name.h"
 #include "experiments/base/scratch_folder.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
@@ -32,6 +33,7 @@ void CheckArguments(int argc, const char* const* argv) {
 
 int RunProgram(int argc, const char* const* argv) {
   HoldStandardStreams();
+  if (argc > 0) NameProgram(argv[0]);
   RemoveAbandonedScratchFolders();
   std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here

@@ -142,4 +142,10 @@ const Parameter& FindParameter(const std::vector<Parameter>& parameters, const s
   throw InputError(fmt::format("unknown key {}; known keys: {}", Quoted(name), fmt::join(names, ", ")));
 }
 
+Settings ValuesOf(const std::vector<Parameter>& parameters) {
+  Settings values;
+  for (const Parameter& parameter : parameters) values.emplace_back(parameter.name(), parameter.Value());
+  return values;
+}
+
 }  // namespace rcme

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "parameters/settings.h"
+
 namespace rcme {
 
 class Parameter {
@@ -64,6 +66,9 @@ class Parameter {
 
 // The parameter called `name`; throws InputError that lists the known names.
 const Parameter& FindParameter(const std::vector<Parameter>& parameters, const std::string& name);
+
+// Every parameter with its present value.
+Settings ValuesOf(const std::vector<Parameter>& parameters);
 
 // The whole of `text` as a finite number; false otherwise.
 bool ParseReal(const std::string& text, double* value);

@@ -27,6 +27,10 @@ class PipelineEstimator : public RansacEstimator {
                         Refinements* refinements) const override {
     return FinishPipeline<Engine>(problem, options_, loop, refinements);
   }
+  const RansacOptions& options() const override { return options_; }
+  std::unique_ptr<RansacEstimator> With(const RansacOptions& options) const override {
+    return std::make_unique<PipelineEstimator>(options);
+  }
 
  private:
   RansacOptions options_;

@@ -1,6 +1,7 @@
 #include "estimator/estimators/rcme.h"
 
 #include "estimator/estimators/pipeline_estimator.h"
+#include "estimator/estimators/ransac_model.h"
 #include "estimator/sample_consistency.h"
 
 namespace rcme {
@@ -61,6 +62,33 @@ std::unique_ptr<RansacEstimator> MakeRcme(const RansacOptions& options, SampleTe
   }
   return tests_sample ? MakePipelineEstimator<RcmePipeline<RankAwareTest, JointSampleTest>>(options)
                       : MakePipelineEstimator<RcmePipeline<RankAwareTest, NoSampleTest>>(options);
+}
+
+namespace {
+
+class Rcme : public RansacModel {
+ public:
+  explicit Rcme(SampleTest sample_test) : sample_test_(sample_test) {}
+  std::vector<Parameter> Parameters() override {
+    std::vector<Parameter> all = rcme::Parameters(options_);
+    const auto add = [&](const std::vector<Parameter>& more) {
+      all.insert(all.end(), more.begin(), more.end());
+    };
+    add(EntropyParameters(options_));
+    if (sample_test_ == SampleTest::kOn) all.push_back(SampleTestParameter(options_));
+    add(MotionTestParameters(options_, /*depend_on_reading=*/true));
+    return all;
+  }
+  std::unique_ptr<MotionEstimator> Make() const override { return MakeRcme(options_, sample_test_); }
+
+ private:
+  SampleTest sample_test_;
+};
+
+}  // namespace
+
+std::unique_ptr<EstimatorModel> RcmeModel(SampleTest sample_test) {
+  return std::make_unique<Rcme>(sample_test);
 }
 
 }  // namespace rcme

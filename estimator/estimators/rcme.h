@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "estimator/estimator_model.h"
 #include "estimator/ransac_estimator.h"
 #include "estimator/ransac_options.h"
 
@@ -9,8 +10,11 @@ namespace rcme {
 
 enum class SampleTest { kOn, kOff };
 
-// RCME, and pRCME: the same without the test of the model against its sample. Throws InputError if the
-// options contradict each other.
+// RCME, and pRCME: the same without the test of the model against its sample; then sample_significance_level
+// is no option.
+std::unique_ptr<EstimatorModel> RcmeModel(SampleTest sample_test);
+
+// The same from options in the code. Throws InputError if they contradict each other.
 std::unique_ptr<RansacEstimator> MakeRcme(const RansacOptions& options, SampleTest sample_test);
 
 }  // namespace rcme

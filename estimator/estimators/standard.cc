@@ -1,6 +1,7 @@
 #include "estimator/estimators/standard.h"
 
 #include "estimator/estimators/pipeline_estimator.h"
+#include "estimator/estimators/ransac_model.h"
 
 namespace rcme {
 namespace {
@@ -18,12 +19,25 @@ struct StandardPipeline {
   }
 };
 
+class Standard : public RansacModel {
+ public:
+  Standard() { options_.observability_significance_level = options_.chance_significance_level = 1.0; }
+  std::vector<Parameter> Parameters() override {
+    std::vector<Parameter> all = rcme::Parameters(options_);
+    for (Parameter& level : MotionTestParameters(options_, /*depend_on_reading=*/false)) {
+      all.push_back(std::move(level));
+    }
+    return all;
+  }
+  std::unique_ptr<MotionEstimator> Make() const override { return MakeStandard(options_); }
+};
+
 }  // namespace
 
+std::unique_ptr<EstimatorModel> StandardModel() { return std::make_unique<Standard>(); }
+
 std::unique_ptr<RansacEstimator> MakeStandard(const RansacOptions& options) {
-  RansacOptions without_entropies = options;
-  without_entropies.early_stop_entropy = RansacOptions().early_stop_entropy;
-  return MakePipelineEstimator<StandardPipeline>(without_entropies);
+  return MakePipelineEstimator<StandardPipeline>(options);
 }
 
 }  // namespace rcme

@@ -10,8 +10,16 @@
 
 namespace {
 
+struct OpenCvOptions {
+  double threshold_sigmas = 1.96;  // a match that is off by more is an outlier
+  double confidence = 0.999;       // that one sample at least is free of outliers
+  int min_inliers = 5;
+};
+
 class OpenCvEstimator : public rcme::MotionEstimator {
  public:
+  explicit OpenCvEstimator(const OpenCvOptions& options) : options_(options) {}
+
   rcme::MotionEstimate Estimate(const rcme::MotionProblem& problem, rcme::RandomStream&) const override {
     // NaN, too few matches, a camera without an inverse, ...: a status and a message.
     if (const auto refusal = rcme::RefuseUnsolvable(problem, 5)) return *refusal;
@@ -24,13 +32,13 @@ class OpenCvEstimator : public rcme::MotionEstimator {
       rays2.emplace_back(ray2.x(), ray2.y());
     }
     const double focal_px = 0.5 * (problem.camera1.fx + problem.camera2.fx);
-    const double threshold = 1.96 * problem.sigma_px / focal_px;
+    const double threshold = options_.threshold_sigmas * problem.sigma_px / focal_px;
     cv::Mat mask, R, t;
     const cv::Mat K = cv::Mat::eye(3, 3, CV_64F);
-    const cv::Mat E = cv::findEssentialMat(rays1, rays2, K, cv::RANSAC, 0.999, threshold, mask);
-    if (E.rows != 3 || cv::recoverPose(E, rays1, rays2, K, R, t, mask) < 5) {
+    const cv::Mat E = cv::findEssentialMat(rays1, rays2, K, cv::RANSAC, options_.confidence, threshold, mask);
+    if (E.rows != 3 || cv::recoverPose(E, rays1, rays2, K, R, t, mask) < options_.min_inliers) {
       estimate.status = rcme::MotionStatus::kNoCandidate;
-      estimate.message = "no essential matrix has five matches in front of both cameras";
+      estimate.message = "no essential matrix has enough inliers in front of both cameras";
       return estimate;
     }
     std::vector<rcme::Correspondence> inliers;
@@ -50,12 +58,36 @@ class OpenCvEstimator : public rcme::MotionEstimator {
     estimate.message = covariance ? "found" : "the inliers do not determine a motion";
     return estimate;
   }
+
+ private:
+  OpenCvOptions options_;
+};
+
+// The estimator with its options, as studies, `--set` and `rcme tune` see them.
+class OpenCvModel : public rcme::EstimatorModel {
+ public:
+  std::vector<rcme::Parameter> Parameters() override {
+    using rcme::Parameter;
+    return {Parameter::Real("threshold_sigmas", &options_.threshold_sigmas, {0.1, 100.0}, "sigma",
+                            "a match that is off by more is an outlier"),
+            Parameter::Real("confidence", &options_.confidence, {0.5, 0.999999}, "",
+                            "that one sample at least is free of outliers; sets the number of samples"),
+            Parameter::Integer("min_inliers", &options_.min_inliers, {5, 1e6},
+                               "refuse a motion with fewer inliers in front of both cameras")};
+  }
+  void LiftLimits() override { options_.min_inliers = OpenCvOptions().min_inliers; }
+  std::unique_ptr<rcme::MotionEstimator> Make() const override {
+    return std::make_unique<OpenCvEstimator>(options_);
+  }
+
+ private:
+  OpenCvOptions options_;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
   rcme::AddEstimator({"opencv", "OpenCV's findEssentialMat (RANSAC) and recoverPose",
-                      [](const rcme::RansacOptions&) { return std::make_unique<OpenCvEstimator>(); }});
+                      [] { return std::make_unique<OpenCvModel>(); }});
   return rcme::RunProgram(argc, argv);
 }

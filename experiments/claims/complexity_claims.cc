@@ -48,10 +48,9 @@ MotionProblem FirstMatches(const MotionProblem& problem, double count) {
 }
 
 double SecondsOfLoop(const MotionProblem& problem, double num_iterations, const StreamName& name) {
-  RansacOptions options;
-  options.num_iterations = static_cast<int>(num_iterations);
-  options.refinement = Refinement::kNone;
-  const std::unique_ptr<MotionEstimator> prcme = FindEstimator("prcme").make(options);
+  const std::unique_ptr<MotionEstimator> prcme = MakeEstimator(
+      "prcme",
+      {{"num_iterations", std::to_string(static_cast<int>(num_iterations))}, {"refinement", "none"}});
   return SecondsOf([&] {
     RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
     prcme->Estimate(problem, rng);

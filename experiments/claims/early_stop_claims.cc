@@ -1,3 +1,4 @@
+#include "estimator/ransac_options.h"
 #include "experiments/claims/call_estimator.h"
 #include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
@@ -5,20 +6,19 @@
 namespace rcme {
 namespace {
 
-Claim EarlyStopClaim(const std::string& id, const std::string& name, Reading reading) {
-  RansacOptions options;
-  options.reading = reading;
-  std::shared_ptr<const MotionEstimator> all = FindEstimator("rcme").make(options);
-  options.early_stop_entropy = options.MuOrDefault();
-  std::shared_ptr<const MotionEstimator> early = FindEstimator("rcme").make(options);
-  const double num_iterations = options.num_iterations;
+// `mu` is that of the reading by default.
+Claim EarlyStopClaim(const std::string& reading, const std::string& mu, const std::string& name) {
+  std::shared_ptr<const MotionEstimator> all = MakeEstimator("rcme", {{"reading", reading}});
+  std::shared_ptr<const MotionEstimator> early =
+      MakeEstimator("rcme", {{"reading", reading}, {"early_stop_entropy", mu}});
+  const double num_iterations = RansacOptions().num_iterations;
   const auto statistic = [all, early, num_iterations](Case& made) -> Outcome {
     const TrialRecord of_all = CallEstimator(*all, made), of_early = CallEstimator(*early, made);
     const bool all_fails = FailsOrRefuses(of_all), early_fails = FailsOrRefuses(of_early);
     return {early_fails && !all_fails ? 1.0 : 0.0, 1.0 - of_early.counts.num_hypotheses / num_iterations,
             1.0 * all_fails, 1.0 * early_fails};
   };
-  return {"early_stop." + id,
+  return {"early_stop." + reading,
           "Sec. early-terminate",
           name,
           "Stopping at psi <= mu saves at least a tenth of the hypotheses and costs at most one trial in a "
@@ -37,8 +37,8 @@ Claim EarlyStopClaim(const std::string& id, const std::string& name, Reading rea
 }  // namespace
 
 std::vector<Claim> EarlyStopClaims() {
-  return {EarlyStopClaim("as_printed", "as printed, at -3.53", Reading::kAsPrinted),
-          EarlyStopClaim("rank_aware", "rank-aware, at 6 nats", Reading::kRankAware)};
+  return {EarlyStopClaim("as_printed", "-3.53", "as printed, at -3.53"),
+          EarlyStopClaim("rank_aware", "6", "rank-aware, at 6 nats")};
 }
 
 }  // namespace rcme

@@ -25,8 +25,8 @@ CaseClaim EstimatorCalibration(const std::string& label, const std::string& read
 std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators) {
   std::vector<Claim> claims;
   for (const EstimatorEntry& entry : estimators) {
-    const CaseClaim claim = EstimatorCalibration(entry.name, entry.name + ", defaults",
-                                                 entry.make(RansacOptions()), FailureBounds());
+    const CaseClaim claim =
+        EstimatorCalibration(entry.name, entry.name + ", defaults", entry.make()->Make(), FailureBounds());
     std::vector<Settings> settings;
     for (const char* outlier_ratio : {"0", "0.2"}) {
       settings.push_back({{"num_matches", "100"}, {"outlier_ratio", outlier_ratio}});

@@ -10,9 +10,11 @@ struct Rivals {
   std::shared_ptr<const MotionEstimator> standard, prcme, rcme;
 };
 
-Rivals MakeRivals(const RansacOptions& options) {
-  return {FindEstimator("standard").make(options), FindEstimator("prcme").make(options),
-          FindEstimator("rcme").make(options)};
+// pRCME and RCME with these options; standard tests its motion as they do by default.
+Rivals MakeRivals(const Settings& options, const char* test_level) {
+  return {MakeEstimator("standard", {{"observability_significance_level", test_level},
+                                     {"chance_significance_level", test_level}}),
+          MakeEstimator("prcme", options), MakeEstimator("rcme", options)};
 }
 
 // What counts as a failure: a wrong motion, or also a refusal ("Detect-fail").
@@ -36,7 +38,7 @@ Outcome OrderStatistic(const Rivals& rivals, const FailureRule& rule, const Case
   return outcome;
 }
 
-Claim OrderClaim(const std::string& id, const std::string& reading, const RansacOptions& options,
+Claim OrderClaim(const std::string& id, const std::string& reading, const Rivals& rivals,
                  const FailureRule& rule) {
   const std::string discordant = "of trials that tell them apart, fails ";
   std::vector<Target> targets = {PlannedRate(discordant + "pRCME, not RCME", 1.0, kFailureOrder, 0),
@@ -46,9 +48,7 @@ Claim OrderClaim(const std::string& id, const std::string& reading, const Ransac
     targets.push_back(MeasuredRate(name + " fails", targets.size()));
     targets.push_back(MeasuredRate(name + " is refused", targets.size()));
   }
-  const auto statistic = [rivals = MakeRivals(options), rule](Case& made) {
-    return OrderStatistic(rivals, rule, made);
-  };
+  const auto statistic = [rivals, rule](Case& made) { return OrderStatistic(rivals, rule, made); };
   return {
       "failure.order." + id + rule.id,
       "Tab. real-data-test",
@@ -68,8 +68,8 @@ Claim AgainstStandardClaim(const EstimatorEntry& entry) {
               "rotation error > 3 deg or direction error > 15 deg, in pairs",
               "outlier_ratio",
               {}};
-  std::shared_ptr<const MotionEstimator> standard = FindEstimator("standard").make(RansacOptions());
-  std::shared_ptr<const MotionEstimator> other = entry.make(RansacOptions());
+  std::shared_ptr<const MotionEstimator> standard = MakeEstimator("standard");
+  std::shared_ptr<const MotionEstimator> other = entry.make()->Make();
   const auto statistic = [standard, other](Case& made) -> Outcome {
     const bool standard_fails = FailsOrRefuses(CallEstimator(*standard, made));
     const bool other_fails = FailsOrRefuses(CallEstimator(*other, made));
@@ -90,14 +90,15 @@ Claim AgainstStandardClaim(const EstimatorEntry& entry) {
 }  // namespace
 
 std::vector<Claim> FailureClaims(const std::vector<EstimatorEntry>& estimators) {
-  RansacOptions rank_aware, predictive;
-  rank_aware.reading = predictive.reading = Reading::kRankAware;
-  predictive.selection = Selection::kPredictiveLikelihood;
+  const Rivals as_printed = MakeRivals({}, "off");
+  const Rivals rank_aware = MakeRivals({{"reading", "rank_aware"}}, "0.001");
+  const Rivals predictive =
+      MakeRivals({{"reading", "rank_aware"}, {"selection", "predictive_likelihood"}}, "0.001");
   const FailureRule silent{"", "refusals are no failures", FailsSilently};
   const FailureRule any{"_or_refusal", "refusals are failures", FailsOrRefuses};
   std::vector<Claim> claims = {
-      OrderClaim("as_printed", "as printed", RansacOptions(), silent),
-      OrderClaim("as_printed", "as printed", RansacOptions(), any),
+      OrderClaim("as_printed", "as printed", as_printed, silent),
+      OrderClaim("as_printed", "as printed", as_printed, any),
       OrderClaim("rank_aware", "rank-aware, least entropy", rank_aware, silent),
       OrderClaim("predictive", "rank-aware, predictive likelihood", predictive, silent)};
   for (const EstimatorEntry& entry : estimators) {

@@ -22,7 +22,7 @@ std::vector<Claim> FlagClaims() {
   const std::vector<Target> targets = {PlannedRate("sensitivity: failures that are flagged", 1.0, kFlag, 0),
                                        PlannedRate("specificity: good motions that are not", 1.0, kFlag, 1),
                                        MeasuredRate("failures of the estimator", 2)};
-  std::shared_ptr<const MotionEstimator> standard = FindEstimator("standard").make(RansacOptions());
+  std::shared_ptr<const MotionEstimator> standard = MakeEstimator("standard");
   std::vector<Check> checks;
   for (const char* outlier_ratio : {"0.4", "0.5"}) {
     checks.push_back(MakeCheck(

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "estimator/estimator_registry.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
@@ -61,7 +60,7 @@ void Print(const CheckArguments& arguments, const ContractCheck& check, const Co
 
 void RunChecks(const CheckArguments& arguments) {
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
-  const EstimatorMaker make = [&] { return FindEstimator(spec.name).make(spec.options); };
+  const EstimatorMaker make = [&] { return Make(spec); };
   make();  // options that contradict each other are found here
   ContractOptions options;
   options.seed = static_cast<std::uint64_t>(arguments.seed);

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "estimator/estimator_registry.h"
+#include "estimator/ransac_estimator.h"
 #include "experiments/base/json_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
@@ -74,12 +74,12 @@ void PrintRotation(const MotionEstimate& estimate) {
 }
 
 // The tests of the motion are off as printed. A person should know what they would have said.
-void PrintCaution(const EstimatorSpec& spec, const MotionProblem& problem, std::int64_t seed) {
-  RansacOptions tested = spec.options;
+void PrintCaution(const RansacEstimator& estimator, const MotionProblem& problem, std::int64_t seed) {
+  RansacOptions tested = estimator.options();
   if (tested.ObservabilityLevelOrDefault() < 1.0 || tested.ChanceLevelOrDefault() < 1.0) return;
   tested.observability_significance_level = tested.chance_significance_level = 0.001;
   RandomStream rng = StreamFor({static_cast<std::uint64_t>(seed), 0, 0, 0}, StreamPurpose::kSampling);
-  const MotionEstimate estimate = FindEstimator(spec.name).make(tested)->Estimate(problem, rng);
+  const MotionEstimate estimate = estimator.With(tested)->Estimate(problem, rng);
   if (estimate.status == MotionStatus::kOk) return;
   fmt::print(
       "caution: {} - {}\n  (--set observability_significance_level=0.001 --set "
@@ -111,7 +111,7 @@ void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, c
 
 void RunEstimate(const EstimateArguments& arguments) {
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
-  const std::unique_ptr<MotionEstimator> estimator = FindEstimator(spec.name).make(spec.options);
+  const std::unique_ptr<MotionEstimator> estimator = Make(spec);
   MatchFile file = ReadMatchFile(arguments.matches);
   TrialData data;
   data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments.sigma_px};
@@ -124,7 +124,8 @@ void RunEstimate(const EstimateArguments& arguments) {
     fmt::print("{}", JsonText(kEstimateFormat, AsJson(estimate, record, spec.label)));
   } else {
     PrintForPeople(estimate, record, spec.label);
-    if (estimate.status == MotionStatus::kOk) PrintCaution(spec, data.problem, arguments.seed);
+    const RansacEstimator* const ransac = AsRansac(*estimator);
+    if (ransac && estimate.status == MotionStatus::kOk) PrintCaution(*ransac, data.problem, arguments.seed);
   }
   // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
   // answer.

@@ -12,19 +12,22 @@ void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* 
                    "estimator file: name and options from there, in place of a name")
       ->excludes(name);
   command
-      ->add_option("--set", choice->overrides,
-                   "option=value, repeatable, after those of --estimator-file; see `rcme list options`")
+      ->add_option(
+          "--set", choice->overrides,
+          "option=value of the estimator, repeatable, after those of --estimator-file; see `rcme list "
+          "options`")
       ->allow_extra_args(false);
 }
 
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
-  EstimatorSpec spec =
-      choice.file ? LoadEstimatorFile(*choice.file) : EstimatorSpec{choice.name, choice.name, {}};
+  EstimatorSpec spec = choice.file ? LoadEstimatorFile(*choice.file) : DefaultEstimator(choice.name);
+  Settings options;
   for (const std::string& text : choice.overrides) {
     const size_t equals = std::min(text.find('='), text.size());
     const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
-    FindParameter(Parameters(spec.options), text.substr(0, equals)).SetFromText(value);
+    options.emplace_back(text.substr(0, equals), value);
   }
+  SetOptions(&spec, options);
   return spec;
 }
 

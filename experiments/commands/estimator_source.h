@@ -19,7 +19,7 @@ struct EstimatorChoice {
 // The options --estimator-file and --set; `name` is the command's own option for the name.
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice);
 
-// Throws InputError (estimator_file.h, parameters/parameter.h).
+// Throws InputError (estimator_file.h, estimator_spec.h).
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice);
 
 }  // namespace rcme

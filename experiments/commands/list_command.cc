@@ -33,10 +33,13 @@ Rows ListEstimators() {
 }
 
 Rows ListOptions() {
-  Rows rows = {{"option", "default", "unit", "allowed", "what it is"}};
-  RansacOptions defaults;
-  for (const Parameter& p : Parameters(defaults))
-    rows.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
+  Rows rows = {{"estimator", "option", "default", "unit", "allowed", "what it is"}};
+  for (const EstimatorEntry& entry : EstimatorRegistry()) {
+    const std::unique_ptr<EstimatorModel> model = entry.make();
+    for (const Parameter& p : model->Parameters()) {
+      rows.push_back({entry.name, p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
+    }
+  }
   return rows;
 }
 

@@ -30,8 +30,8 @@ void AddStudyOptions(CLI::App* command, StudyChanges* changes) {
   command
       ->add_option(
           "--set", changes->overrides,
-          "key=value, repeatable: a data key (sigma_px=1), an option of all estimators (mu=-2) or of one "
-          "(rcme.mu=-2), or a failure bound")
+          "key=value, repeatable: a data key (sigma_px=1), a failure bound, or an option of all estimators "
+          "that have it (mu=-2) or of one (rcme.mu=-2)")
       ->allow_extra_args(false);
   command
       ->add_option("--add-estimator", changes->estimators,

@@ -118,9 +118,8 @@ std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings)
 Settings ResolveSettings(const Settings& settings) {
   Configured configured(settings);
   Settings resolved = configured.ChosenNames();
-  for (const Parameter& parameter : configured.AllParameters()) {
-    resolved.emplace_back(parameter.name(), parameter.Value());
-  }
+  const Settings values = ValuesOf(configured.AllParameters());
+  resolved.insert(resolved.end(), values.begin(), values.end());
   return resolved;
 }
 

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <string>
-#include <utility>
-#include <vector>
+
+#include "parameters/settings.h"
 
 namespace rcme {
-
-using Settings = std::vector<std::pair<std::string, std::string>>;  // key, value as text; later ones override
 
 // One key of a `data:` block, for people.
 struct SettingHelp {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "estimator/instruction_set.h"
+#include "experiments/base/program_name.h"
 #include "experiments/result_file/result_file.h"
 #include "experiments/result_file/trial_writer.h"
 #include "experiments/study/study_file.h"
@@ -76,7 +77,7 @@ constexpr const char* kTakeLock = "PRAGMA locking_mode = EXCLUSIVE; BEGIN IMMEDI
 
 }  // namespace
 
-TrialOrigin ThisProgram() { return {"rcme " RCME_VERSION, InstructionSetName()}; }
+TrialOrigin ThisProgram() { return {ProgramName(), InstructionSetName()}; }
 
 struct ResultStore::Connection {
   Connection(const std::string& path, int sqlite_flags) : file(path, sqlite_flags) {}
@@ -120,8 +121,9 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
     const std::string& identity = file.description.identity;
     if (identity != plan.identity && file.totals.NumTrials() > 0) {
       throw InputError(
-          fmt::format("{}: holds the results of another study; first difference: {}. Give another --out",
-                      path, FirstDifference(identity, plan.identity)));
+          fmt::format("{}: holds the results of another study, run by {}; first difference: {}. Give another "
+                      "--out",
+                      path, file.description.origin.program, FirstDifference(identity, plan.identity)));
     }
     if (identity != plan.identity) {
       file.CreateAnew(Describe(plan));
@@ -190,7 +192,12 @@ RunDescription ResultStore::Description() const {
 StudyPlan ResultStore::Plan() const {
   const std::string& path = connection_->file.path;
   const RunDescription run = Description();
-  StudyPlan plan = PlanOf(ParseStudy(run.study_yaml, path + " (its study)"), path);
+  StudyPlan plan;
+  try {
+    plan = PlanOf(ParseStudy(run.study_yaml, path + " (its study)"), path);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}; the file was made by {}", error.what(), run.origin.program));
+  }
   if (plan.identity != run.identity) {
     throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
                                  FirstDifference(run.identity, plan.identity)));

@@ -7,12 +7,16 @@
 namespace rcme {
 namespace {
 
-void ReadOptions(const Place& place, const YAML::Node& node, RansacOptions* options) {
+// Those of the entry, the others at their defaults, as the estimator writes them.
+void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec) {
+  const std::unique_ptr<EstimatorModel> model = Configure(*spec);
+  const std::vector<Parameter> parameters = model->Parameters();
   for (const auto& [option, text] : Entries(place, node, "options", {})) {
     place.At(text, [&, option = option, text = text] {
-      FindParameter(Parameters(*options), option).SetFromText(Scalar(place, text, option));
+      FindOption(spec->name, parameters, option).SetFromText(Scalar(place, text, option));
     });
   }
+  spec->options = ValuesOf(parameters);
 }
 
 }  // namespace
@@ -25,22 +29,23 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
   for (const auto& [key, value] : Entries(place, node, block, known)) {
     if (key == "name") spec.name = Name(place, value, key);
     if (key == "label") spec.label = Name(place, value, key);
-    if (key == "options") ReadOptions(place, value, &spec.options);
     if (key != "provenance") continue;
     for (const auto& [what, text] : Entries(place, value, key, {})) Scalar(place, text, what);
   }
   if (spec.name.empty()) place.Fail(node, fmt::format("{}: key 'name' is missing", block));
   if (spec.label.empty()) spec.label = spec.name;
-  place.At(node, [&] { FindEstimator(spec.name).make(spec.options); });
+  const YAML::Node options = node["options"] ? node["options"] : YAML::Node(YAML::NodeType::Map);
+  place.At(node["name"], [&] { FindEstimator(spec.name); });
+  ReadOptions(place, options, &spec);
+  place.At(node, [&] { Make(spec); });
   return spec;
 }
 
-void WriteEstimatorKeys(EstimatorSpec spec, YAML::Emitter* out) {
+void WriteEstimatorKeys(const EstimatorSpec& spec, YAML::Emitter* out) {
   *out << YAML::Key << "name" << YAML::Value << spec.name;
   *out << YAML::Key << "label" << YAML::Value << spec.label;
   *out << YAML::Key << "options" << YAML::Value << YAML::BeginMap;
-  for (const Parameter& p : Parameters(spec.options))
-    *out << YAML::Key << p.name() << YAML::Value << p.Value();
+  for (const auto& [option, value] : spec.options) *out << YAML::Key << option << YAML::Value << value;
   *out << YAML::EndMap;
 }
 

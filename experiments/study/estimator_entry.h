@@ -12,6 +12,6 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
                                  const std::set<std::string>& keys_of_caller = {});
 
 // The keys name, label and options, with every option written out, into the map that is open.
-void WriteEstimatorKeys(EstimatorSpec spec, YAML::Emitter* out);
+void WriteEstimatorKeys(const EstimatorSpec& spec, YAML::Emitter* out);
 
 }  // namespace rcme

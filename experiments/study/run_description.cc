@@ -5,14 +5,8 @@
 namespace rcme {
 namespace {
 
-Settings TextsOf(const std::vector<Parameter>& parameters) {
-  Settings texts;
-  for (const Parameter& p : parameters) texts.emplace_back(p.name(), p.Value());
-  return texts;
-}
-
-DescribedEstimator Describe(EstimatorSpec spec) {
-  DescribedEstimator estimator{spec.label, spec.name, TextsOf(Parameters(spec.options))};
+DescribedEstimator Describe(const EstimatorSpec& spec) {
+  DescribedEstimator estimator{spec.label, spec.name, spec.options};
   std::ranges::sort(estimator.options);
   return estimator;
 }
@@ -51,6 +45,6 @@ RunDescription Describe(const StudyPlan& plan) {
   return run;
 }
 
-Settings TextsOf(FailureBounds bounds) { return TextsOf(Parameters(bounds)); }
+Settings TextsOf(FailureBounds bounds) { return ValuesOf(Parameters(bounds)); }
 
 }  // namespace rcme

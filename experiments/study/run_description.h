@@ -13,7 +13,7 @@ namespace rcme {
 
 // Who computes trials: last bits may depend on it.
 struct TrialOrigin {
-  std::string program;          // with its version
+  std::string program;          // base/program_name.h
   std::string instruction_set;  // estimator/instruction_set.h
 
   bool operator==(const TrialOrigin&) const = default;

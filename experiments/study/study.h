@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "estimator/ransac_options.h"
 #include "experiments/data/data_source.h"
 #include "experiments/data/settings.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/study/tuning.h"
 
 namespace rcme {
@@ -18,12 +18,6 @@ struct FailureBounds {
   double max_direction_error_deg = 15.0;
 };
 std::vector<Parameter> Parameters(FailureBounds& bounds);
-
-struct EstimatorSpec {
-  std::string label;  // unique in the study; what tables and plots show
-  std::string name;   // in the estimator registry
-  RansacOptions options;
-};
 
 inline constexpr size_t kMaxConditions = 100'000;  // of a study
 

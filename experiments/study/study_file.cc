@@ -167,11 +167,64 @@ Settings WrittenData(const Study& study) {
   return study.data;
 }
 
-}  // namespace
+std::vector<std::string> DataKeys(const Study& study) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : ResolveSettings(FirstSettings(study))) keys.push_back(key);
+  return keys;
+}
 
-Study LoadStudy(const std::string& path) { return ParseStudy(ReadInputText(path, StudyFileKind()), path); }
+std::vector<std::string> BoundKeys() {
+  FailureBounds bounds;
+  std::vector<std::string> keys;
+  for (const Parameter& bound : Parameters(bounds)) keys.push_back(bound.name());
+  return keys;
+}
 
-Study ParseStudy(const std::string& yaml, const std::string& path) {
+bool IsIn(const std::vector<std::string>& keys, const std::string& key) {
+  return std::ranges::count(keys, key) > 0;
+}
+
+bool HasOption(const EstimatorSpec& spec, const std::string& option) {
+  return std::ranges::count(spec.options, option, &Settings::value_type::first) > 0;
+}
+
+void OverrideOption(const std::string& option, const std::string& value, EstimatorSpec* spec) {
+  SetOptions(spec, {{option, value}});
+  Make(*spec);  // throws if options contradict each other
+}
+
+void OverrideData(const std::string& key, const std::string& value, Study* study) {
+  const std::string canonical = Canonical(FirstSettings(*study), key, value);
+  std::erase_if(study->data, [&](const auto& setting) { return setting.first == key; });
+  study->data.emplace_back(key, canonical);
+  std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
+}
+
+EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
+  std::vector<std::string> labels;
+  for (EstimatorSpec& spec : study->estimators) {
+    if (spec.label == label) return spec;
+    labels.push_back(spec.label);
+  }
+  throw InputError(fmt::format("--set: the study has no estimator {}; its estimators: {}", Quoted(label),
+                               fmt::join(labels, ", ")));
+}
+
+[[noreturn]] void ThrowUnknownOverride(const Study& study, const std::string& key) {
+  std::vector<std::string> options;
+  for (const EstimatorSpec& spec : study.estimators) {
+    for (const auto& [option, value] : spec.options) {
+      if (!IsIn(options, option)) options.push_back(option);
+    }
+  }
+  throw InputError(
+      fmt::format("--set: unknown key {}; known keys: of the data: {}; failure bounds: {}; options "
+                  "of the estimators: {}",
+                  Quoted(key), fmt::join(DataKeys(study), ", "), fmt::join(BoundKeys(), ", "),
+                  options.empty() ? "none" : fmt::format("{}", fmt::join(options, ", "))));
+}
+
+Study ReadStudy(const std::string& yaml, const std::string& path) {
   const Place place(path);
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
   Study study;
@@ -210,36 +263,28 @@ Study ParseStudy(const std::string& yaml, const std::string& path) {
   return study;
 }
 
+}  // namespace
+
+Study LoadStudy(const std::string& path) { return ParseStudy(ReadInputText(path, StudyFileKind()), path); }
+
+Study ParseStudy(const std::string& yaml, const std::string& path) {
+  return ReadStudy(yaml, path);
+}
+
 void Override(Study* study, const std::string& key, const std::string& value) {
-  RansacOptions option_names;
-  FailureBounds bound_names;
-  const auto is_in = [](const std::vector<Parameter>& parameters, const std::string& name) {
-    return std::any_of(parameters.begin(), parameters.end(),
-                       [&](const Parameter& p) { return p.name() == name; });
-  };
-  const size_t dot = key.find('.');
-  const std::string option = dot == std::string::npos ? key : key.substr(dot + 1);
-  if (is_in(Parameters(option_names), option)) {
-    bool is_used = false;
-    for (EstimatorSpec& spec : study->estimators) {
-      if (dot != std::string::npos && spec.label != key.substr(0, dot)) continue;
-      FindParameter(Parameters(spec.options), option).SetFromText(value);
-      FindEstimator(spec.name).make(spec.options);
-      is_used = true;
-    }
-    if (!is_used)
-      throw InputError(fmt::format("--set {}: the study has no estimator '{}'", key, key.substr(0, dot)));
-  } else if (is_in(Parameters(bound_names), key)) {
-    FindParameter(Parameters(study->failure), key).SetFromText(value);
-  } else if (dot != std::string::npos) {
-    FindParameter(Parameters(option_names), option);  // throws: it is no option
-  } else {
-    const auto is_key = [&](const auto& setting) { return setting.first == key; };
-    const std::string canonical = Canonical(FirstSettings(*study), key, value);
-    std::erase_if(study->data, is_key);
-    study->data.emplace_back(key, canonical);
-    std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
+  const size_t dot = key.rfind('.');
+  if (dot != std::string::npos) {
+    return OverrideOption(key.substr(dot + 1), value, &LabelledEstimator(key.substr(0, dot), study));
   }
+  if (IsIn(DataKeys(*study), key)) return OverrideData(key, value, study);
+  if (IsIn(BoundKeys(), key)) return FindParameter(Parameters(study->failure), key).SetFromText(value);
+  bool has_any = false;
+  for (EstimatorSpec& spec : study->estimators) {
+    if (!HasOption(spec, key)) continue;
+    OverrideOption(key, value, &spec);
+    has_any = true;
+  }
+  if (!has_any) ThrowUnknownOverride(*study, key);
 }
 
 std::string ToYaml(const Study& study) {

@@ -33,9 +33,10 @@ Study LoadStudy(const std::string& path);
 // The same from text; `path` is what the messages call it.
 Study ParseStudy(const std::string& yaml, const std::string& path);
 
-// One `--set key=value`: a data key; an estimator option, for all estimators (`mu`) or one (`rcme.mu`); or a
-// failure bound. A factor that is set becomes that one level. Throws InputError, also where the options of an
-// estimator then contradict each other.
+// One `--set key=value`: a data key; a failure bound; or an option, of all estimators that have it (`mu`), or
+// of the one with a label (`rcme.mu`), which may be named like a data key. A factor that is set becomes that
+// one level. Throws InputError that lists what there is, also where the options of an estimator then
+// contradict each other.
 void Override(Study* study, const std::string& key, const std::string& value);
 
 // The study with every parameter written out, defaults and the estimators of files included: ParseStudy gives

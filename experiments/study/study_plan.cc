@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "estimator/estimator_registry.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
@@ -72,7 +71,7 @@ StudyPlan MakePlan(const Study& given) {
     }
   }
   for (const EstimatorSpec& spec : study.estimators) {
-    plan.estimators.push_back(FindEstimator(spec.name).make(spec.options));
+    plan.estimators.push_back(Make(spec));
   }
   plan.study_yaml = ToYaml(study);
   plan.identity = Identity(plan);

@@ -41,12 +41,11 @@ std::vector<std::string> LevelsOfSetting(const Tuning& tuning, size_t setting) {
   return levels;
 }
 
-RansacOptions WithLevels(const Tuning& tuning, const std::vector<std::string>& levels,
-                         RansacOptions options) {
-  for (size_t o = 0; o < levels.size(); ++o) {
-    FindParameter(Parameters(options), tuning.options[o].name).SetFromText(levels[o]);
-  }
-  return options;
+EstimatorSpec WithLevels(const Tuning& tuning, const std::vector<std::string>& levels, EstimatorSpec spec) {
+  Settings options;
+  for (size_t o = 0; o < levels.size(); ++o) options.emplace_back(tuning.options[o].name, levels[o]);
+  SetOptions(&spec, options);
+  return spec;
 }
 
 }  // namespace rcme

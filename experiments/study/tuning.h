@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/ransac_options.h"
+#include "experiments/study/estimator_spec.h"
 #include "parameters/parameter.h"
 
 namespace rcme {
@@ -24,9 +24,6 @@ struct TunedOption {
 };
 
 inline constexpr size_t kMaxTunedSettings = 20'000;  // combinations of levels
-
-// A mu above any entropy, the upper end of its range: every inlier set passes.
-inline constexpr double kNoQualityTest = 1000.0;
 
 struct Tuning {
   std::string estimator;  // label in the study
@@ -48,7 +45,7 @@ std::vector<Parameter> Parameters(Tuning& tuning);
 size_t NumSettings(const Tuning& tuning);
 std::vector<std::string> LevelsOfSetting(const Tuning& tuning, size_t setting);
 
-// `options` with the tuned options at these levels.
-RansacOptions WithLevels(const Tuning& tuning, const std::vector<std::string>& levels, RansacOptions options);
+// The estimator with the tuned options at these levels.
+EstimatorSpec WithLevels(const Tuning& tuning, const std::vector<std::string>& levels, EstimatorSpec spec);
 
 }  // namespace rcme

@@ -87,13 +87,14 @@ std::vector<std::pair<std::string, YAML::Node>> GivenLevels(const Place& place, 
 }
 
 // The levels as the option itself writes them, so that equal values are equal texts.
-TunedOption ReadOption(const Place& place, const YAML::Node& node, const std::string& option) {
+TunedOption ReadOption(const Place& place, const YAML::Node& node, const std::string& option,
+                       const EstimatorSpec& spec) {
   TunedOption tuned{option, {}};
   const std::string name = "tune: options: " + option;
-  RansacOptions options;
-  const std::vector<Parameter> parameters = Parameters(options);
-  place.At(node, [&] { FindParameter(parameters, option); });
-  const Parameter& parameter = FindParameter(parameters, option);
+  const std::unique_ptr<EstimatorModel> model = Configure(spec);
+  const std::vector<Parameter> parameters = model->Parameters();
+  place.At(node, [&] { FindOption(spec.name, parameters, option); });
+  const Parameter& parameter = FindOption(spec.name, parameters, option);
   std::set<std::string> seen;
   for (const auto& [text, line] : GivenLevels(place, node, name)) {
     place.At(line, [&, text = text] { parameter.SetFromText(text); });
@@ -104,11 +105,11 @@ TunedOption ReadOption(const Place& place, const YAML::Node& node, const std::st
   return tuned;
 }
 
-std::vector<TunedOption> ReadOptions(const Place& place, const YAML::Node& node) {
+std::vector<TunedOption> ReadOptions(const Place& place, const YAML::Node& node, const EstimatorSpec& spec) {
   std::vector<TunedOption> options;
   size_t num_settings = 1;
   for (const auto& [option, levels] : Entries(place, node, "tune: options", {})) {
-    options.push_back(ReadOption(place, levels, option));
+    options.push_back(ReadOption(place, levels, option, spec));
     num_settings *= options.back().levels.size();
     if (num_settings > kMaxTunedSettings) {
       place.Fail(levels, fmt::format("tune: options: more than {} combinations of levels; give fewer levels",
@@ -137,10 +138,7 @@ Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<
   std::set<std::string> known = {"options"};
   for (const Parameter& p : parameters) known.insert(p.name());
   for (const auto& [key, value] : Entries(place, node, "tune", known)) {
-    if (key == "options") {
-      tuning.options = ReadOptions(place, value);
-      continue;
-    }
+    if (key == "options") continue;
     place.At(value, [&, key = key, value = value] {
       FindParameter(parameters, key).SetFromText(Scalar(place, value, "tune: " + key));
     });
@@ -149,20 +147,27 @@ Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<
     if (!node[key]) place.Fail(node, fmt::format("tune: key '{}' is missing", key));
   }
   place.At(node["estimator"], [&] { TunedEstimator(tuning, estimators); });
+  tuning.options = ReadOptions(place, node["options"], TunedEstimator(tuning, estimators));
   place.At(node["options"], [&] { CheckCombinations(tuning, estimators); });
   return tuning;
 }
 
 void CheckCombinations(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators) {
   const EstimatorSpec& spec = TunedEstimator(tuning, estimators);
-  const EstimatorEntry& entry = FindEstimator(spec.name);
+  const std::unique_ptr<EstimatorModel> model = Configure(spec);
+  const std::vector<Parameter> parameters = model->Parameters();
+  std::vector<const Parameter*> tuned;
+  for (const TunedOption& option : tuning.options) {
+    tuned.push_back(&FindOption(spec.name, parameters, option.name));
+  }
   for (size_t i = 0; i < NumSettings(tuning); ++i) {
     const std::vector<std::string> levels = LevelsOfSetting(tuning, i);
+    for (size_t o = 0; o < levels.size(); ++o) tuned[o]->SetFromText(levels[o]);
     try {
-      entry.make(WithLevels(tuning, levels, spec.options));
+      model->Make();
     } catch (const InputError& error) {
       std::vector<std::string> names;
-      for (size_t o = 0; o < levels.size(); ++o) names.push_back(tuning.options[o].name + ": " + levels[o]);
+      for (size_t o = 0; o < levels.size(); ++o) names.push_back(tuned[o]->name() + ": " + levels[o]);
       throw InputError(fmt::format("tune: options: {}: the combination {{{}}} contradicts itself: {}",
                                    spec.label, fmt::join(names, ", "), error.what()));
     }

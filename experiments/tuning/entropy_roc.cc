@@ -5,10 +5,8 @@
 #include <map>
 #include <optional>
 
-#include "estimator/estimator_registry.h"
 #include "estimator/ransac_estimator.h"
 #include "experiments/run/for_each_trial.h"
-#include "experiments/study/tuning.h"
 #include "experiments/trial/trial.h"
 
 namespace rcme {
@@ -51,12 +49,15 @@ Entropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, S
 
 // The estimators of the plan without their quality test; null where an estimator's loop cannot be taken
 // apart.
-std::vector<std::unique_ptr<const MotionEstimator>> WithoutQualityTest(const StudyPlan& plan) {
-  std::vector<std::unique_ptr<const MotionEstimator>> estimators;
-  for (EstimatorSpec spec : plan.study.estimators) {
-    spec.options.mu = kNoQualityTest;
-    estimators.push_back(FindEstimator(spec.name).make(spec.options));
-    if (!AsRansac(*estimators.back())) estimators.back().reset();
+std::vector<std::unique_ptr<const RansacEstimator>> WithoutQualityTest(const StudyPlan& plan) {
+  std::vector<std::unique_ptr<const RansacEstimator>> estimators;
+  for (const auto& estimator : plan.estimators) {
+    estimators.push_back(nullptr);
+    const RansacEstimator* const ransac = AsRansac(*estimator);
+    if (!ransac) continue;
+    RansacOptions options = ransac->options();
+    options.mu = kNoQualityTest;
+    estimators.back() = ransac->With(options);
   }
   return estimators;
 }
@@ -119,7 +120,7 @@ std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange tri
                  for (size_t e = 0; e < estimators.size(); ++e) {
                    if (!estimators[e]) continue;
                    entropies[e][static_cast<size_t>(index)] =
-                       EntropiesOf(*AsRansac(*estimators[e]), data, name, plan.study.failure);
+                       EntropiesOf(*estimators[e], data, name, plan.study.failure);
                  }
                });
   const std::vector<size_t> scenes = ScenesOf(plan, trials.end - trials.first);

@@ -35,12 +35,11 @@ class TrialDecisions {
       trace_ = tracer->Trace(data_.problem, rng);
     }
     for (const size_t s : group.settings) {
-      const TrialOutcome outcome =
-          OutcomeUnder(*plan.estimators[s], plan.settings[s].spec.options.least_explained_share);
+      const TrialOutcome outcome = OutcomeUnder(*plan.estimators[s]);
       const MotionEstimator* without = plan.without_limits[s].get();
       const auto known = decided_.find(without);
       visit(s, outcome,
-            known == decided_.end() ? decided_[without] = OutcomeUnder(*without, 0.0) : known->second);
+            known == decided_.end() ? decided_[without] = OutcomeUnder(*without) : known->second);
     }
   }
 
@@ -48,7 +47,7 @@ class TrialDecisions {
   // What follows from a loop depends on the candidates it hands over, and on the share they have to explain.
   using Handover = std::pair<std::vector<Sample>, double>;
 
-  TrialOutcome OutcomeUnder(const MotionEstimator& estimator, double least_share) {
+  TrialOutcome OutcomeUnder(const MotionEstimator& estimator) {
     const RansacEstimator* parts = AsRansac(estimator);
     if (!parts) {
       RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
@@ -56,7 +55,7 @@ class TrialDecisions {
     }
     const LoopResult loop = parts->Decide(trace_);
     if (!loop.winner) return TrialOutcome::kRefusal;
-    Handover handover{{loop.winner->sample}, least_share};
+    Handover handover{{loop.winner->sample}, parts->options().least_explained_share};
     for (const Candidate& candidate : loop.runners_up) handover.first.push_back(candidate.sample);
     const auto known = outcomes_.find(handover);
     if (known != outcomes_.end()) return known->second;

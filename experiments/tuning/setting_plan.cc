@@ -5,66 +5,69 @@
 #include <algorithm>
 #include <map>
 
-#include "estimator/estimator_registry.h"
 #include "experiments/study/tuning_file.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
 
 // What the options have in common of those that share a trace, as text.
-std::string TraceKey(RansacOptions options) {
+std::string TraceKey(const Settings& options) {
   std::string key;
-  for (const Parameter& parameter : Parameters(options)) {
-    if (std::ranges::find(kDecisionOptions, parameter.name()) == std::end(kDecisionOptions)) {
-      key += parameter.Value() + ' ';
-    }
+  for (const auto& [option, value] : options) {
+    if (std::ranges::find(kDecisionOptions, option) == std::end(kDecisionOptions)) key += value + ' ';
   }
   return key;
 }
 
-// The options whose trace serves all of them: as many hypotheses as any looks at, with likelihoods if any
-// selects by them, none left out by an early stop.
-RansacOptions TraceOptions(const SettingPlan& plan, const std::vector<size_t>& settings) {
-  RansacOptions options = plan.settings[settings.front()].spec.options;
+std::string KeyOf(const Settings& options) {
+  std::string key;
+  for (const auto& [option, value] : options) key += value + ' ';
+  return key;
+}
+
+// An estimator whose trace serves all of the settings: as many hypotheses as any looks at, with likelihoods
+// if any selects by them, none left out by an early stop.
+std::shared_ptr<const MotionEstimator> MakeTracer(const SettingPlan& plan,
+                                                  const std::vector<size_t>& settings) {
+  const RansacEstimator& first = *AsRansac(*plan.estimators[settings.front()]);
+  RansacOptions options = first.options();
   options.early_stop_entropy = RansacOptions().early_stop_entropy;
   for (const size_t s : settings) {
-    const RansacOptions& other = plan.settings[s].spec.options;
+    const RansacOptions& other = AsRansac(*plan.estimators[s])->options();
     options.num_iterations = std::max(options.num_iterations, other.num_iterations);
     if (other.selection == Selection::kPredictiveLikelihood) options.selection = other.selection;
   }
-  return options;
+  return first.With(options);
 }
 
-// Without what makes an estimator refuse a motion it has: mu, a given omega_p, the share to be explained.
-RansacOptions WithoutLimits(RansacOptions options) {
-  options.mu = kNoQualityTest;
-  options.inlier_ratio = RansacOptions().inlier_ratio;  // inferred: the largest inlier set is large enough
-  options.least_explained_share = 0.0;
-  return options;
-}
-
-void AddEstimators(const EstimatorEntry& entry, SettingPlan* plan) {
+// Returns whether any setting has a limit to lift.
+bool AddEstimators(SettingPlan* plan) {
+  bool has_limits = false;
   std::map<std::string, std::shared_ptr<const MotionEstimator>> shared;
   for (const TunedSetting& setting : plan->settings) {
-    plan->estimators.push_back(entry.make(setting.spec.options));
-    RansacOptions options = WithoutLimits(setting.spec.options);
-    std::string key;
-    for (const Parameter& parameter : Parameters(options)) key += parameter.Value() + ' ';
-    std::shared_ptr<const MotionEstimator>& estimator = shared[key];
-    if (!estimator) estimator = entry.make(options);
+    const std::unique_ptr<EstimatorModel> model = Configure(setting.spec);
+    plan->estimators.push_back(model->Make());
+    model->LiftLimits();
+    const Settings without_limits = ValuesOf(model->Parameters());
+    has_limits = has_limits || without_limits != setting.spec.options;
+    std::shared_ptr<const MotionEstimator>& estimator = shared[KeyOf(without_limits)];
+    if (!estimator) estimator = model->Make();
     plan->without_limits.push_back(estimator);
   }
+  return has_limits;
 }
 
-void AddGroups(const EstimatorEntry& entry, SettingPlan* plan) {
+void AddGroups(SettingPlan* plan) {
   std::map<std::string, std::vector<size_t>> groups;
   for (size_t s = 0; s < plan->settings.size(); ++s) {
-    const bool shares = AsRansac(*plan->estimators[s]) != nullptr;
-    groups[shares ? TraceKey(plan->settings[s].spec.options) : fmt::format("{}", s)].push_back(s);
+    if (AsRansac(*plan->estimators[s])) {
+      groups[TraceKey(plan->settings[s].spec.options)].push_back(s);
+    } else {
+      plan->groups.push_back({plan->estimators[s], {s}});
+    }
   }
-  for (const auto& [key, settings] : groups) {
-    plan->groups.push_back({entry.make(TraceOptions(*plan, settings)), settings});
-  }
+  for (const auto& [key, settings] : groups) plan->groups.push_back({MakeTracer(*plan, settings), settings});
 }
 
 }  // namespace
@@ -73,13 +76,17 @@ SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning) {
   const EstimatorSpec& base = TunedEstimator(tuning, study.estimators);
   SettingPlan plan;
   for (size_t s = 0; s < NumSettings(tuning); ++s) {
-    TunedSetting setting{LevelsOfSetting(tuning, s), base};
-    setting.spec.options = WithLevels(tuning, setting.levels, base.options);
-    plan.settings.push_back(std::move(setting));
+    const std::vector<std::string> levels = LevelsOfSetting(tuning, s);
+    plan.settings.push_back({levels, WithLevels(tuning, levels, base)});
   }
-  const EstimatorEntry& entry = FindEstimator(base.name);
-  AddEstimators(entry, &plan);
-  AddGroups(entry, &plan);
+  const bool has_limits = AddEstimators(&plan);
+  if (tuning.target == TuneTarget::kFalseRefusal && !has_limits) {
+    throw InputError(
+        fmt::format("tune: target: false_refusal: no setting of {} has a limit that could be lifted, so that "
+                    "nothing is refused falsely; tune for failure or risk",
+                    base.label));
+  }
+  AddGroups(&plan);
   return plan;
 }
 

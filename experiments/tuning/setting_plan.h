@@ -27,8 +27,7 @@ struct TraceGroup {
 struct SettingPlan {
   std::vector<TunedSetting> settings;                              // the first option slowest
   std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // of each setting
-  // The same without its limits: no quality test, any size of inlier set, no share to be explained. Settings
-  // that differ in limits alone share one.
+  // The same with its limits lifted (EstimatorModel). Settings that differ in limits alone share one.
   std::vector<std::shared_ptr<const MotionEstimator>> without_limits;
   std::vector<TraceGroup> groups;
 };

@@ -77,7 +77,7 @@ std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, c
                      {"estimator", tuning.estimator},
                      {"seed", plan.study.seed},
                      {"target", TargetAsJson(tuning)},
-                     {"options", OptionsAsJson(tuning)},
+                     {"options", OptionsAsJson(plan.study)},
                      {"families", families},
                      {"cells", cells}};
   return JsonText(kTransferFormat, json);

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <functional>
 
+#include "estimator/estimator_registry.h"
+#include "estimator/ransac_estimator.h"
 #include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/json_output.h"
+#include "experiments/study/tuning_file.h"
 #include "stats/intervals.h"
 #include "stats/pareto_front.h"
 #include "stats/thresholds.h"
@@ -117,26 +120,40 @@ bool IsNumber(const std::string& text) {
   return ParseReal(text, &number);
 }
 
+// The options, a number in place of a word where the word stands for one.
+Settings InNumbers(EstimatorSpec spec) {
+  const std::unique_ptr<MotionEstimator> estimator = Make(spec);
+  if (const RansacEstimator* ransac = AsRansac(*estimator)) {
+    for (auto& [option, value] : spec.options) {
+      if (option == "mu") value = fmt::format("{}", ransac->options().MuOrDefault());
+      if (option == "sample_significance_level")
+        value = fmt::format("{}", ransac->options().SampleLevelOrDefault());
+    }
+  }
+  return spec.options;
+}
+
 // The levels of the tuned options at which another estimator is the tuned one; null if it differs in more, or
 // has a word ("auto") where the levels are numbers.
-Json LevelsOf(const Tuning& tuning, EstimatorSpec tuned, EstimatorSpec other) {
+Json LevelsOf(const Tuning& tuning, const EstimatorSpec& tuned, const EstimatorSpec& other) {
   if (tuned.name != other.name) return nullptr;
-  for (RansacOptions* options : {&tuned.options, &other.options}) {
-    options->mu = options->MuOrDefault();
-    options->sample_significance_level = options->SampleLevelOrDefault();
-  }
-  Json levels = Json::array();
-  const auto tuned_options = Parameters(tuned.options), other_options = Parameters(other.options);
-  for (const TunedOption& option : tuning.options) {
-    const std::string level = FindParameter(other_options, option.name).Value();
-    if (std::ranges::all_of(option.levels, IsNumber) && !IsNumber(level)) return nullptr;
-    levels.push_back(level);
-    FindParameter(tuned_options, option.name).SetFromText(level);
-  }
+  const Settings tuned_options = InNumbers(tuned), other_options = InNumbers(other);
+  Settings levels;
   for (size_t i = 0; i < tuned_options.size(); ++i) {
-    if (tuned_options[i].Value() != other_options[i].Value()) return nullptr;
+    const auto& [option, level] = other_options[i];
+    const auto is_tuned = std::ranges::find(tuning.options, option, &TunedOption::name);
+    if (is_tuned == tuning.options.end()) {
+      if (tuned_options[i] != other_options[i]) return nullptr;
+      continue;
+    }
+    if (std::ranges::all_of(is_tuned->levels, IsNumber) && !IsNumber(level)) return nullptr;
+    levels.emplace_back(option, level);
   }
-  return levels;
+  Json in_order = Json::array();
+  for (const TunedOption& option : tuning.options) {
+    in_order.push_back(std::ranges::find(levels, option.name, &Settings::value_type::first)->second);
+  }
+  return in_order;
 }
 
 Json OthersAsJson(const Tuning& tuning, const std::vector<VerifiedEstimator>& estimators) {
@@ -183,8 +200,9 @@ Json CurveAsJson(const std::vector<RocPoint>& curve) {
 
 Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
   const EstimatorSpec& spec = plan.study.estimators[roc.estimator];
-  const double mu = spec.options.MuOrDefault();
-  const bool is_printed = spec.options.reading == Reading::kAsPrinted;
+  const RansacOptions& options = AsRansac(*plan.estimators[roc.estimator])->options();
+  const double mu = options.MuOrDefault();
+  const bool is_printed = options.reading == Reading::kAsPrinted;
   const std::vector<RocPoint> curve = CurveOf(roc);
   const RocPoint at_mu = PointAt(curve, mu);
   return {
@@ -286,13 +304,14 @@ Json TargetAsJson(const Tuning& tuning) {
           {"words", TargetInWords(tuning)}};
 }
 
-Json OptionsAsJson(const Tuning& tuning) {
-  RansacOptions names;
+Json OptionsAsJson(const Study& study) {
+  const EstimatorSpec& spec = TunedEstimator(*study.tuning, study.estimators);
+  const std::unique_ptr<EstimatorModel> model = Configure(spec);
+  const std::vector<Parameter> parameters = model->Parameters();
   Json options = Json::array();
-  for (const TunedOption& option : tuning.options) {
-    const auto parameters = Parameters(names);
+  for (const TunedOption& option : study.tuning->options) {
     options.push_back({{"name", option.name},
-                       {"unit", FindParameter(parameters, option.name).unit()},
+                       {"unit", FindOption(spec.name, parameters, option.name).unit()},
                        {"levels", option.levels}});
   }
   return options;
@@ -353,7 +372,7 @@ std::string TuneAsJson(const StudyPlan& plan, const SettingPlan& settings, const
                {"estimator", tuning.estimator},
                {"seed", plan.study.seed},
                {"target", TargetAsJson(tuning)},
-               {"options", OptionsAsJson(tuning)},
+               {"options", OptionsAsJson(plan.study)},
                {"settings", SettingsAsJson(settings, result)},
                {"tuned", nullptr},
                {"others", Json::array()},

@@ -28,7 +28,7 @@ std::vector<std::pair<std::string, std::string>> ProvenanceOf(const StudyPlan& p
 
 // The target and the options of a tuning, as both plots read them.
 nlohmann::ordered_json TargetAsJson(const Tuning& tuning);
-nlohmann::ordered_json OptionsAsJson(const Tuning& tuning);
+nlohmann::ordered_json OptionsAsJson(const Study& study);
 // {"value", "lower", "upper", "n"}: the rate with its exact 95 % interval; value null where n is 0.
 nlohmann::ordered_json RateAsJson(const ErrorCount& count);
 // "1.23 % [1.01, 1.50]"; "-" where n is 0.

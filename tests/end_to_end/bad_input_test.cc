@@ -303,7 +303,7 @@ TEST_F(BadInput, Set) {
   EXPECT_TRUE(
       refuses("scene=match_files", {"'num_matches'", "for scene match_files", "known keys: scene, folder"}));
   EXPECT_TRUE(refuses("noise=", {"noise: ''", "give a name"}));
-  EXPECT_TRUE(refuses("ours.garbage=1", {"'garbage'", "known keys", "num_iterations"}));
+  EXPECT_TRUE(refuses("ours.garbage=1", {"no option 'garbage'", "its options: num_iterations"}));
   EXPECT_TRUE(refuses("theirs.mu=1", {"theirs"}));
   EXPECT_TRUE(refuses("sigma_px=nan", {"sigma_px", "'nan'", "a number in"}));
   EXPECT_TRUE(refuses("outlier_ratio=2", {"outlier_ratio", "'2'", "a number in [0, 1]"}));

@@ -43,7 +43,7 @@ class Determinism : public testing::TestWithParam<std::tuple<std::string, Readin
     RansacOptions options;
     options.reading = std::get<Reading>(GetParam());
     options.implementation = std::get<Implementation>(GetParam());
-    return FindEstimator(std::get<std::string>(GetParam())).make(options);
+    return MakeRansac(std::get<std::string>(GetParam()), options);
   }
   static std::vector<std::uint64_t> Estimate(const MotionEstimator& estimator, std::uint32_t trial) {
     RandomStream rng({1, 9, trial, 4});

@@ -125,8 +125,8 @@ TEST_P(EstimatorContract, AnswersWhateverTheCamerasAreSaidToBe) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Registry, EstimatorContract,
-                         testing::ValuesIn(EstimatorVariants()), [](const auto& c) { return c.param.name; });
+INSTANTIATE_TEST_SUITE_P(Registry, EstimatorContract, testing::ValuesIn(EstimatorVariants()),
+                         [](const auto& c) { return c.param.name; });
 
 TEST(FindEstimator, AnUnknownNameListsTheKnownOnes) {
   try {
@@ -139,8 +139,7 @@ TEST(FindEstimator, AnUnknownNameListsTheKnownOnes) {
 
 TEST(MakeEstimator, OptionsThatContradictEachOtherAreErrors) {
   EXPECT_THROW(MakeEstimator("rcme", {{"selection", "predictive_likelihood"}}), InputError);
-  EXPECT_NO_THROW(
-      MakeEstimator("rcme", {{"selection", "predictive_likelihood"}, {"reading", "rank_aware"}}));
+  EXPECT_NO_THROW(MakeEstimator("rcme", {{"selection", "predictive_likelihood"}, {"reading", "rank_aware"}}));
 }
 
 }  // namespace

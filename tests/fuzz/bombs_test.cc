@@ -18,6 +18,7 @@
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/peak_memory.h"
+#include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
@@ -158,7 +159,7 @@ TEST(YamlBomb, AliasesThatStandForLittleAreFine) {
       "  - {name: rcme, label: a, options: &o {num_iterations: 20}}\n"
       "  - {name: rcme, label: b, options: *o}\n",
       "a.yaml");
-  EXPECT_EQ(study.estimators.at(1).options.num_iterations, 20);
+  EXPECT_EQ(OptionOf(study.estimators.at(1), "num_iterations"), "20");
 }
 
 TEST(YamlBomb, TooManyCombinationsAreRefusedBeforeTheyAreBuilt) {

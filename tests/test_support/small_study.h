@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <type_traits>
 
@@ -22,6 +23,11 @@ inline std::string SmallStudyYaml() {
          "estimators:\n"
          "  - {name: standard, options: {num_iterations: 20}}\n"
          "  - {name: rcme, label: ours, options: {num_iterations: 20, reading: rank_aware}}\n";
+}
+
+// The value of an option, which is there.
+inline std::string OptionOf(const EstimatorSpec& spec, const std::string& option) {
+  return std::ranges::find(spec.options, option, &Settings::value_type::first)->second;
 }
 
 inline Study SmallStudy() { return ParseStudy(SmallStudyYaml(), "small.yaml"); }

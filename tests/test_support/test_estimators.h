@@ -18,8 +18,8 @@ struct CallCounts {
 // rcme, every call counted.
 class CountedEstimator : public RansacEstimator {
  public:
-  CountedEstimator(const RansacOptions& options, CallCounts* counts)
-      : rcme_(FindEstimator("rcme").make(options)), counts_(counts) {}
+  CountedEstimator(std::unique_ptr<MotionEstimator> rcme, CallCounts* counts)
+      : rcme_(std::move(rcme)), counts_(counts) {}
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
     ++counts_->estimates;
     return rcme_->Estimate(problem, rng);
@@ -37,6 +37,10 @@ class CountedEstimator : public RansacEstimator {
     ++counts_->finishes;
     return AsRansac(*rcme_)->Finish(problem, loop, refinements);
   }
+  const RansacOptions& options() const override { return AsRansac(*rcme_)->options(); }
+  std::unique_ptr<RansacEstimator> With(const RansacOptions& options) const override {
+    return std::make_unique<CountedEstimator>(AsRansac(*rcme_)->With(options), counts_);
+  }
 
  private:
   std::unique_ptr<MotionEstimator> rcme_;
@@ -46,7 +50,7 @@ class CountedEstimator : public RansacEstimator {
 // rcme in one piece: its loop cannot be taken apart.
 class WholeEstimator : public MotionEstimator {
  public:
-  explicit WholeEstimator(const RansacOptions& options) : rcme_(FindEstimator("rcme").make(options)) {}
+  explicit WholeEstimator(std::unique_ptr<MotionEstimator> rcme) : rcme_(std::move(rcme)) {}
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
     return rcme_->Estimate(problem, rng);
   }
@@ -68,19 +72,72 @@ class FaultyEstimator : public MotionEstimator {
   }
 
  private:
-  std::unique_ptr<MotionEstimator> rcme_ = FindEstimator("rcme").make(RansacOptions());
+  std::unique_ptr<MotionEstimator> rcme_ = MakeEstimator("rcme");
   Plant plant_;
   double share_;
 };
 
-// Registers "counted" and "whole" once; the counts are those of all counted estimators of the process.
+// Model of an estimator around rcme, with the options of that.
+class AroundRcme : public EstimatorModel {
+ public:
+  using Wrap = std::function<std::unique_ptr<MotionEstimator>(std::unique_ptr<MotionEstimator>)>;
+  explicit AroundRcme(Wrap wrap) : wrap_(std::move(wrap)) {}
+  std::vector<Parameter> Parameters() override { return rcme_->Parameters(); }
+  void LiftLimits() override { rcme_->LiftLimits(); }
+  std::unique_ptr<MotionEstimator> Make() const override { return wrap_(rcme_->Make()); }
+
+ private:
+  std::unique_ptr<EstimatorModel> rcme_ = FindEstimator("rcme").make();
+  Wrap wrap_;
+};
+
+// An estimator with options of its own, one of which is a limit.
+class PeerEstimator : public MotionEstimator {
+ public:
+  explicit PeerEstimator(int min_inliers, const std::string& samples)
+      : min_inliers_(min_inliers), rcme_(MakeEstimator("rcme", {{"num_iterations", samples}})) {}
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    MotionEstimate estimate = rcme_->Estimate(problem, rng);
+    if (std::ssize(estimate.inliers) < min_inliers_) estimate.status = MotionStatus::kNoCandidate;
+    return estimate;
+  }
+
+ private:
+  int min_inliers_;
+  std::unique_ptr<MotionEstimator> rcme_;
+};
+
+class PeerModel : public EstimatorModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {Parameter::Integer("min_inliers", &min_inliers_, {0, 1000}, "refuse a motion with fewer"),
+            Parameter::Choice<int>("effort", &num_samples_, {{"low", 10}, {"high", 40}}, "how many samples")};
+  }
+  void LiftLimits() override { min_inliers_ = 0; }
+  std::unique_ptr<MotionEstimator> Make() const override {
+    return std::make_unique<PeerEstimator>(min_inliers_, std::to_string(num_samples_));
+  }
+
+ private:
+  int min_inliers_ = 8, num_samples_ = 10;
+};
+
+// Registers "counted", "whole" and "peer" once; the counts are those of all counted estimators of the
+// process.
 inline CallCounts& AddTestEstimators() {
   static CallCounts counts;
   static const bool once = [] {
-    AddEstimator({"counted", "rcme, its calls counted",
-                  [](const RansacOptions& o) { return std::make_unique<CountedEstimator>(o, &counts); }});
-    AddEstimator({"whole", "rcme in one piece",
-                  [](const RansacOptions& o) { return std::make_unique<WholeEstimator>(o); }});
+    AddEstimator({"counted", "rcme, its calls counted", [] {
+                    return std::make_unique<AroundRcme>([](std::unique_ptr<MotionEstimator> rcme) {
+                      return std::make_unique<CountedEstimator>(std::move(rcme), &counts);
+                    });
+                  }});
+    AddEstimator({"whole", "rcme in one piece", [] {
+                    return std::make_unique<AroundRcme>([](std::unique_ptr<MotionEstimator> rcme) {
+                      return std::make_unique<WholeEstimator>(std::move(rcme));
+                    });
+                  }});
+    AddEstimator({"peer", "not of the RANSAC family", [] { return std::make_unique<PeerModel>(); }});
     return true;
   }();
   static_cast<void>(once);

@@ -113,7 +113,7 @@ TEST_F(RunUntilTest, TheEstimatorWithTheWidestIntervalDecides) {
   Study study = EasyAndHard();
   study.estimators[0] = study.estimators[1];
   study.estimators[0].label = "refuses";
-  study.estimators[0].options.mu = -50.0;
+  SetOptions(&study.estimators[0], {{"mu", "-50"}});
   plan_ = MakePlan(study);
   const std::vector<CellPrecision> cells = Run("run", Until("ci=0.08"));
   EXPECT_EQ(cells[1].estimator, 1u);

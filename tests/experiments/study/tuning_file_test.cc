@@ -119,12 +119,11 @@ TEST(TuneBlock, SettingsInOrder) {
   EXPECT_EQ(LevelsOfSetting(tuning, 1), (Levels{"0", "0.5", "predictive_likelihood"}));
   EXPECT_EQ(LevelsOfSetting(tuning, 6), (Levels{"0.3", "0.5", "mean_entropy"}));
   EXPECT_EQ(LevelsOfSetting(tuning, 29), (Levels{"1.2", "1", "predictive_likelihood"}));
-  const RansacOptions options =
-      WithLevels(tuning, LevelsOfSetting(tuning, 29), SmallStudy().estimators[1].options);
-  EXPECT_EQ(options.mu, 1.2);
-  EXPECT_EQ(options.lambda, 1.0);
-  EXPECT_EQ(options.selection, Selection::kPredictiveLikelihood);
-  EXPECT_EQ(options.num_iterations, 20);
+  const EstimatorSpec spec = WithLevels(tuning, LevelsOfSetting(tuning, 29), SmallStudy().estimators[1]);
+  EXPECT_EQ(OptionOf(spec, "mu"), "1.2");
+  EXPECT_EQ(OptionOf(spec, "lambda"), "1");
+  EXPECT_EQ(OptionOf(spec, "selection"), "predictive_likelihood");
+  EXPECT_EQ(OptionOf(spec, "num_iterations"), "20");
 }
 
 TEST(TuneBlockErrors, Keys) {
@@ -140,7 +139,8 @@ TEST(TuneBlockErrors, Keys) {
                       {":10:", "tune: options", "a map"}));
   EXPECT_TRUE(Refuses(SmallStudyYaml() + "tune: fast\n", {":10:", "tune", "a map"}));
   EXPECT_TRUE(Refuses(SmallStudyYaml() + "tune:\n", {":10:", "the value of 'tune' is missing"}));
-  EXPECT_TRUE(Refuses(Edited("mu: " + kSteps, "mus: [1]"), {":16:", "'mus'", "known keys", "lambda"}));
+  EXPECT_TRUE(
+      Refuses(Edited("mu: " + kSteps, "mus: [1]"), {":16:", "no option 'mus'", "its options", "lambda"}));
   EXPECT_TRUE(Refuses(Edited("lambda: [0.5, 0.8, 1.0]", "mu: [1]"), {":17:", "'mu'", "twice"}));
 }
 

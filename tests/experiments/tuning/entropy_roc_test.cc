@@ -36,9 +36,9 @@ StudyPlan WithoutTest(int num_iterations, int num_refined = 1) {
   Study study = SmallStudy();
   study.failure = {0.1, 0.4};  // degrees: some winners are good and some are bad
   for (EstimatorSpec& spec : study.estimators) {
-    spec.options.num_iterations = num_iterations;
-    spec.options.num_refined = num_refined;
-    spec.options.mu = 1000.0;
+    SetOptions(&spec, {{"num_iterations", std::to_string(num_iterations)},
+                       {"num_refined", std::to_string(num_refined)}});
+    if (spec.name == "rcme") SetOptions(&spec, {{"mu", "1000"}});
   }
   return MakePlan(study);
 }
@@ -46,7 +46,7 @@ StudyPlan WithoutTest(int num_iterations, int num_refined = 1) {
 // The quality test of the study's estimator plays no part.
 StudyPlan WithTest(int num_iterations, int num_refined = 1) {
   Study study = WithoutTest(num_iterations, num_refined).study;
-  study.estimators[1].options.mu = -50.0;
+  SetOptions(&study.estimators[1], {{"mu", "-50"}});
   return MakePlan(study);
 }
 

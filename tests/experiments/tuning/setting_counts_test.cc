@@ -26,9 +26,9 @@ StudyPlan PlainPlan(const StudyPlan& plan, const EstimatorSpec& setting) {
   study.tuning.reset();
   study.estimators = {setting, setting};
   study.estimators[1].label = "without limits";
-  study.estimators[1].options.mu = 1000.0;
-  study.estimators[1].options.inlier_ratio = std::numeric_limits<double>::quiet_NaN();
-  study.estimators[1].options.least_explained_share = 0.0;
+  const Settings without = {{"inlier_ratio", "inferred"}, {"least_explained_share", "0"}};
+  SetOptions(&study.estimators[1], without);
+  if (setting.name != "standard") SetOptions(&study.estimators[1], {{"mu", "1000"}});
   return MakePlan(study);
 }
 

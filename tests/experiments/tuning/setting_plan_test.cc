@@ -20,10 +20,10 @@ TEST(SettingPlan, TheFirstOptionIsTheSlowest) {
   ASSERT_EQ(plan.settings.size(), 6u);
   EXPECT_EQ(plan.settings[1].levels, (std::vector<std::string>{"0.5", "4"}));
   EXPECT_EQ(plan.settings[3].levels, (std::vector<std::string>{"1", "2"}));
-  EXPECT_EQ(plan.settings[3].spec.options.lambda, 1.0);
-  EXPECT_EQ(plan.settings[3].spec.options.mu, 2.0);
+  EXPECT_EQ(OptionOf(plan.settings[3].spec, "lambda"), "1");
+  EXPECT_EQ(OptionOf(plan.settings[3].spec, "mu"), "2");
   EXPECT_EQ(plan.settings[3].spec.label, "ours");
-  EXPECT_EQ(plan.settings[3].spec.options.num_iterations, 20) << "what is not tuned is the study's";
+  EXPECT_EQ(OptionOf(plan.settings[3].spec, "num_iterations"), "20") << "what is not tuned is the study's";
 }
 
 TEST(SettingPlan, DecisionOptionsShareOneTrace) {

@@ -96,7 +96,7 @@ TEST(TuneOutput, AnotherEstimatorHasAPlaceIfItDiffersInTheTunedOptionsAlone) {
     return Json::parse(TuneAsJson(plan, SettingsOf(plan), result, {}))["others"][0]["levels"];
   };
   EXPECT_EQ(levels(), Json::array({"6"}));
-  result.estimators[1].spec.options.lambda = 0.9;
+  SetOptions(&result.estimators[1].spec, {{"lambda", "0.9"}});
   EXPECT_TRUE(levels().is_null());
 }
 

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rcme {
+
+// Keys with values as text, such as a `data:` block or the options of an estimator; later ones override.
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+}  // namespace rcme
