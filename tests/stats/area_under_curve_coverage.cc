@@ -1,10 +1,11 @@
-// How often the 95 % interval of the area under the curve holds the truth. Run by hand:
-//   ninja -C build/release area_under_curve_coverage
-//   build/release/bin/area_under_curve_coverage >
-//   experiments/results/statistics/area_under_curve_coverage.txt
+// How often the 95 % interval of the area under the curve holds the truth (experiments/results/statistics;
+// made by `scripts/results area_under_curve`):
+//   area_under_curve_coverage [REPETITIONS, default 4000]
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "stats/area_under_curve.h"
 #include "stats/distributions.h"
@@ -13,7 +14,6 @@
 namespace rcme {
 namespace {
 
-constexpr int kRepetitions = 4000;
 constexpr double kAreas[] = {0.5, 0.6, 0.7, 0.8, 0.9, 0.95};
 
 // Scores whose area is known: negatives are standard normal or exponential.
@@ -62,9 +62,10 @@ struct Counts {
   double width = 0.0;
 };
 
-Counts Measure(const Law& law, const std::vector<Design>& parts, double area, RandomStream& rng) {
+Counts Measure(const Law& law, const std::vector<Design>& parts, double area, int repetitions,
+               RandomStream& rng) {
   Counts counts;
-  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+  for (int repetition = 0; repetition < repetitions; ++repetition) {
     std::vector<ScoreCluster> clusters;
     for (const Design& part : parts) {
       const std::vector<ScoreCluster> more = Draw(law, part, area, rng);
@@ -73,31 +74,32 @@ Counts Measure(const Law& law, const std::vector<Design>& parts, double area, Ra
     const AreaUnderCurve measured = MeasureClusteredAreaUnderCurve(clusters);
     counts.covered += measured.interval.Contains(area);
     counts.plain += std::abs(measured.value - area) <= 1.96 * measured.standard_error;
-    counts.width += (measured.interval.upper - measured.interval.lower) / kRepetitions;
+    counts.width += (measured.interval.upper - measured.interval.lower) / repetitions;
   }
   return counts;
 }
 
-void PrintRow(const std::string& name, const Law& law, const std::vector<Design>& parts, std::uint32_t row) {
+void PrintRow(const std::string& name, const Law& law, const std::vector<Design>& parts, std::uint32_t row,
+              int repetitions) {
   fmt::print("{:<46}", name);
   for (std::uint32_t a = 0; a < std::size(kAreas); ++a) {
     RandomStream rng({.seed = 1, .condition = row, .trial = a, .purpose = 150});
-    const Counts counts = Measure(law, parts, kAreas[a], rng);
-    fmt::print("  {:.3f} ({:.3f}) {:.2f}", 1.0 * counts.covered / kRepetitions,
-               1.0 * counts.plain / kRepetitions, counts.width);
+    const Counts counts = Measure(law, parts, kAreas[a], repetitions, rng);
+    fmt::print("  {:.3f} ({:.3f}) {:.2f}", 1.0 * counts.covered / repetitions,
+               1.0 * counts.plain / repetitions, counts.width);
   }
   fmt::print("\n");
   std::fflush(stdout);
 }
 
-void PrintTable() {
+void PrintTable(int repetitions) {
   fmt::print(
       "Coverage of the 95 % interval of the area under the curve (stats/area_under_curve.h), in brackets "
       "that of\n"
       "value +- 1.96 standard errors (DeLong, Obuchowski), then the mean width; {} repetitions, seed 1, so "
       "that a\n"
       "true 0.95 shows 0.943 to 0.957 in 95 of 100 cells.\n\n{:<46}",
-      kRepetitions, "area");
+      repetitions, "area");
   for (const double area : kAreas) fmt::print("  {:<18}", area);
   fmt::print("\n");
   std::uint32_t row = 0;
@@ -106,21 +108,33 @@ void PrintTable() {
       for (const int n : {5, 10, 20, 50, 200}) {
         const int num_negatives = is_balanced ? n : 400;
         PrintRow(fmt::format("{}, {} and {}", law.name, n, num_negatives), law,
-                 {{n, 1, 0, false}, {num_negatives, 0, 1, false}}, row++);
+                 {{n, 1, 0, false}, {num_negatives, 0, 1, false}}, row++, repetitions);
       }
     }
   }
   fmt::print("\nScenes of 4 and 4, correlation 0.5 within a kind\n");
   for (const int n : {5, 10, 20, 50}) {
-    PrintRow(fmt::format("normal, {} scenes", n), kLaws[0], {{n, 4, 4, false}}, row++);
+    PrintRow(fmt::format("normal, {} scenes", n), kLaws[0], {{n, 4, 4, false}}, row++, repetitions);
   }
   fmt::print("\nTrials with one of each, correlation 0.5 between them\n");
   for (const int n : {5, 10, 20, 50, 200}) {
-    PrintRow(fmt::format("normal, {} trials", n), kLaws[0], {{n, 1, 1, true}}, row++);
+    PrintRow(fmt::format("normal, {} trials", n), kLaws[0], {{n, 1, 1, true}}, row++, repetitions);
   }
 }
 
 }  // namespace
 }  // namespace rcme
 
-int main() { rcme::PrintTable(); }
+int main(int argc, char** argv) {
+  int repetitions = 4000;
+  if (argc > 1) {
+    const std::string_view text = argv[1];
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), repetitions);
+    if (argc > 2 || error != std::errc() || end != text.data() + text.size() || repetitions < 1) {
+      fmt::print(stderr, "usage: area_under_curve_coverage [REPETITIONS] > TABLE.txt\n");
+      return 2;
+    }
+  }
+  rcme::PrintTable(repetitions);
+  return 0;
+}

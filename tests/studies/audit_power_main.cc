@@ -1,7 +1,8 @@
 // How sharp the audit is: the share of seeds in which it calls a faulty estimator faulty and a sound one
-// sound. Prints two tables (CSV):
-//   rcme_audit_power faults > experiments/results/audit_power/faults.csv
-//   rcme_audit_power sigma > experiments/results/audit_power/sigma.csv
+// sound. Prints two tables (CSV; `scripts/results audit_power` makes those of
+// experiments/results/audit_power):
+//   rcme_audit_power faults [SEEDS, default 20] > faults.csv
+//   rcme_audit_power sigma [SEEDS, default 20; half as many where cases are simulated] > sigma.csv
 // `faults`: test doubles answer the problems of the estimator claims with the true motion plus small errors,
 // and with one fault; decided at the quick budget. `sigma`: standard deviations wrong by 1 to 20 %, quick and
 // full; drawn: the statistic is drawn from its law, run: it comes from simulated cases.
@@ -9,9 +10,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 #include "experiments/claims/audit.h"
 #include "experiments/claims/call_estimator.h"
@@ -149,8 +152,7 @@ void PrintRow(const std::string& what, const Verdicts& verdicts) {
 constexpr const char* kColumns =
     "seeds,does_not_hold,does_not_hold_lower,does_not_hold_upper,holds,holds_lower,holds_upper";
 
-void PrintFaults(double confidence) {
-  constexpr int kSeeds = 20;
+void PrintFaults(double confidence, int num_seeds) {
   fmt::print("fault,{}\n", kColumns);
   for (const Fault& fault : Faults()) {
     const Claim claim = ClaimOn([spoil = fault.spoil](Case& made) {
@@ -158,12 +160,12 @@ void PrintFaults(double confidence) {
       spoil(&answer, made.rng);
       return answer;
     });
-    PrintRow(fault.name, Decide(claim, Budget::kQuick, kSeeds, confidence));
+    PrintRow(fault.name, Decide(claim, Budget::kQuick, num_seeds, confidence));
   }
 }
 
-void PrintSigma(double confidence) {
-  constexpr int kDrawnSeeds = 20, kRunSeeds = 10;
+void PrintSigma(double confidence, int num_seeds) {
+  const int num_run = (num_seeds + 1) / 2;
   fmt::print("claim,statistic,budget,sigma_error,{}\n", kColumns);
   const auto row = [&](const std::string& words, double error, const Claim& claim, Budget budget, int seeds) {
     PrintRow(fmt::format("{},{},{:g}", words, budget == Budget::kQuick ? "quick" : "full", error),
@@ -176,8 +178,8 @@ void PrintSigma(double confidence) {
       covariance.checks.assign(2, DrawnCheck(5, error, kEstimatorCoverage.limits));
       point.checks = {DrawnCheck(1, error, kSampleCoverage.limits)};
       for (const Budget budget : {Budget::kQuick, Budget::kFull}) {
-        row("estimator,drawn", error, covariance, budget, kDrawnSeeds);
-        row("known motion,drawn", error, point, budget, kDrawnSeeds);
+        row("estimator,drawn", error, covariance, budget, num_seeds);
+        row("known motion,drawn", error, point, budget, num_seeds);
       }
     }
   }
@@ -196,8 +198,8 @@ void PrintSigma(double confidence) {
           return TruePoseStatistic(RankAwareDistance)(made);
         },
         CoverageTargets(1), kSampleCoverage.limits)};
-    row("estimator,run", error, ClaimOn(answer), Budget::kQuick, kRunSeeds);
-    row("known motion,run", error, point, Budget::kQuick, kRunSeeds);
+    row("estimator,run", error, ClaimOn(answer), Budget::kQuick, num_run);
+    row("known motion,run", error, point, Budget::kQuick, num_run);
   }
 }
 
@@ -205,15 +207,19 @@ void PrintSigma(double confidence) {
 }  // namespace rcme
 
 int main(int argc, char** argv) {
-  const std::string table = argc == 2 ? argv[1] : "";
+  const std::string table = argc > 1 ? argv[1] : "";
+  const std::string_view seeds = argc > 2 ? argv[2] : "20";
+  int num_seeds = 0;
+  std::from_chars(seeds.data(), seeds.data() + seeds.size(), num_seeds);
+  if (argc > 3 || num_seeds < 1 || (table != "faults" && table != "sigma")) {
+    fmt::print(stderr, "usage: rcme_audit_power faults|sigma [SEEDS] > TABLE.csv\n");
+    return 2;
+  }
   const double confidence = rcme::PlanAudit(rcme::AllClaims(rcme::EstimatorRegistry()), {}).confidence;
   if (table == "faults") {
-    rcme::PrintFaults(confidence);
-  } else if (table == "sigma") {
-    rcme::PrintSigma(confidence);
+    rcme::PrintFaults(confidence, num_seeds);
   } else {
-    fmt::print(stderr, "usage: rcme_audit_power faults|sigma > TABLE.csv\n");
-    return 2;
+    rcme::PrintSigma(confidence, num_seeds);
   }
   return 0;
 }

@@ -1,0 +1,166 @@
+"""The recipes of the committed results (experiments/results/results.toml), and how one is followed."""
+
+import json
+import os
+import resource
+import shlex
+import shutil
+import subprocess
+import time
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from audit_table import audit_csv, without_times
+
+ROOT = Path(__file__).resolve().parents[2]
+RESULTS = ROOT / "experiments" / "results"
+RECIPES, MADE, DIGESTS = RESULTS / "results.toml", RESULTS / "made.json", RESULTS / "digests.json"
+LONG_MINUTES = 10  # of CPU time, from which on a result is made only where it is asked for
+KEYS = {"name", "folder", "cpu_minutes", "needs", "commands", "files", "machine", "digest"}
+
+
+class ResultError(Exception):
+    """What people are told, without a traceback."""
+
+
+@dataclass
+class Recipe:
+    """One committed result."""
+
+    name: str
+    folder: str
+    cpu_minutes: float
+    commands: list
+    files: list  # names, or {from, as}: what lies in the scratch folder under another name
+    needs: list = field(default_factory=list)
+    machine: list = field(default_factory=list)
+    digest: list = field(default_factory=list)
+
+    def pairs(self):
+        """(file in the scratch folder, committed file, what has to be done to it) of every file."""
+        for entry in self.files:
+            if isinstance(entry, str):
+                entry = {"from": entry, "as": entry}
+            yield entry["from"], RESULTS / self.folder / entry["as"], entry.get("table")
+
+    def is_long(self):
+        return self.cpu_minutes >= LONG_MINUTES
+
+    def missing(self, programs):
+        """What the commands need and what is not there."""
+        names = {shlex.split(command)[0] for command in self.commands + self.digest}
+        found = [name for name in sorted(names) if "/" not in name and not (programs / name).exists()]
+        return found + [each for each in self.needs if "/" in each and not (ROOT / each).exists()]
+
+
+def read_recipes(path=RECIPES):
+    with open(path, "rb") as file:
+        entries = tomllib.load(file)["result"]
+    recipes = {}
+    for entry in entries:
+        unknown = set(entry) - KEYS
+        if unknown:
+            raise ResultError(f"{path}: result '{entry.get('name')}': unknown key '{min(unknown)}'; "
+                              f"known: {', '.join(sorted(KEYS))}")
+        if entry["name"] in recipes:
+            raise ResultError(f"{path}: two results named '{entry['name']}'")
+        recipes[entry["name"]] = Recipe(**entry)
+    return recipes
+
+
+def chosen(recipes, names, with_long):
+    """The recipes of these names or folders; without names all, the long ones only where wanted."""
+    if not names:
+        return [recipe for recipe in recipes.values() if with_long or not recipe.is_long()]
+    wanted = []
+    for name in names:
+        found = [recipe for recipe in recipes.values() if name in (recipe.name, recipe.folder)]
+        if not found:
+            raise ResultError(f"no result '{name}'; there are: {', '.join(recipes)}")
+        wanted += [recipe for recipe in found if recipe not in wanted]
+    return wanted
+
+
+def run(command, out, programs):
+    """Runs one command of a recipe; "> FILE" at its end keeps what it prints."""
+    words = shlex.split(command.replace("{out}", str(out)))
+    target = None
+    if len(words) > 2 and words[-2] == ">":
+        target, words = words[-1], words[:-2]
+    program = programs / words[0] if "/" not in words[0] else Path(words[0])
+    done = subprocess.run([str(program), *words[1:]], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    if done.returncode != 0:
+        last = done.stderr.decode(errors="replace").strip().splitlines()[-3:]
+        raise ResultError(f"'{command}' ended with {done.returncode}: " + " / ".join(last))
+    if target:
+        Path(target).write_bytes(done.stdout)
+
+
+def make(recipe, out, programs, say=lambda words: None):
+    """Follows the recipe into `out`; returns the CPU seconds that its commands took."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    out.mkdir(parents=True, exist_ok=True)
+    for number, command in enumerate(recipe.commands, 1):
+        start = time.monotonic()
+        say(f"{recipe.name}: {number} of {len(recipe.commands)}: {command.replace('{out}/', '')}")
+        run(command, out, programs)
+        say(f"{recipe.name}: {number} of {len(recipe.commands)}: {time.monotonic() - start:.0f} s")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def content(path, table):
+    """The bytes of a file that was made, as they are committed."""
+    if not path.exists():
+        raise ResultError(f"{path.name} was not written by the commands")
+    return audit_csv(json.loads(path.read_text())).encode() if table == "audit" else path.read_bytes()
+
+
+def is_same(path, target, table):
+    if not target.exists():
+        return False
+    new, old = content(path, table), target.read_bytes()
+    return without_times(new.decode()) == without_times(old.decode()) if table == "audit" else new == old
+
+
+def differing(recipe, out):
+    """The committed files that are not what lies in `out`; those that hold times are left out."""
+    return [str(target.relative_to(ROOT)) for made, target, table in recipe.pairs()
+            if target.name not in recipe.machine and not is_same(out / made, target, table)]
+
+
+def keep(recipe, out, cpu_seconds):
+    """Replaces the committed files by what lies in `out`, and notes what made them; no time of a resumed run."""
+    contents = [(target, content(out / made, table)) for made, target, table in recipe.pairs()]
+    for target, data in contents:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(data)
+    made = json.loads(MADE.read_text()) if MADE.exists() else {}
+    made[recipe.name] = code_version()
+    if cpu_seconds is not None:
+        made[recipe.name]["cpu_minutes"] = round(cpu_seconds / 60, 1)
+    MADE.write_text(json.dumps(made, indent=1, sort_keys=True) + "\n")
+
+
+def code_version():
+    """The last commit that changed the programs or the plots, and whether there are changes that are in no commit."""
+    code = ["CMakeLists.txt", "cmake", "parameters", "stats", "estimator", "simulator", "experiments", "plots",
+            ":!experiments/results", ":!experiments/reproduce", ":!*.md"]
+
+    def git(*words):
+        return subprocess.run(["git", *words, "--", *code], cwd=ROOT, text=True, check=True,
+                              capture_output=True).stdout.strip()
+    commit, date = git("log", "-1", "--format=%h %cs").split()
+    if git("status", "--porcelain", "--untracked-files=no"):
+        commit += " with changes"
+    return {"commit": commit, "date": date}
+
+
+def fresh(folder):
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+
+
+def default_programs():
+    return Path(os.environ.get("RCME_PROGRAMS", ROOT / "build" / "release" / "bin"))

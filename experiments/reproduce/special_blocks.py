@@ -1,0 +1,223 @@
+"""Blocks that one page needs: each is a function of its spec that returns Markdown."""
+
+import json
+import re
+
+from recipes import MADE, RESULTS, ROOT, read_recipes
+from tables import as_number, is_level, levels_of, read_table, scientific, select, the_row
+
+REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
+
+
+def markdown(head, body):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(line) + " |" for line in body])
+
+
+def made_by():
+    return json.loads(MADE.read_text()) if MADE.exists() else {}
+
+
+def version_words(entry):
+    return f"{entry['commit']}, {entry['date']}" if entry else "not noted"
+
+
+def made(spec):
+    """How the result is made again, and by what it was made."""
+    recipe, entry = read_recipes()[spec.argument], made_by().get(spec.argument, {})
+    minutes = entry.get("cpu_minutes", recipe.cpu_minutes)
+    commands = "\n".join("    " + command.replace("{out}/", "").replace(" --out {out}", " --out .")
+                         for command in recipe.commands)
+    return (f"`scripts/results {recipe.name}` (about {minutes:g} CPU minutes; the committed one is of commit "
+            f"{version_words(entry)}) runs\n\n{commands}")
+
+
+def all_results(_):
+    """Every result, what makes it, and what made it."""
+    entries = made_by()
+    body = []
+    for recipe in read_recipes().values():
+        entry = entries.get(recipe.name, {})
+        minutes = f"{entry.get('cpu_minutes', recipe.cpu_minutes):g}"
+        body.append([recipe.name, f"[{recipe.folder}](results/{recipe.folder}/README.md)",
+                     minutes + (" (long)" if recipe.is_long() else ""), version_words(entry)])
+    return markdown(["`scripts/results NAME`", "page", "CPU minutes, about", "made by commit"], body)
+
+
+def largest_sigma(spec):
+    """The largest noise level up to which every cell of the validity map covers so much."""
+    rows = select(read_table(spec.argument), "conditioning=all")
+    limits = [float(word) for word in spec.get("limits").split(",")]
+    quantities = spec.parts("quantities")
+    baselines = levels_of(rows, "baseline_m")
+    body = []
+    for points in levels_of(rows, "num_points"):
+        line = [points]
+        for quantity, _ in quantities:
+            here = select(rows, f"num_points={points}, quantity={quantity}")
+            line.append("; ".join(", ".join(up_to(here, baseline, limit) for limit in limits)
+                                  for baseline in baselines))
+        body.append(line)
+    return markdown(["points"] + [heading for _, heading in quantities], body)
+
+
+def up_to(rows, baseline, limit):
+    largest = "-"
+    for row in sorted(select(rows, f"baseline_m={baseline}"), key=lambda row: float(row["sigma_px"])):
+        if float(row["coverage"]) < limit:
+            break
+        largest = row["sigma_px"]
+    return largest
+
+
+def mean_rate(rows):
+    """Over all trials of several conditions."""
+    return sum(float(row["value"]) * int(row["n"]) for row in rows) / sum(int(row["n"]) for row in rows)
+
+
+def pooled(spec):
+    """Failure and refusal over all conditions, and in how many conditions Holm's p is below 0.05, of several studies."""
+    body = []
+    for name, words in spec.parts("tables"):
+        summary, paired = read_table(name), read_table(name + "_paired")
+        for estimator in [level for level in levels_of(summary, "estimator") if level != "scene"]:
+            rates = [sum(mean_rate(select(summary, f"{estimator}, {quantity}")) for quantity in quantities)
+                     for quantities in (("failure",), REFUSALS)]
+            pairs = [row for row in paired if row["estimator"] == estimator and row["event"] == "failure_or_refusal"]
+            sure = [float(row["risk_difference"]) for row in pairs if float(row["p_holm"]) < 0.05]
+            body.append([words, estimator, f"{100 * rates[0]:.2f}", f"{100 * rates[1]:.2f}",
+                         f"{sum(each < 0 for each in sure)} of {len(pairs)}" if pairs else "(reference)",
+                         f"{sum(each > 0 for each in sure)} of {len(pairs)}" if pairs else ""])
+    return markdown(["study", "estimator", "failure, %", "refusal, %", "better in", "worse in"], body)
+
+
+def verdicts(spec):
+    """A row per claim of the audit."""
+    rows = {row["claim"]: row for row in reversed(read_table(spec.argument))}
+    body = []
+    for row in reversed(rows.values()):
+        up_to_px = row["holds_up_to_sigma_px"]
+        words = f"limit only, up to {float(up_to_px):g} px" if up_to_px else row["claim_verdict"]
+        body.append([row["claim"], row["reading"], words])
+    return markdown(["claim", "reading", "verdict"], body)
+
+
+def verdict_counts(spec):
+    """How many claims have which verdict, in a sentence."""
+    rows = {row["claim"]: row["claim_verdict"] for row in read_table(spec.argument)}
+    words = list(rows.values())
+    counts = sorted(((words.count(each), each) for each in set(words)), reverse=True)
+    return f"{len(rows)} claims: " + ", ".join(f"{count} {verdict}" for count, verdict in counts) + "."
+
+
+def power(spec):
+    """How often the audit called a wrong sigma "does not hold" / "holds"."""
+    rows = select(read_table(spec.argument), "statistic=" + spec.get("statistic", "drawn"))
+    errors = sorted({as_number(row["sigma_error"]) for row in rows})
+    body = []
+    for claim in levels_of(rows, "claim"):
+        for budget in levels_of(rows, "budget"):
+            here = select(rows, f"claim={claim}, budget={budget}")
+            cells = [the_row(here, f"sigma_error={error:g}") for error in errors]
+            body.append([f"{claim}, {budget}"] + [f"{row['does_not_hold']} / {row['holds']}" for row in cells])
+    return markdown(["claim, budget"] + [f"{100 * error:+g} %" if error else "0" for error in errors], body)
+
+
+def better(spec):
+    """In how many conditions each estimator is surely better or worse than the reference."""
+    rows = read_table(spec.argument)
+    body = []
+    for event, words in spec.parts("events"):
+        for estimator in levels_of(rows, "estimator"):
+            pairs = [row for row in rows if row["estimator"] == estimator and row["event"] == event]
+            sure = [float(row["risk_difference"]) for row in pairs if float(row["p_holm"]) < 0.05]
+            body.append([words, estimator, f"{sum(each < 0 for each in sure)} of {len(pairs)}",
+                         f"{sum(each > 0 for each in sure)} of {len(pairs)}"])
+    return markdown(["event", "estimator", "less often", "more often"], body)
+
+
+def one_at_a_time(spec):
+    """A row per level of each factor, the others at their usual level."""
+    rows = read_table(spec.argument)
+    factors = [name for name, _ in spec.parts("factors")]
+    base = dict(zip(factors, [level for level, _ in spec.parts("base")]))
+    estimators = [level for level in levels_of(rows, "estimator") if level != "scene"]
+    cells = [word.strip() for word in spec.get("cells").split(",")]
+    body = []
+    for factor in factors:
+        others = [name for name in factors if name != factor]
+        for level in levels_of(rows, factor):
+            here = [row for row in rows
+                    if row[factor] == level and all(is_level(row[name], base[name]) for name in others)]
+            body.append([factor, level] + [" / ".join(value_or_dash(here, estimator, cell) for cell in cells)
+                                           for estimator in estimators])
+    return markdown(["factor", "level"] + estimators, body)
+
+
+def value_or_dash(rows, estimator, quantity):
+    quantities = REFUSALS if quantity == "refusal" else (quantity,)
+    found = [the_row(rows, f"{estimator}, {each}") for each in quantities]
+    return f"{100 * sum(float(row['value']) for row in found):.1f}" if all(row["value"] for row in found) else "-"
+
+
+def rare(spec):
+    """Weighted rates beside those of many more plain trials."""
+    tilted, plain = read_table(spec.argument), read_table(spec.get("against"))
+    body = []
+    for event, words in spec.parts("events"):
+        for ratio in levels_of(tilted, "outlier_ratio"):
+            where = f"outlier_ratio={ratio}, {event}"
+            body.append([ratio, words, scientific(the_row(tilted, where)), scientific(the_row(plain, where))])
+    return markdown(["probability", "event", "tilted", "by brute force"], body)
+
+
+def pooled_rates(spec):
+    """Failure and refusal of each estimator over all conditions."""
+    rows = read_table(spec.argument)
+    body = []
+    for estimator in [level for level in levels_of(rows, "estimator") if level != "scene"]:
+        right, failed, *refused = [mean_rate(select(rows, f"{estimator}, {quantity}"))
+                                   for quantity in ("success", "failure", *REFUSALS)]
+        body.append([estimator] + [f"{100 * each:.1f}" for each in (right, failed, sum(refused))])
+    return markdown(["estimator", "right", "failed", "refused"], body)
+
+
+def ratios(spec):
+    """The ratios of a benchmark with their intervals."""
+    measured = json.loads((ROOT / spec.argument).read_text())
+    body = []
+    for key, words in spec.parts("rows"):
+        interval = measured["intervals"].get(key)
+        limits = f" [{interval['lower']:.3g}, {interval['upper']:.3g}]" if interval else ""
+        name, _, target = words.partition(", target ")
+        body.append([name, f"{measured['ratios'][key]:.3g}{limits}", target])
+    return markdown(["ratio", "measured", "target set beforehand"], body)
+
+
+def transfer(spec):
+    """What `rcme transfer` printed, without the list of families on which a setting is violated."""
+    lines = [line for line in (RESULTS / spec.argument).read_text().splitlines() if line.strip()]
+    rule = next(i for i, line in enumerate(lines) if line.startswith("---"))
+    widths = [len(dashes) for dashes in lines[rule].split()]
+    starts = [sum(widths[:i]) + 2 * i for i in range(len(widths))]
+
+    def cut(line):
+        return [line[start:start + width].strip() for start, width in zip(starts, widths)][:6]
+
+    body = [[cell.split(":")[0] if cell.startswith("none") else cell for cell in cut(line)] for line in lines[rule + 1:]
+            if not line.startswith(" ") and len(line) > starts[1]]
+    return markdown(cut(lines[rule - 1]), body)
+
+
+def least_coverage(spec):
+    """The least coverage of all cells "coverage (that of the plain interval) width"."""
+    cells = re.findall(r"(\d\.\d{3}) \((\d\.\d{3})\)", (RESULTS / spec.argument).read_text())
+    new, plain = min(float(cell[0]) for cell in cells), min(float(cell[1]) for cell in cells)
+    return (f"In each of {len(cells)} cells it covers {new:.3f} or more where 0.95 is claimed; value +- 1.96 standard "
+            f"errors covers as little as {plain:.3f}.")
+
+
+SPECIAL = {"made": made, "list": all_results, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
+           "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
+           "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "transfer": transfer,
+           "least_coverage": least_coverage}

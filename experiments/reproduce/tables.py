@@ -1,0 +1,130 @@
+"""Committed tables (CSV), and the choice of their rows by words.
+
+A condition is "column=level", "column=level|level" or a bare word: the label of an estimator, or a quantity. Levels that
+are numbers are compared as numbers.
+"""
+
+import csv
+import functools
+
+from recipes import RESULTS, ResultError
+
+VALUE_COLUMNS = ("value", "coverage", "risk_difference", "measured")
+BARE_COLUMNS = ("estimator", "quantity", "event", "claim", "covariance")
+
+
+@functools.lru_cache(maxsize=None)
+def read_table(name):
+    """The rows of experiments/results/NAME.csv, or of a CSV file named from the root of the repository."""
+    path = RESULTS / f"{name}.csv"
+    if not path.exists():
+        raise ResultError(f"there is no table {path.name} in {path.parent}")
+    with open(path, newline="", encoding="utf-8") as file:
+        return tuple(csv.DictReader(file))
+
+
+def as_number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return None
+
+
+def is_level(text, wanted):
+    number, other = as_number(text), as_number(wanted)
+    return number == other if number is not None and other is not None else text == wanted
+
+
+def words_of(text):
+    return [word.strip() for word in text.split(",") if word.strip()]
+
+
+def condition_of(rows, word):
+    """(column, levels) of one condition."""
+    column, equals, levels = word.partition("=")
+    if not equals:
+        column, levels = next((name for name in BARE_COLUMNS if name in rows[0]
+                               and any(row[name] == word for row in rows)), None), word
+        if column is None:
+            raise ResultError(f"'{word}' is no {' or '.join(BARE_COLUMNS)} of the table")
+    if column not in rows[0]:
+        raise ResultError(f"the table has no column '{column}'; it has {', '.join(rows[0])}")
+    return column, levels.split("|")
+
+
+def select(rows, text):
+    """The rows that meet every condition of a comma-separated list."""
+    for word in words_of(text):
+        column, levels = condition_of(rows, word)
+        rows = [row for row in rows if any(is_level(row[column], level) for level in levels)]
+        if not rows:
+            raise ResultError(f"no row with {word} (in '{text}')")
+    return rows
+
+
+def the_row(rows, text):
+    found = select(rows, text)
+    if len(found) > 1:
+        raise ResultError(f"{len(found)} rows with '{text}', not one")
+    return found[0]
+
+
+def levels_of(rows, column):
+    """The levels of a column in the order of the table."""
+    return list(dict.fromkeys(row[column] for row in rows))
+
+
+def value_of(row):
+    column = next((name for name in VALUE_COLUMNS if name in row), None)
+    if column is None:
+        raise ResultError(f"the table has none of the columns {', '.join(VALUE_COLUMNS)}")
+    return row[column]
+
+
+# What a row is shown as: a rate in per cent or as a share, with or without its interval, a number, the count.
+
+def rate(row, digits=1, unit=""):
+    value = float(value_of(row))
+    if not row.get("lower"):
+        return f"{100 * value:.{digits}f}{unit}"
+    lower, upper = float(row["lower"]), float(row["upper"])
+    return f"{100 * value:.{digits}f} [{100 * lower:.{digits}f}, {100 * upper:.{digits}f}]{unit}"
+
+
+def share(row, digits=3):
+    value = f"{float(value_of(row)):.{digits}f}"
+    return f"{value} [{float(row['lower']):.{digits}f}, {float(row['upper']):.{digits}f}]" if row.get("lower") else value
+
+
+def number(row, digits=3):
+    return f"{float(value_of(row)):.{digits}g}"
+
+
+def scientific(row):
+    error = f" +- {float(row['standard_error']):.1e}" if row.get("standard_error") else ""
+    return f"{float(value_of(row)):.2g}{error} [{float(row['lower']):.2g}, {float(row['upper']):.2g}]"
+
+
+def natural(row):
+    """A rate as a rate, a mean as a number."""
+    if row.get("kind", "rate") == "rate":
+        return rate(row)
+    return share(row, 3) if row.get("lower") else number(row)
+
+
+FORMATS = {
+    "rate": rate, "percent": lambda row: rate(row, 1, " %"), "percent2": lambda row: rate(row, 2, " %"),
+    "rate2": lambda row: rate(row, 2), "value": lambda row: f"{100 * float(value_of(row)):.1f}",
+    "share": share, "share4": lambda row: share(row, 4), "number": number, "scientific": scientific,
+    "n": lambda row: f"{int(row['n']):,}", "natural": natural,
+    "verdict": lambda row: row["verdict"], "claim": lambda row: row["claim_verdict"],
+}
+
+
+def shown(row, form):
+    """A row in one of the formats above, or one of its columns as it stands ("column NAME")."""
+    if form.startswith("column "):
+        return row[form[len("column "):]]
+    if form not in FORMATS:
+        raise ResultError(f"no format '{form}'; there are: {', '.join(FORMATS)}, column NAME")
+    return FORMATS[form](row)
