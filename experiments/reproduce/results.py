@@ -75,8 +75,9 @@ def do_blocks(is_check):
     for path in absent:
         print(f"{path.relative_to(ROOT)}: is missing, though experiments/results/results.toml names it")
     count = sum(len(blocks.block_names(page)) for page in blocks.pages())
-    print(f"{count} blocks of {len(blocks.pages())} pages; {'differences' if stale or unknown or absent else 'all equal'}")
-    return 1 if stale or unknown or absent else 0
+    differs = bool(stale or unknown or absent)
+    print(f"{count} blocks of {len(blocks.pages())} pages; {'differences' if differs else 'all equal'}")
+    return 1 if differs else 0
 
 
 def do_digests(recipes, options):

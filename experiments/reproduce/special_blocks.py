@@ -28,8 +28,9 @@ def made(spec):
     minutes = entry.get("cpu_minutes", recipe.cpu_minutes)
     commands = "\n".join("    " + command.replace("{out}/", "").replace(" --out {out}", " --out .")
                          for command in recipe.commands)
+    older = ", an older one: not made again since" if "or before" in entry.get("commit", "") else ""
     return (f"`scripts/results {recipe.name}` (about {minutes:g} CPU minutes; the committed one is of commit "
-            f"{version_words(entry)}) runs\n\n{commands}")
+            f"{version_words(entry)}{older}) runs\n\n{commands}")
 
 
 def all_results(_):
@@ -76,7 +77,7 @@ def mean_rate(rows):
 
 
 def pooled(spec):
-    """Failure and refusal over all conditions, and in how many conditions Holm's p is below 0.05, of several studies."""
+    """Failure and refusal over all conditions, and in how many of them Holm's p is below 0.05, of several studies."""
     body = []
     for name, words in spec.parts("tables"):
         summary, paired = read_table(name), read_table(name + "_paired")

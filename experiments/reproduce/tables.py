@@ -1,7 +1,7 @@
 """Committed tables (CSV), and the choice of their rows by words.
 
-A condition is "column=level", "column=level|level" or a bare word: the label of an estimator, or a quantity. Levels that
-are numbers are compared as numbers.
+A condition is "column=level", "column=level|level" or a bare word: the label of an estimator, or a quantity. Levels
+that are numbers are compared as numbers.
 """
 
 import csv
@@ -93,7 +93,9 @@ def rate(row, digits=1, unit=""):
 
 def share(row, digits=3):
     value = f"{float(value_of(row)):.{digits}f}"
-    return f"{value} [{float(row['lower']):.{digits}f}, {float(row['upper']):.{digits}f}]" if row.get("lower") else value
+    if not row.get("lower"):
+        return value
+    return f"{value} [{float(row['lower']):.{digits}f}, {float(row['upper']):.{digits}f}]"
 
 
 def number(row, digits=3):

@@ -7,8 +7,11 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from common import style
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
+from common.text_size import wrap
 from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, n_in_words,
                              select_rates, title_of)
+
+TITLE_SIZE, TITLE_MARGIN = 8.5, 0.5  # the titles of style.py; inches beside a panel
 
 
 def draw_line(axes, points, look):
@@ -91,7 +94,9 @@ def draw(summary, x, quantities, log_y=False):
     letters = style.letters(panels.size)
     for (r, (levels, part)), (c, quantity) in itertools.product(enumerate(parts), enumerate(quantities)):
         draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), log_y)
-        panels[r, c].set_title(next(letters) + title_of(quantity) + (f", {levels}" if levels else ""))
+        title = next(letters) + title_of(quantity) + (f", {levels}" if levels else "")
+        room = figure.get_figwidth() / len(quantities) - TITLE_MARGIN
+        panels[r, c].set_title("\n".join(wrap(title, room, TITLE_SIZE)))
     for c, quantity in enumerate(quantities):
         set_y_limits(panels[:, c], rows[rows.quantity == quantity], log_y)
         axis.prepare(panels[-1, c], len(quantities))  # the x axis is shared by all panels
