@@ -146,7 +146,7 @@ def keep(recipe, out, cpu_seconds):
 def code_version():
     """The last commit that changed the programs or the plots, and whether there are changes that are in no commit."""
     code = ["CMakeLists.txt", "cmake", "parameters", "stats", "estimator", "simulator", "experiments", "plots",
-            ":!experiments/results", ":!experiments/reproduce", ":!*.md"]
+            ":!experiments/results", ":!*.md"]
 
     def git(*words):
         return subprocess.run(["git", *words, "--", *code], cwd=ROOT, text=True, check=True,
