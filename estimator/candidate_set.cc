@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/solvers/solver_table.h"
+
 namespace rcme {
 
 CandidateSet::CandidateSet(const RansacOptions& options, int num_matches)
@@ -10,7 +12,8 @@ CandidateSet::CandidateSet(const RansacOptions& options, int num_matches)
       inlier_ratio_(std::isnan(options.inlier_ratio) ? 0.0 : options.inlier_ratio),
       is_ratio_inferred_(std::isnan(options.inlier_ratio)),
       num_matches_(num_matches) {
-  passed_.reserve(static_cast<size_t>(std::min(options.num_iterations, 4096)));
+  const int most = MaxModelsOf(options.solver) * std::min(options.num_iterations, 4096);
+  passed_.reserve(static_cast<size_t>(std::min(most, 4096)));
 }
 
 void CandidateSet::Add(const Candidate& candidate) {

@@ -4,13 +4,13 @@
 #include <iterator>
 #include <vector>
 
-#include "estimator/hypothesis.h"
 #include "estimator/inlier_quality.h"
+#include "estimator/sample.h"
 
 namespace rcme {
 
 struct Candidate {
-  Sample sample{};
+  HypothesisId id;
   InlierScore score;
   double z_statistic = 0.0;
 };

@@ -1,38 +1,87 @@
 #include "estimator/hypothesis.h"
 
+#include "estimator/solvers/eight_point.h"
+#include "estimator/solvers/five_point.h"
+#include "estimator/solvers/one_point.h"
+#include "estimator/solvers/seven_point.h"
+#include "estimator/uncertainty/motion_covariance.h"
+
 namespace rcme {
 
-std::optional<Hypothesis> InstantiateModel(const MotionProblem& problem, const Sample& sample) {
-  EightPoint::Rays rays1, rays2;
-  for (size_t k = 0; k < sample.size(); ++k) {
+template <typename Solver>
+ModelList<Hypothesis<Solver>, Solver::kMaxModels> InstantiateModels(const MotionProblem& problem,
+                                                                    const Sample& sample) {
+  typename Solver::Rays rays1, rays2;
+  for (size_t k = 0; k < rays1.size(); ++k) {
     const Correspondence& match = problem.matches[static_cast<size_t>(sample[k])];
     rays1[k] = problem.camera1.Ray(match.x1_px);
     rays2[k] = problem.camera2.Ray(match.x2_px);
   }
-  const std::optional<LinearModel> linear = EightPoint::Solve(rays1, rays2);
-  if (!linear) return std::nullopt;
-
-  Hypothesis hypothesis;
-  hypothesis.sample = sample;
-  hypothesis.linear = *linear;
-  hypothesis.projection = ProjectToEssential(Matricize(linear->f));
-  if (!hypothesis.projection.DeterminesDirection()) return std::nullopt;
-  hypothesis.pose = PosesFromEssential(hypothesis.projection)[0];
-  hypothesis.F =
-      FundamentalFromEssential(EssentialFromPose(hypothesis.pose), problem.camera1, problem.camera2);
-  return hypothesis;
-}
-
-void PropagateCovariance(const MotionProblem& problem, Hypothesis* hypothesis) {
-  std::array<Correspondence, EightPoint::kSampleSize> sample;
-  for (size_t k = 0; k < sample.size(); ++k) {
-    sample[k] = problem.matches[static_cast<size_t>(hypothesis->sample[k])];
+  ModelList<Hypothesis<Solver>, Solver::kMaxModels> hypotheses;
+  for (const typename Solver::Model& model : Solver::FindModels(rays1, rays2)) {
+    Hypothesis<Solver> hypothesis;
+    hypothesis.id = {sample, hypotheses.count};
+    hypothesis.model = model;
+    hypothesis.projection = ProjectToEssential(Matricize(model.f));
+    if (!hypothesis.projection.DeterminesDirection()) continue;
+    hypothesis.pose = PosesFromEssential(hypothesis.projection)[0];
+    hypothesis.F =
+        FundamentalFromEssential(EssentialFromPose(hypothesis.pose), problem.camera1, problem.camera2);
+    hypotheses.Add(hypothesis);
   }
-  const Eigen::Matrix3d F_of_f =
-      FundamentalFromEssential(Matricize(hypothesis->linear.f), problem.camera1, problem.camera2);
-  hypothesis->f_cov =
-      CovarianceOfF(hypothesis->linear, ConstraintVariances(F_of_f, sample, problem.sigma_px));
-  hypothesis->pose_cov = CovarianceOfMotion(hypothesis->pose, hypothesis->f_cov);
+  return hypotheses;
 }
+
+template <typename Solver>
+std::optional<Hypothesis<Solver>> InstantiateModel(const MotionProblem& problem, const HypothesisId& id) {
+  const auto hypotheses = InstantiateModels<Solver>(problem, id.sample);
+  if (id.model < 0 || id.model >= hypotheses.count) return std::nullopt;
+  return hypotheses.models[static_cast<size_t>(id.model)];
+}
+
+template <typename Solver>
+void PropagateCovariance(const MotionProblem& problem, Hypothesis<Solver>* hypothesis) {
+  constexpr int m = Solver::kSampleSize;
+  const Eigen::Matrix3d F_of_f =
+      FundamentalFromEssential(Matricize(hypothesis->model.f), problem.camera1, problem.camera2);
+  Eigen::Matrix<double, m, 1> D;
+  for (int k = 0; k < m; ++k) {
+    const int index = hypothesis->id.sample[static_cast<size_t>(k)];
+    D(k) = ConstraintVariance(F_of_f, problem.matches[static_cast<size_t>(index)], problem.sigma_px);
+  }
+  hypothesis->f_cov = CovarianceOfF(hypothesis->model.G, D);
+  if constexpr (Hypothesis<Solver>::kHasFactor) {
+    hypothesis->pose_factor.template leftCols<m>() =
+        MotionJacobian(hypothesis->pose) * hypothesis->model.G * D.cwiseSqrt().asDiagonal();
+    hypothesis->pose_cov = hypothesis->pose_factor * hypothesis->pose_factor.transpose();
+  } else {
+    hypothesis->pose_cov = CovarianceOfMotion(hypothesis->pose, hypothesis->f_cov);
+  }
+}
+
+template <typename Solver>
+std::optional<UncertainFundamental> UncertainModelOf(const MotionProblem& problem,
+                                                     const Hypothesis<Solver>& hypothesis) {
+  if constexpr (Hypothesis<Solver>::kHasFactor) {
+    return UncertainFundamental::FromFactor(hypothesis.pose, hypothesis.pose_factor, problem.camera1,
+                                            problem.camera2);
+  } else {
+    return UncertainFundamental::From(hypothesis.pose, hypothesis.pose_cov, problem.camera1, problem.camera2);
+  }
+}
+
+// One line per minimal solver.
+#define RCME_INSTANTIATE_HYPOTHESES_OF(Solver)                                                               \
+  template ModelList<Hypothesis<Solver>, Solver::kMaxModels> InstantiateModels<Solver>(const MotionProblem&, \
+                                                                                       const Sample&);       \
+  template std::optional<Hypothesis<Solver>> InstantiateModel<Solver>(const MotionProblem&,                  \
+                                                                      const HypothesisId&);                  \
+  template void PropagateCovariance<Solver>(const MotionProblem&, Hypothesis<Solver>*);                      \
+  template std::optional<UncertainFundamental> UncertainModelOf<Solver>(const MotionProblem&,                \
+                                                                        const Hypothesis<Solver>&);
+RCME_INSTANTIATE_HYPOTHESES_OF(EightPoint)
+RCME_INSTANTIATE_HYPOTHESES_OF(SevenPoint)
+RCME_INSTANTIATE_HYPOTHESES_OF(FivePoint)
+RCME_INSTANTIATE_HYPOTHESES_OF(OnePoint)
 
 }  // namespace rcme

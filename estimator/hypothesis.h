@@ -1,34 +1,56 @@
+// A model of one iteration, from its sample to its motion and the covariance of that.
 #pragma once
 
 #include <array>
 #include <optional>
 
 #include "estimator/motion_problem.h"
-#include "estimator/solvers/eight_point.h"
-#include "estimator/uncertainty/motion_covariance.h"
+#include "estimator/point_consistency.h"
+#include "estimator/sample.h"
+#include "estimator/solvers/minimal_solver.h"
 
 namespace rcme {
 
-using Sample = std::array<int, EightPoint::kSampleSize>;  // S_j, indices of distinct matches
-
-// The model of one iteration: f_j and p_j, and their covariances once PropagateCovariance has run.
+// f_j and p_j, and their covariances once PropagateCovariance has run.
 //
 // `pose` is one of the four motions of E; which one does not matter to any test in the loop, because all four
 // have the same F up to its sign and the same tangent. Cheirality is decided for the winner alone.
+template <typename SolverT>
 struct Hypothesis {
-  Sample sample{};
-  LinearModel linear;              // f_j (eq::model_instantiate)
-  EssentialProjection projection;  // E nearest to f_j
+  using Solver = SolverT;
+  static constexpr int kSampleSize = Solver::kSampleSize;
+  // At least as many coordinates as equations: Sigma_p comes with a root of its own.
+  static constexpr bool kHasFactor = kSampleSize <= 5;
+
+  HypothesisId id;
+  typename Solver::Model model;    // f_j (eq::model_instantiate)
+  EssentialProjection projection;  // E nearest to f_j; where the case is exact for the motion, of f_j itself
   RelativePose pose;               // p_j (eq::motion_estimate), up to cheirality
   Eigen::Matrix3d F = Eigen::Matrix3d::Zero();
-  Matrix9d f_cov = Matrix9d::Zero();     // Sigma_f
-  Matrix5d pose_cov = Matrix5d::Zero();  // Sigma_p (eq::cov_p)
+  Matrix9d f_cov = Matrix9d::Zero();     // Sigma_f, rank min(kSampleSize, 8)
+  Matrix5d pose_cov = Matrix5d::Zero();  // Sigma_p (eq::cov_p), rank min(kSampleSize, 5)
+  // L = J_p G D^(1/2), L L' = Sigma_p, in its first kSampleSize columns; only where kHasFactor.
+  Matrix5d pose_factor = Matrix5d::Zero();
 };
 
-// f_j and p_j from the sample; nothing if the sample is degenerate.
-std::optional<Hypothesis> InstantiateModel(const MotionProblem& problem, const Sample& sample);
+// f_j and p_j of every model of the sample; none if the sample is degenerate. The k-th has the id (sample,
+// k).
+template <typename Solver>
+ModelList<Hypothesis<Solver>, Solver::kMaxModels> InstantiateModels(const MotionProblem& problem,
+                                                                    const Sample& sample);
+
+// The one of them that `id` names, or nothing.
+template <typename Solver>
+std::optional<Hypothesis<Solver>> InstantiateModel(const MotionProblem& problem, const HypothesisId& id);
 
 // Fills f_cov and pose_cov from the noise of the sample.
-void PropagateCovariance(const MotionProblem& problem, Hypothesis* hypothesis);
+template <typename Solver>
+void PropagateCovariance(const MotionProblem& problem, Hypothesis<Solver>* hypothesis);
+
+// F with its derivatives along the axes of pose_cov, once it is filled. Nothing if it is not finite and
+// positive semi-definite.
+template <typename Solver>
+std::optional<UncertainFundamental> UncertainModelOf(const MotionProblem& problem,
+                                                     const Hypothesis<Solver>& hypothesis);
 
 }  // namespace rcme

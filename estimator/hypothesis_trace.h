@@ -19,15 +19,16 @@ struct HypothesisTrace {
   std::vector<ScoredHypothesis> hypotheses;  // in the order of the loop; empty: refused before it
 };
 
-// Every hypothesis that `search` makes. The decisions of the loop play no part.
+// Every hypothesis that `search` makes of `num_iterations` samples. The decisions of the loop play no part.
 template <typename Search>
 HypothesisTrace TraceHypotheses(int num_iterations, int num_matches, Search& search) {
   HypothesisTrace trace{num_matches, search.thresholds(), {}};
   trace.hypotheses.reserve(static_cast<size_t>(num_iterations));
-  for (int j = 0; j < num_iterations; ++j) {
+  for (int j = 0; j < num_iterations;) {
     ScoredHypothesis hypothesis{search.Next(), {}};
     if (hypothesis.proposal.verdict == SampleVerdict::kConsistent) hypothesis.score = search.Score();
     trace.hypotheses.push_back(hypothesis);
+    j += hypothesis.proposal.is_last;
   }
   return trace;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "estimator/geometry/pose.h"
+#include "estimator/sample.h"
 
 namespace rcme {
 
@@ -30,8 +31,8 @@ const std::vector<MotionStatus>& AllStatuses();
 
 // What the hypothesis loop saw, for diagnosis; counts sum to num_hypotheses.
 struct LoopCounts {
-  int num_hypotheses = 0;             // drawn samples
-  int num_degenerate_samples = 0;     // no model from the sample
+  int num_hypotheses = 0;             // models of the drawn samples; a sample without a model counts as one
+  int num_degenerate_samples = 0;     // no model from the sample, or no covariance of the model
   int num_inconsistent_samples = 0;   // failed the sample test (eq::sample-p-test)
   int num_poor_inlier_sets = 0;       // failed the inlier quality test (eq::inlier-quality-test)
   int num_too_small_inlier_sets = 0;  // failed the size condition (eq:inlier_size_cond)
@@ -48,7 +49,8 @@ struct MotionEstimate {
   Matrix5d pose_cov = Matrix5d::Zero();  // 5x5 [rotation, direction], rad^2
   std::vector<int> inliers;              // indices of the matches consistent with the motion, ascending
 
-  // The selected hypothesis j, before refinement.
+  // The selected hypothesis j, before refinement. Estimators without samples leave the sample empty.
+  HypothesisId hypothesis;
   RelativePose initial_pose;
   int num_support = 0;        // n_j
   double mean_entropy = 0.0;  // psi_j

@@ -55,6 +55,28 @@ Eigen::Matrix<double, 4, 3> ComplementOf(const Eigen::Vector4d& u) {
   return reflection.rightCols<3>();
 }
 
+// The derivatives of E along the columns of L.
+std::array<Eigen::Matrix3d, 5> TangentAlong(const RelativePose& pose, const Matrix5d& L) {
+  const std::array<Eigen::Matrix3d, 5> dE = EssentialTangent(pose);
+  std::array<Eigen::Matrix3d, 5> along;
+  for (int k = 0; k < 5; ++k) {
+    Eigen::Matrix3d& sum = along[static_cast<size_t>(k)];
+    sum = Eigen::Matrix3d::Zero();
+    for (int l = 0; l < 5; ++l) sum += L(l, k) * dE[static_cast<size_t>(l)];
+  }
+  return along;
+}
+
+UncertainFundamental FundamentalWith(const std::array<Eigen::Matrix3d, 5>& dE, const RelativePose& pose,
+                                     const Camera& camera1, const Camera& camera2) {
+  UncertainFundamental model;
+  model.F = FundamentalFromEssential(EssentialFromPose(pose), camera1, camera2);
+  for (size_t k = 0; k < 5; ++k) {
+    model.dF_whitened[k] = FundamentalFromEssential(dE[k], camera1, camera2);
+  }
+  return model;
+}
+
 }  // namespace
 
 std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose& pose,
@@ -62,16 +84,7 @@ std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose
   if (!pose_cov.allFinite()) return std::nullopt;
   const std::optional<Matrix5d> root = SquareRootOf(pose_cov);
   if (!root) return std::nullopt;
-  const Matrix5d& L = *root;
-
-  const std::array<Eigen::Matrix3d, 5> dE = EssentialTangent(pose);
-  std::array<Eigen::Matrix3d, 5> whitened;
-  for (int k = 0; k < 5; ++k) {
-    Eigen::Matrix3d& sum = whitened[static_cast<size_t>(k)];
-    sum = Eigen::Matrix3d::Zero();
-    for (int l = 0; l < 5; ++l) sum += L(l, k) * dE[static_cast<size_t>(l)];
-  }
-  return whitened;
+  return TangentAlong(pose, *root);
 }
 
 std::optional<UncertainFundamental> UncertainFundamental::From(const RelativePose& pose,
@@ -79,12 +92,14 @@ std::optional<UncertainFundamental> UncertainFundamental::From(const RelativePos
                                                                const Camera& camera1, const Camera& camera2) {
   const std::optional<std::array<Eigen::Matrix3d, 5>> dE = WhitenedTangent(pose, pose_cov);
   if (!dE) return std::nullopt;
-  UncertainFundamental model;
-  model.F = FundamentalFromEssential(EssentialFromPose(pose), camera1, camera2);
-  for (size_t k = 0; k < 5; ++k) {
-    model.dF_whitened[k] = FundamentalFromEssential((*dE)[k], camera1, camera2);
-  }
-  return model;
+  return FundamentalWith(*dE, pose, camera1, camera2);
+}
+
+std::optional<UncertainFundamental> UncertainFundamental::FromFactor(const RelativePose& pose,
+                                                                     const Matrix5d& L, const Camera& camera1,
+                                                                     const Camera& camera2) {
+  if (!L.allFinite()) return std::nullopt;
+  return FundamentalWith(TangentAlong(pose, L), pose, camera1, camera2);
 }
 
 double KnownPoseTest::Distance(const Correspondence& match, PointResidual* residual) const {

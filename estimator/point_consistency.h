@@ -36,6 +36,9 @@ struct UncertainFundamental {
   // Nothing if pose_cov is not finite and positive semi-definite.
   static std::optional<UncertainFundamental> From(const RelativePose& pose, const Matrix5d& pose_cov,
                                                   const Camera& camera1, const Camera& camera2);
+  // Of the covariance L L' (5x5, of any rank), along the columns of L. Nothing if L is not finite.
+  static std::optional<UncertainFundamental> FromFactor(const RelativePose& pose, const Matrix5d& L,
+                                                        const Camera& camera1, const Camera& camera2);
 };
 
 // The residual of one match in the one dimension it has: squared Sampson distance g^2 / |J|^2 and the
@@ -56,6 +59,8 @@ class KnownPoseTest {
  public:
   static constexpr bool kNeedsCovariance = false;
   static constexpr int kDegreesOfFreedom = 1;
+  static constexpr int SampleTestDof(int solver_dof) { return solver_dof; }
+  static constexpr bool kScoresExactFits = true;
   KnownPoseTest(const Eigen::Matrix3d& F, double sigma_px) : F_(F), sigma2_(sigma_px * sigma_px) {}
   double Distance(const Correspondence& match, PointResidual* residual) const;
   double Entropy(const PointResidual&) const { return 0.0; }                // excess of an exact motion
@@ -70,6 +75,10 @@ class AsPrintedTest {
  public:
   static constexpr bool kNeedsCovariance = true;
   static constexpr int kDegreesOfFreedom = 3;  // the paper's "4 - 1"
+  // Each point of the sample has its own 3, unless its motion fits it perfectly.
+  static constexpr int SampleTestDof(int solver_dof) { return solver_dof == 0 ? 0 : kDegreesOfFreedom; }
+  // The entropy holds 3 log|g|: of a point that the model fits by construction rounding alone would say it.
+  static constexpr bool kScoresExactFits = false;
   AsPrintedTest(const UncertainFundamental& model, double sigma_px);
 
   // Closed form, see the source; a singular Sigma_delta gives d2 = infinity: nothing can be said for the
@@ -94,6 +103,8 @@ class RankAwareTest {
  public:
   static constexpr bool kNeedsCovariance = true;
   static constexpr int kDegreesOfFreedom = 1;
+  static constexpr int SampleTestDof(int solver_dof) { return solver_dof; }
+  static constexpr bool kScoresExactFits = true;
   RankAwareTest(const UncertainFundamental& model, double sigma_px)
       : model_(model), sigma2_(sigma_px * sigma_px), log_sigma2_(std::log(sigma2_)) {}
 

@@ -8,14 +8,14 @@
 
 namespace rcme {
 
-// Of the hypotheses of one problem, by sample: the estimate from each, whatever the others are.
-using Refinements = std::map<Sample, MotionEstimate>;
+// Of the hypotheses of one problem: the estimate from each, whatever the others are.
+using Refinements = std::map<HypothesisId, MotionEstimate>;
 
 // An estimator whose loop can be taken apart: make and score the hypotheses, decide, finish. Whatever the
 // options, Estimate(problem, rng) is Finish(problem, Decide(Trace(problem, rng)), &refinements).
 //
 // Decide is the cheap part. The trace of one estimator may be decided by another whose options differ in
-// those of kDecisionOptions alone, as long as the trace has at least num_iterations hypotheses and, where
+// those of kDecisionOptions alone, as long as the trace has at least num_iterations samples and, where
 // likelihood selects, was made by an estimator that selects by likelihood too. They may share the refinements
 // of a problem as well.
 class RansacEstimator : public MotionEstimator {

@@ -1,8 +1,11 @@
 #include "estimator/ransac_options.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
+#include "estimator/solvers/solver_table.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -18,12 +21,21 @@ double RansacOptions::SampleLevelOrDefault() const {
 
 namespace {
 
+bool HasFast(MinimalSolver solver) {
+  return VisitSolver(solver, []<typename Solver>(std::type_identity<Solver>) { return kHasFast<Solver>; });
+}
+
 double LevelOrDefault(double level, Reading reading) {
   if (!std::isnan(level)) return level;
   return reading == Reading::kAsPrinted ? 1.0 : 0.001;
 }
 
 }  // namespace
+
+bool RansacOptions::IsFast() const {
+  return implementation == Implementation::kFast ||
+         (implementation == Implementation::kAutomatic && HasFast(solver));
+}
 
 double RansacOptions::ObservabilityLevelOrDefault() const {
   return LevelOrDefault(observability_significance_level, reading);
@@ -35,7 +47,9 @@ double RansacOptions::ChanceLevelOrDefault() const {
 
 std::vector<Parameter> Parameters(RansacOptions& o) {
   return {
-      Parameter::Integer("num_iterations", &o.num_iterations, {1, 1e6}, "hypotheses N of Algorithm 1"),
+      Parameter::Choice<MinimalSolver>("solver", &o.solver, SolverNames(),
+                                       "matches of a sample -> motion; one_point: a car on a plane"),
+      Parameter::Integer("num_iterations", &o.num_iterations, {1, 1e6}, "samples N of Algorithm 1"),
       Parameter::Real("significance_level", &o.significance_level, {1e-9, 0.5}, "",
                       "alpha of the tests of the loop, and of which matches agree with the refined motion"),
       Parameter::Real("lambda", &o.lambda, {0.0, 1.0}, "", "least inlier share as a fraction of omega_p"),
@@ -52,9 +66,11 @@ std::vector<Parameter> Parameters(RansacOptions& o) {
           "adjustment)"),
       Parameter::Choice<Implementation>(
           "implementation", &o.implementation,
-          {{"fast", Implementation::kFast}, {"reference", Implementation::kReference}},
-          "vectorised, or the same mathematics one match at a time: an independent check, hundreds "
-          "of times slower"),
+          {{"automatic", Implementation::kAutomatic},
+           {"fast", Implementation::kFast},
+           {"reference", Implementation::kReference}},
+          "fast: vectorised, of eight_point and five_point; reference: the same mathematics one match at a "
+          "time, an independent check, hundreds of times slower; automatic: fast where there is one"),
       Parameter::Integer("num_refined", &o.num_refined, {1, 1000},
                          "number of top candidates refined; the motion that explains the most matches wins"),
       Parameter::Real("least_explained_share", &o.least_explained_share, {0.0, 1.0}, "",
@@ -111,6 +127,14 @@ std::vector<Parameter> MotionTestParameters(RansacOptions& o, bool depend_on_rea
 }
 
 void Validate(const RansacOptions& options) {
+  if (options.implementation == Implementation::kFast && !HasFast(options.solver)) {
+    std::string solvers;
+    for (const auto& [name, solver] : SolverNames()) {
+      if (HasFast(solver)) solvers += (solvers.empty() ? "" : ", ") + name;
+    }
+    throw InputError(fmt::format(
+        "implementation: 'fast' exists for the solvers {} alone; say automatic or reference", solvers));
+  }
   if (options.selection == Selection::kPredictiveLikelihood && options.reading == Reading::kAsPrinted) {
     throw InputError(
         "selection: 'predictive_likelihood' needs reading: rank_aware (as printed, the residual has no "

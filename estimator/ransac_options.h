@@ -12,7 +12,7 @@ enum class Reading {
   kAsPrinted,  // full 4x4 inverse, chi2_3, entropy of a 4-dimensional Gaussian; each sample point tested on
                // its own
   kRankAware,  // the residual has one dimension: chi2_1, entropy of that dimension; the sample tested
-               // jointly, chi2_3
+               // jointly, chi2 with the solver's kSampleTestDof (three of eight points)
 };
 
 // When H0 "psi > mu" is rejected (eq::inlier-quality-test).
@@ -40,16 +40,26 @@ enum class RefinementError {
   kReprojection,  // reprojection error, over the motion and one point per match: bundle adjustment
 };
 
+// What makes the hypotheses: matches of a sample -> F -> motion (solvers/minimal_solver.h).
+enum class MinimalSolver {
+  kEightPoint,  // the paper's: linear, one model
+  kSevenPoint,  // F of rank 2, up to three
+  kFivePoint,   // essential matrices, up to ten
+  kOnePoint,    // a car on a plane, one; cameras upright (solvers/one_point.h)
+};
+
 // Two implementations of the same mathematics; they agree to rounding.
 enum class Implementation {
-  kFast,       // eight hypotheses, eight matches at a time, closed forms: kernels/
+  kAutomatic,  // fast where the solver has it, else reference
+  kFast,       // eight hypotheses, eight matches at a time, closed forms: kernels/; of eight and five points
   kReference,  // one by one, small matrices: the oracle of the tests
 };
 
 // Options of the loop and the refinement of the RANSAC family (standard, prcme, rcme), each of which shows
 // those that have an effect on it. Defaults are the paper's where it gives a value.
 struct RansacOptions {
-  int num_iterations = 200;          // N; fewer only where early_stop_entropy stops the loop
+  MinimalSolver solver = MinimalSolver::kEightPoint;
+  int num_iterations = 200;          // N samples; fewer only where early_stop_entropy stops the loop
   double significance_level = 0.05;  // alpha of every test, the sample test's unless that has its own
   double sample_significance_level = std::numeric_limits<double>::quiet_NaN();  // NaN: significance_level
   Reading reading = Reading::kAsPrinted;
@@ -61,7 +71,7 @@ struct RansacOptions {
   double early_stop_entropy = std::numeric_limits<double>::quiet_NaN();  // NaN: off
   Refinement refinement = Refinement::kRobust;
   RefinementError refinement_error = RefinementError::kSampson;
-  Implementation implementation = Implementation::kFast;
+  Implementation implementation = Implementation::kAutomatic;
   int num_refined = 1;  // number of top candidates refined; the one that explains most matches wins
   double least_explained_share = 0.0;  // of the matches, by the refined motion; less is refused
   // Significance levels of the tests that may refuse the refined motion: the greatest probability of an
@@ -76,6 +86,7 @@ struct RansacOptions {
   // with no more failures.
   double MuOrDefault() const;
   double SampleLevelOrDefault() const;
+  bool IsFast() const;  // what implementation says, decided
   double ObservabilityLevelOrDefault() const;
   double ChanceLevelOrDefault() const;
 };

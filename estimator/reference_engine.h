@@ -7,11 +7,12 @@ namespace rcme {
 
 // `implementation: reference`, all of it one sample and one match at a time: the oracle of
 // kernels/fast_engine.h, with no code of the kernels in it. See run_pipeline.h.
-template <typename Pipeline>
+template <typename Pipeline, typename SolverT>
 struct ReferenceEngine {
+  using Solver = SolverT;
   ReferenceEngine(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
       : search(problem, options, rng), matches(problem, options.refinement_error) {}
-  ReferenceSearch<Pipeline> search;
+  ReferenceSearch<Pipeline, Solver> search;
   ReferenceMatches matches;
 };
 

@@ -2,20 +2,29 @@
 // kernels/block_search.h.
 #pragma once
 
+#include <algorithm>
+
 #include "estimator/hypothesis.h"
 #include "estimator/point_consistency.h"
 #include "estimator/ransac_loop.h"
 
 namespace rcme {
 
-// Inliers and their scores, all matches (eq::find-inlier, eq::score-inliers).
+// Whether the matches of the sample are left out of the score: "the rest of the inputs" (Sec. Find inliers),
+// where the model fits them by construction and the score of that means nothing.
+template <typename Solver, typename PointTest>
+inline constexpr bool kScoresTheRest = Solver::kSampleTestDof == 0 && !PointTest::kScoresExactFits;
+
+// Inliers and their scores, all matches but those `left_out` (eq::find-inlier, eq::score-inliers).
 template <typename PointTest>
-InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, const Thresholds& thresholds) {
+InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, const Thresholds& thresholds,
+                         const Sample& left_out = {}) {
   InlierScore score;
-  for (const Correspondence& match : problem.matches) {
+  for (size_t i = 0; i < problem.matches.size(); ++i) {
+    if (std::find(left_out.begin(), left_out.end(), static_cast<int>(i)) != left_out.end()) continue;
     PointResidual residual;
     double cost = thresholds.outlier_cost;
-    const double d2 = test.Distance(match, &residual);
+    const double d2 = test.Distance(problem.matches[i], &residual);
     if (d2 <= thresholds.point) score.AddInlier(test.Entropy(residual));
     if (d2 < 2.0 * cost) cost = std::min(cost, test.NegativeLogLikelihood(residual));
     score.negative_log_likelihood += cost;
@@ -23,34 +32,54 @@ InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, co
   return score;
 }
 
-template <typename Pipeline>
+template <typename Pipeline, typename Solver>
 class ReferenceSearch {
  public:
   using PointTest = typename Pipeline::PointTest;
+  static constexpr bool kTestsSample = Pipeline::kTestsSample && Solver::kSampleTestDof > 0;
 
   ReferenceSearch(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
       : problem_(problem),
-        thresholds_(Thresholds::For(problem, options, PointTest::kDegreesOfFreedom)),
+        thresholds_(Thresholds::For(problem, options, PointTest::kDegreesOfFreedom,
+                                    PointTest::SampleTestDof(Solver::kSampleTestDof))),
         rng_(rng) {}
 
   const Thresholds& thresholds() const { return thresholds_; }
 
   Proposal Next() {
-    Proposal proposal{DrawSample(static_cast<int>(problem_.matches.size()), rng_)};
-    hypothesis_ = InstantiateModel(problem_, proposal.sample);
-    if (!hypothesis_) return proposal;
-    test_ = MakePointTest(&*hypothesis_);
+    if (++model_ >= hypotheses_.count) {
+      const auto num_matches = static_cast<int>(problem_.matches.size());
+      const Sample sample = DrawSample(Solver::kSampleSize, num_matches, rng_);
+      hypotheses_ = InstantiateModels<Solver>(problem_, sample);
+      model_ = 0;
+      if (hypotheses_.count == 0) return {{sample}};
+    }
+    Hypothesis<Solver>& hypothesis = hypotheses_.models[static_cast<size_t>(model_)];
+    Proposal proposal{hypothesis.id, SampleVerdict::kDegenerate, model_ + 1 == hypotheses_.count};
+    test_ = MakePointTest(&hypothesis);
     if (!test_) return proposal;
-    const bool agrees = Pipeline::SampleIsConsistent(problem_, *hypothesis_, *test_, thresholds_);
+    bool agrees = true;
+    if constexpr (kTestsSample) {
+      agrees = Pipeline::SampleIsConsistent(problem_, hypothesis, *test_, thresholds_);
+    }
     proposal.verdict = agrees ? SampleVerdict::kConsistent : SampleVerdict::kInconsistent;
     return proposal;
   }
 
-  InlierScore Score() { return ScoreInliers(problem_, *test_, thresholds_); }
+  InlierScore Score() {
+    if constexpr (kScoresTheRest<Solver, PointTest>) {
+      return ScoreInliers(problem_, *test_, thresholds_, hypotheses_.models[0].id.sample);
+    }
+    return ScoreInliers(problem_, *test_, thresholds_);
+  }
 
-  // The inliers of a sample's hypothesis, ascending.
-  std::vector<int> FindSupport(const Sample& sample) const {
-    Hypothesis hypothesis = InstantiateModel(problem_, sample).value();
+  std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id) const {
+    return InstantiateModel<Solver>(problem_, id);
+  }
+
+  // The inliers of a hypothesis, ascending.
+  std::vector<int> FindSupport(const HypothesisId& id) const {
+    Hypothesis<Solver> hypothesis = FindHypothesis(id).value();
     const PointTest test = MakePointTest(&hypothesis).value();
     std::vector<int> inliers;
     for (size_t i = 0; i < problem_.matches.size(); ++i) {
@@ -63,13 +92,12 @@ class ReferenceSearch {
 
  private:
   // Sigma_p propagated and the point test built on it; nothing if the covariance is not finite.
-  std::optional<PointTest> MakePointTest(Hypothesis* hypothesis) const {
+  std::optional<PointTest> MakePointTest(Hypothesis<Solver>* hypothesis) const {
     if constexpr (!PointTest::kNeedsCovariance) {
       return PointTest(hypothesis->F, problem_.sigma_px);
     } else {
       PropagateCovariance(problem_, hypothesis);
-      const std::optional<UncertainFundamental> model = UncertainFundamental::From(
-          hypothesis->pose, hypothesis->pose_cov, problem_.camera1, problem_.camera2);
+      const std::optional<UncertainFundamental> model = UncertainModelOf(problem_, *hypothesis);
       if (!model) return std::nullopt;
       return PointTest(*model, problem_.sigma_px);
     }
@@ -78,7 +106,8 @@ class ReferenceSearch {
   const MotionProblem& problem_;
   Thresholds thresholds_;
   RandomStream& rng_;
-  std::optional<Hypothesis> hypothesis_;  // of the last proposal
+  ModelList<Hypothesis<Solver>, Solver::kMaxModels> hypotheses_;  // of the last sample
+  int model_ = 0;                                                 // of the last proposal
   std::optional<PointTest> test_;
 };
 

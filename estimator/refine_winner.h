@@ -82,8 +82,8 @@ Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& su
   return fit;
 }
 
-template <typename Matches>
-Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis* winner,
+template <typename Matches, typename Solver>
+Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis<Solver>* winner,
                     const typename Matches::Set& support) {
   switch (refinement) {
     case Refinement::kMle:
@@ -94,7 +94,7 @@ Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis* w
       break;
   }
   PropagateCovariance(matches.problem(), winner);
-  std::vector<int> sample(winner->sample.begin(), winner->sample.end());
+  std::vector<int> sample(winner->id.sample.begin(), winner->id.sample.end());
   std::sort(sample.begin(), sample.end());
   return {{true, winner->pose, winner->pose_cov, 0}, matches.SetOf(sample)};
 }
@@ -104,18 +104,19 @@ std::string SuccessMessage(int num_inliers, int num_matches);
 
 // Refines the winner's motion over its inlier set `support`, and fills motion, covariance, final inliers, the
 // kappa flag and the status. The final inliers are the matches that agree with the refined motion
-// (rank-aware, its covariance included).
-template <typename Matches>
-void RefineWinner(const Matches& matches, const RansacOptions& options, const Sample& sample,
-                  const typename Matches::Set& support, MotionEstimate* estimate) {
-  const std::optional<Hypothesis> instantiated = InstantiateModel(matches.problem(), sample);
-  if (!instantiated) {  // on the border of what has a model: the loop's arithmetic found one, this one does
-                        // not
+// (rank-aware, its covariance included). Whatever the minimal solver, the refinement moves all five degrees
+// of freedom; without one, motion and covariance are the hypothesis's own.
+template <typename Matches, typename Solver>
+void RefineWinner(const Matches& matches, const RansacOptions& options,
+                  const std::optional<Hypothesis<Solver>>& hypothesis, const typename Matches::Set& support,
+                  MotionEstimate* estimate) {
+  if (!hypothesis) {  // on the border of what has a model: the loop's arithmetic found one, this one does
+                      // not
     estimate->status = MotionStatus::kRefinementDiverged;
     estimate->message = "the selected sample is degenerate within rounding error";
     return;
   }
-  Hypothesis winner = *instantiated;
+  Hypothesis<Solver> winner = *hypothesis;
   winner.pose = matches.SelectPose(winner.projection, support);
   estimate->initial_pose = winner.pose;
   const Fit<Matches> fit = Refine(matches, options.refinement, &winner, support);

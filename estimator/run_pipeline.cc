@@ -2,17 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "estimator/problem_check.h"
-
 namespace rcme {
-
-std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem) {
-  return RefuseUnsolvable(problem, EightPoint::kSampleSize);
-}
 
 MotionEstimate EstimateFromCandidate(const LoopCounts& counts, const Candidate& candidate) {
   MotionEstimate estimate;
   estimate.counts = counts;
+  estimate.hypothesis = candidate.id;
   estimate.num_support = candidate.score.num_inliers;
   estimate.mean_entropy = candidate.score.mean_entropy;
   estimate.z_statistic = candidate.z_statistic;

@@ -5,14 +5,12 @@
 #pragma once
 
 #include "estimator/hypothesis_trace.h"
+#include "estimator/problem_check.h"
 #include "estimator/ransac_estimator.h"
 #include "estimator/reference_engine.h"
 #include "estimator/refine_winner.h"
 
 namespace rcme {
-
-// The check before any hypothesis is drawn; a refusal, or nothing.
-std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem);
 
 // What the loop says of a candidate.
 MotionEstimate EstimateFromCandidate(const LoopCounts& counts, const Candidate& candidate);
@@ -23,13 +21,20 @@ MotionEstimate RefusalFromLoop(const LoopCounts& counts);
 // Refuses an estimate that explains too few of `num_matches`.
 void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEstimate* estimate);
 
+// The check before any hypothesis is drawn; a refusal, or nothing. The points of one image must not lie on
+// one line whatever the solver: the refinement moves all five degrees of freedom.
+template <typename Engine>
+std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem) {
+  return RefuseUnsolvable(problem, Engine::Solver::kSampleSize);
+}
+
 // The estimate from one candidate, before others are looked at.
 template <typename Engine>
 MotionEstimate RefineCandidate(Engine& engine, const RansacOptions& options, const LoopCounts& counts,
                                const Candidate& candidate) {
   MotionEstimate estimate = EstimateFromCandidate(counts, candidate);
-  RefineWinner(engine.matches, options, candidate.sample, engine.search.FindSupport(candidate.sample),
-               &estimate);
+  RefineWinner(engine.matches, options, engine.search.FindHypothesis(candidate.id),
+               engine.search.FindSupport(candidate.id), &estimate);
   return estimate;
 }
 
@@ -48,9 +53,9 @@ MotionEstimate FinishLoop(const RansacOptions& options, int num_matches, const L
   return best;
 }
 
-template <typename Pipeline, typename Engine = ReferenceEngine<Pipeline>>
+template <typename Pipeline, typename Engine>
 MotionEstimate RunPipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-  if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop(problem)) return *refusal;
+  if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
   Engine engine(problem, options, rng);
   const auto num_matches = static_cast<int>(problem.matches.size());
   const LoopResult loop = RunRansacLoop<Pipeline>(options, num_matches, engine.search);
@@ -61,7 +66,7 @@ MotionEstimate RunPipeline(const MotionProblem& problem, const RansacOptions& op
 
 template <typename Engine>
 HypothesisTrace TracePipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-  if (RefuseBeforeLoop(problem)) return {};
+  if (RefuseBeforeLoop<Engine>(problem)) return {};
   Engine engine(problem, options, rng);
   return TraceHypotheses(options.num_iterations, static_cast<int>(problem.matches.size()), engine.search);
 }
@@ -71,15 +76,15 @@ template <typename Engine>
 MotionEstimate FinishPipeline(const MotionProblem& problem, const RansacOptions& options,
                               const LoopResult& loop, Refinements* refinements) {
   if (!loop.winner) {
-    if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop(problem)) return *refusal;
+    if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
   }
   RandomStream no_samples({0, 0, 0, 0});
   std::optional<Engine> engine;  // made when the first refinement is missing
   const auto refine = [&](const Candidate& candidate) {
-    const auto known = refinements->find(candidate.sample);
+    const auto known = refinements->find(candidate.id);
     if (known == refinements->end()) {
       if (!engine) engine.emplace(problem, options, no_samples);
-      return (*refinements)[candidate.sample] = RefineCandidate(*engine, options, loop.counts, candidate);
+      return (*refinements)[candidate.id] = RefineCandidate(*engine, options, loop.counts, candidate);
     }
     MotionEstimate estimate = known->second;
     estimate.counts = loop.counts;  // these two depend on how the loop decided

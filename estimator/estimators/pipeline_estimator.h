@@ -3,10 +3,11 @@
 #include "estimator/kernels/fast_engine.h"
 #include "estimator/ransac_estimator.h"
 #include "estimator/run_pipeline.h"
+#include "estimator/solvers/solver_table.h"
 
 namespace rcme {
 
-// The estimator of a pipeline (ransac_loop.h) in one implementation.
+// The estimator of a pipeline (ransac_loop.h) with one minimal solver in one implementation.
 template <typename Pipeline, typename Engine>
 class PipelineEstimator : public RansacEstimator {
  public:
@@ -36,14 +37,21 @@ class PipelineEstimator : public RansacEstimator {
   RansacOptions options_;
 };
 
-// Throws InputError if the options contradict each other.
+// The estimator of a pipeline with the solver and the implementation of the options. Throws InputError if the
+// options contradict each other.
 template <typename Pipeline>
 std::unique_ptr<RansacEstimator> MakePipelineEstimator(const RansacOptions& options) {
   Validate(options);
-  if (options.implementation == Implementation::kReference) {
-    return std::make_unique<PipelineEstimator<Pipeline, ReferenceEngine<Pipeline>>>(options);
-  }
-  return std::make_unique<PipelineEstimator<Pipeline, FastEngine<Pipeline>>>(options);
+  return VisitSolver(options.solver, [&]<typename Solver>(std::type_identity<Solver>) {
+    std::unique_ptr<RansacEstimator> estimator;
+    if constexpr (kHasFast<Solver>) {
+      using Engine = FastEngine<Pipeline, Solver>;
+      if (options.IsFast()) estimator = std::make_unique<PipelineEstimator<Pipeline, Engine>>(options);
+    }
+    using Engine = ReferenceEngine<Pipeline, Solver>;
+    if (!estimator) estimator = std::make_unique<PipelineEstimator<Pipeline, Engine>>(options);
+    return estimator;
+  });
 }
 
 }  // namespace rcme

@@ -10,16 +10,18 @@ namespace {
 // Each sample point on its own, as printed (eq::sample-p-test).
 struct PerPointSampleTest {
   static constexpr bool kTestsSample = true;
-  static bool Passes(const MotionProblem& problem, const Hypothesis& hypothesis, const AsPrintedTest& test,
-                     const Thresholds& thresholds) {
+  template <typename Solver>
+  static bool Passes(const MotionProblem& problem, const Hypothesis<Solver>& hypothesis,
+                     const AsPrintedTest& test, const Thresholds& thresholds) {
     return EverySamplePointFits(problem, hypothesis, test, thresholds.sample);
   }
 };
 
-// The sample's three constraints on the motion jointly, rank-aware.
+// What the sample has of constraints beyond the motion's five, jointly, rank-aware.
 struct JointSampleTest {
   static constexpr bool kTestsSample = true;
-  static bool Passes(const MotionProblem&, const Hypothesis& hypothesis, const RankAwareTest&,
+  template <typename Solver>
+  static bool Passes(const MotionProblem&, const Hypothesis<Solver>& hypothesis, const RankAwareTest&,
                      const Thresholds& thresholds) {
     return JointSampleStatistic(hypothesis) <= thresholds.sample;
   }
@@ -28,17 +30,14 @@ struct JointSampleTest {
 // pRCME: no sample test.
 struct NoSampleTest {
   static constexpr bool kTestsSample = false;
-  template <typename PointTest>
-  static bool Passes(const MotionProblem&, const Hypothesis&, const PointTest&, const Thresholds&) {
-    return true;
-  }
 };
 
 template <typename PointTestT, typename SampleTestT>
 struct RcmePipeline {
   using PointTest = PointTestT;
   static constexpr bool kTestsSample = SampleTestT::kTestsSample;
-  static bool SampleIsConsistent(const MotionProblem& problem, const Hypothesis& hypothesis,
+  template <typename Solver>
+  static bool SampleIsConsistent(const MotionProblem& problem, const Hypothesis<Solver>& hypothesis,
                                  const PointTest& test, const Thresholds& thresholds) {
     return SampleTestT::Passes(problem, hypothesis, test, thresholds);
   }

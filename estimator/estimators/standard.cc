@@ -9,10 +9,6 @@ namespace {
 struct StandardPipeline {
   using PointTest = KnownPoseTest;
   static constexpr bool kTestsSample = false;
-  static bool SampleIsConsistent(const MotionProblem&, const Hypothesis&, const PointTest&,
-                                 const Thresholds&) {
-    return true;
-  }
   static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
   static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
     return a.num_inliers > b.num_inliers;

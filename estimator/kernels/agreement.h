@@ -2,6 +2,7 @@
 // refinement/fit_set.h and geometry/triangulation.h, many matches at a time.
 #pragma once
 
+#include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/match_blocks.h"
 #include "estimator/kernels/score.h"
 

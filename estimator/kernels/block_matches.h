@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/match_blocks.h"
 #include "estimator/kernels/score.h"
 #include "estimator/ransac_options.h"

@@ -5,44 +5,55 @@
 namespace rcme {
 namespace {
 
-int DegreesOfFreedom(BlockSearch::Reading reading) {
+// Degrees of freedom of the point test and of the sample test.
+struct TestDof {
+  int point, sample;
+};
+
+template <typename PointTest>
+TestDof DofOf(int solver_dof) {
+  return {PointTest::kDegreesOfFreedom, PointTest::SampleTestDof(solver_dof)};
+}
+
+TestDof DegreesOfFreedom(BlockReading reading, int solver_dof) {
   switch (reading) {
-    case BlockSearch::Reading::kAsPrinted:
-      return AsPrintedTest::kDegreesOfFreedom;
-    case BlockSearch::Reading::kRankAware:
-      return RankAwareTest::kDegreesOfFreedom;
-    case BlockSearch::Reading::kKnownPose:
+    case BlockReading::kAsPrinted:
+      return DofOf<AsPrintedTest>(solver_dof);
+    case BlockReading::kRankAware:
+      return DofOf<RankAwareTest>(solver_dof);
+    case BlockReading::kKnownPose:
       break;
   }
-  return KnownPoseTest::kDegreesOfFreedom;
+  return DofOf<KnownPoseTest>(solver_dof);
 }
 
 }  // namespace
 
-BlockSearch::BlockSearch(const MotionProblem& problem, const MatchBlocks& matches,
-                         const RansacOptions& options, const Tests& tests, RandomStream& rng)
-    : matches_(matches),
-      tests_(tests),
-      thresholds_(Thresholds::For(problem, options, DegreesOfFreedom(tests.reading))),
-      rng_(rng),
-      scan_(matches) {
+template <typename Solver>
+BlockSearch<Solver>::BlockSearch(const MotionProblem& problem, const MatchBlocks& matches,
+                                 const RansacOptions& options, const BlockTests& tests, RandomStream& rng)
+    : problem_(problem), matches_(matches), tests_(tests), rng_(rng), scan_(matches) {
+  const TestDof dof = DegreesOfFreedom(tests.reading, Solver::kSampleTestDof);
+  thresholds_ = Thresholds::For(problem, options, dof.point, dof.sample);
+  tests_.tests_sample = tests.tests_sample && Solver::kSampleTestDof > 0;
   // As printed, h is of a 4-dimensional density in px: 1/2 log((2 pi e)^4 det), det in px^8.
-  if (tests.reading == Reading::kAsPrinted) {
+  if (tests.reading == BlockReading::kAsPrinted) {
     entropy_offset_ = AsPrintedTest::EntropyOfLogDeterminant(8.0 * std::log(problem.sigma_px));
   }
 }
 
-void BlockSearch::InstantiateSamples() {
-  const bool needs_misfit = tests_.tests_sample && tests_.reading == Reading::kRankAware;
-  const Spread spread = tests_.reading == Reading::kKnownPose ? Spread::kNone
-                        : needs_misfit                        ? Spread::kCovarianceAndMisfit
-                                                              : Spread::kCovariance;
-  InstantiateModels(matches_, samples_, spread, &block_);
+template <typename Solver>
+Spread BlockSearch<Solver>::SpreadOfModels() const {
+  const bool needs_misfit = tests_.tests_sample && tests_.reading == BlockReading::kRankAware;
+  return tests_.reading == BlockReading::kKnownPose ? Spread::kNone
+         : needs_misfit                             ? Spread::kCovarianceAndMisfit
+                                                    : Spread::kCovariance;
 }
 
-std::uint8_t BlockSearch::FindConsistent() const {
+template <typename Solver>
+std::uint8_t BlockSearch<Solver>::FindConsistent() const {
   if (!tests_.tests_sample) return 0xff;
-  if (tests_.reading == Reading::kAsPrinted) return FindConsistentSamples(block_, thresholds_.sample);
+  if (tests_.reading == BlockReading::kAsPrinted) return FindConsistentSamples(block_, thresholds_.sample);
   unsigned consistent = 0;
   for (int lane = 0; lane < kBlockSize; ++lane) {
     consistent |= static_cast<unsigned>(block_.sample_statistic[lane] <= thresholds_.sample) << lane;
@@ -50,14 +61,14 @@ std::uint8_t BlockSearch::FindConsistent() const {
   return static_cast<std::uint8_t>(consistent);
 }
 
-Proposal BlockSearch::Next() {
+template <typename Solver>
+Proposal BlockSearch<Solver>::Next() {
   if (++lane_ == kBlockSize) {
-    for (Sample& sample : samples_) sample = DrawSample(matches_.num_matches(), rng_);
-    InstantiateSamples();
+    source_.FillNext(matches_, SpreadOfModels(), rng_, &block_, &proposals_);
     is_consistent_ = FindConsistent();
     lane_ = 0;
   }
-  Proposal proposal{samples_[static_cast<size_t>(lane_)]};
+  Proposal proposal = proposals_[static_cast<size_t>(lane_)];
   if (block_.is_model >> lane_ & 1) {
     proposal.verdict =
         is_consistent_ >> lane_ & 1 ? SampleVerdict::kConsistent : SampleVerdict::kInconsistent;
@@ -65,18 +76,25 @@ Proposal BlockSearch::Next() {
   return proposal;
 }
 
-InlierScore BlockSearch::Score() { return ScoreLane(lane_); }
+template <typename Solver>
+InlierScore BlockSearch<Solver>::Score() {
+  const bool scores_the_rest =
+      tests_.reading == BlockReading::kAsPrinted && kScoresTheRest<Solver, AsPrintedTest>;
+  return ScoreLane(lane_, scores_the_rest ? proposals_[static_cast<size_t>(lane_)].id.sample : Sample());
+}
 
-InlierScore BlockSearch::ScoreLane(int lane) {
-  if (tests_.reading == Reading::kKnownPose) {
+template <typename Solver>
+InlierScore BlockSearch<Solver>::ScoreLane(int lane, const Sample& left_out) {
+  if (tests_.reading == BlockReading::kKnownPose) {
     double F[9];
     for (int i = 0; i < 9; ++i) F[i] = block_.F[i][lane];
     ScanKnownPose(matches_, F, thresholds_.point, &scan_);
     return {.num_inliers = scan_.num_inliers};
   }
   const WhitenedModel model(block_, lane);
-  if (tests_.reading == Reading::kAsPrinted) {
+  if (tests_.reading == BlockReading::kAsPrinted) {
     ScanAsPrinted(matches_, model, thresholds_.point, &scan_);
+    RemoveSample(left_out, &scan_);
     return SummarizeEntropies(scan_, entropy_offset_);
   }
   const VariancePolynomial variance(model.dF);
@@ -89,12 +107,15 @@ InlierScore BlockSearch::ScoreLane(int lane) {
   return score;
 }
 
-const MatchMask& BlockSearch::FindSupport(const Sample& sample) {
-  samples_.fill(sample);
-  InstantiateSamples();
-  ScoreLane(0);
+template <typename Solver>
+const MatchMask& BlockSearch<Solver>::FindSupport(const HypothesisId& id) {
+  source_.FillFirst(matches_, SpreadOfModels(), id, &block_);
+  ScoreLane(0, {});
   lane_ = kBlockSize - 1;  // the block holds no proposals any more
   return scan_.inliers;
 }
+
+template class BlockSearch<EightPoint>;
+template class BlockSearch<FivePoint>;
 
 }  // namespace rcme

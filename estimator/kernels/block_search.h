@@ -1,46 +1,57 @@
 // The parts of the hypothesis loop, eight hypotheses and many matches at a time. The same samples, verdicts
-// and scores as reference_search.h, to rounding.
+// and scores as reference_search.h, to rounding. For the solvers of block_source.h.
 #pragma once
 
-#include <array>
+#include <optional>
 
+#include "estimator/hypothesis.h"
+#include "estimator/kernels/block_source.h"
 #include "estimator/kernels/score.h"
 #include "estimator/point_consistency.h"
 #include "estimator/ransac_loop.h"
+#include "estimator/reference_search.h"
 
 namespace rcme {
 
+// What a pipeline's PointTest and kTestsSample ask for.
+enum class BlockReading { kKnownPose, kAsPrinted, kRankAware };
+struct BlockTests {
+  BlockReading reading = BlockReading::kKnownPose;
+  bool tests_sample = false;  // as far as the solver's sample can be tested
+  bool needs_likelihood = false;
+};
+
+template <typename Solver>
 class BlockSearch {
  public:
-  // What a pipeline's PointTest and kTestsSample ask for.
-  enum class Reading { kKnownPose, kAsPrinted, kRankAware };
-  struct Tests {
-    Reading reading = Reading::kKnownPose;
-    bool tests_sample = false;
-    bool needs_likelihood = false;
-  };
-
   BlockSearch(const MotionProblem& problem, const MatchBlocks& matches, const RansacOptions& options,
-              const Tests& tests, RandomStream& rng);
+              const BlockTests& tests, RandomStream& rng);
 
   const Thresholds& thresholds() const { return thresholds_; }
   Proposal Next();
   InlierScore Score();
 
-  // The inliers of a sample's hypothesis.
-  const MatchMask& FindSupport(const Sample& sample);
+  // The model of a hypothesis in the arithmetic of the reference: what follows the loop goes on from it.
+  std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id) const {
+    return InstantiateModel<Solver>(problem_, id);
+  }
+  // The inliers of a hypothesis.
+  const MatchMask& FindSupport(const HypothesisId& id);
 
  private:
-  void InstantiateSamples();
+  Spread SpreadOfModels() const;
   std::uint8_t FindConsistent() const;  // lanes of the block whose sample agrees with its model
-  InlierScore ScoreLane(int lane);
+  // The score without the matches `left_out`.
+  InlierScore ScoreLane(int lane, const Sample& left_out);
 
+  const MotionProblem& problem_;
   const MatchBlocks& matches_;
-  Tests tests_;
+  BlockTests tests_;
   Thresholds thresholds_;
   double entropy_offset_ = 0.0;  // of h = log(spread) / 2 + offset
   RandomStream& rng_;
-  std::array<Sample, kBlockSize> samples_{};
+  BlockSource<Solver> source_;
+  ProposalBlock proposals_{};
   HypothesisBlock block_;
   std::uint8_t is_consistent_ = 0;
   int lane_ = kBlockSize - 1;  // of the last proposal

@@ -7,13 +7,14 @@
 namespace rcme {
 
 // `implementation: fast`, eight hypotheses and many matches at a time. See run_pipeline.h.
-template <typename Pipeline>
+template <typename Pipeline, typename SolverT>
 struct FastEngine {
+  using Solver = SolverT;
   using PointTest = typename Pipeline::PointTest;
-  static constexpr BlockSearch::Reading kReading =
-      std::is_same_v<PointTest, KnownPoseTest>   ? BlockSearch::Reading::kKnownPose
-      : std::is_same_v<PointTest, RankAwareTest> ? BlockSearch::Reading::kRankAware
-                                                 : BlockSearch::Reading::kAsPrinted;
+  static constexpr BlockReading kReading = std::is_same_v<PointTest, KnownPoseTest> ? BlockReading::kKnownPose
+                                           : std::is_same_v<PointTest, RankAwareTest>
+                                               ? BlockReading::kRankAware
+                                               : BlockReading::kAsPrinted;
   FastEngine(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
       : blocks(problem),
         search(problem, blocks, options,
@@ -21,7 +22,7 @@ struct FastEngine {
                rng),
         matches(problem, blocks, options.refinement_error) {}
   MatchBlocks blocks;
-  BlockSearch search;
+  BlockSearch<Solver> search;
   BlockMatches matches;
 };
 

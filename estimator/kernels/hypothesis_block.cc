@@ -7,48 +7,20 @@
 #include <hwy/foreach_target.h>
 // The above must come before these.
 #include "estimator/kernels/essential_projection-inl.h"
+#include "estimator/kernels/hypothesis_lanes-inl.h"
 #include "estimator/kernels/lanes-inl.h"
 #include "estimator/kernels/null_vector-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Sigma_p (eq::cov_p) and the misfit's covariance from Sigma_f (eq. 6), without forming Sigma_f.
+// Sigma_p (eq::cov_p) and the misfit's covariance from Sigma_f (eq. 6), without forming Sigma_f. Beside the basis T of the
+// motions (hypothesis_lanes-inl.h) three of the products of the projection span what is normal to the
+// essential matrices:
 //
-// The products u_i v_j' of the projection are an orthonormal basis of the 3x3 matrices. Five of them (and
-// combinations) span the motions, three what is normal to the essential matrices, one is E itself:
-//
-//   T = (u1 v2' - u2 v1') / sqrt(2), u3 v1', u3 v2', u1 v3', u2 v3'
 //   N = (u1 v1' - u2 v2') / sqrt(2), (u1 v2' + u2 v1') / sqrt(2), u3 v3'
 //
 // With delta f = -G n and var n = D, the covariance of the coordinates of delta f is (G'b_i)' D (G'b_j).
-HWY_INLINE void Product(const Vec3& u, const Vec3& v, Vec* b) {
-  const Vec us[] = {u.x, u.y, u.z};
-  for (int i = 0; i < 3; ++i) {
-    b[3 * i] = us[i] * v.x;
-    b[3 * i + 1] = us[i] * v.y;
-    b[3 * i + 2] = us[i] * v.z;
-  }
-}
-HWY_INLINE void SumOfProducts(const Vec3& u, const Vec3& v, const Vec3& s, const Vec3& r, Vec* b) {
-  Product(u, v, b);
-  const Vec ss[] = {s.x, s.y, s.z};
-  for (int i = 0; i < 3; ++i) {
-    b[3 * i] = FusedMulAdd(ss[i], r.x, b[3 * i]);
-    b[3 * i + 1] = FusedMulAdd(ss[i], r.y, b[3 * i + 1]);
-    b[3 * i + 2] = FusedMulAdd(ss[i], r.z, b[3 * i + 2]);
-  }
-}
-
-HWY_INLINE void MotionBasis(const EssentialBasis& e, Vec (&T)[5][9]) {
-  const Vec root_half = Set(0.70710678118654752440);
-  SumOfProducts(Times(e.u[0], root_half), e.v[1], Times(e.u[1], hn::Neg(root_half)), e.v[0], T[0]);
-  Product(e.u[2], e.v[0], T[1]);
-  Product(e.u[2], e.v[1], T[2]);
-  Product(e.u[0], e.v[2], T[3]);
-  Product(e.u[1], e.v[2], T[4]);
-}
-
 HWY_INLINE void NormalBasis(const EssentialBasis& e, Vec (&N)[3][9]) {
   const Vec root_half = Set(0.70710678118654752440);
   const Vec3 u1 = Times(e.u[0], root_half), u2 = Times(e.u[1], root_half);
@@ -95,49 +67,6 @@ HWY_INLINE Vec SquaredMahalanobis(const Vec* m, const Vec (&C)[3][3]) {
   return hn::IfThenElse(is_definite, squared, Set(std::numeric_limits<double>::infinity()));
 }
 
-// The eight samples of some lanes of a block.
-struct SampleLanes {
-  Vec x1[8], y1[8], x2[8], y2[8];
-};
-
-// Matrices in rays to whitened coordinates: entry (i, j) times second[i] first[j].
-struct Whitening {
-  Vec first[3], second[3];
-  explicit Whitening(const RayScale& s)
-      : first{Set(s.x1), Set(s.y1), Set(1.0)}, second{Set(s.x2), Set(s.y2), Set(1.0)} {}
-  Vec operator()(int i, int j, Vec entry) const { return entry * (second[i] * first[j]); }
-};
-
-HWY_INLINE void FillConstraints(const SampleLanes& sample, const Whitening& whitening, Vec (&columns)[8][9]) {
-  for (int k = 0; k < 8; ++k) {
-    const Vec ray1[] = {sample.x1[k] * whitening.first[0], sample.y1[k] * whitening.first[1]};
-    const Vec ray2[] = {sample.x2[k] * whitening.second[0], sample.y2[k] * whitening.second[1]};
-    Vec* column = columns[k];
-    for (int i = 0; i < 2; ++i) {
-      column[3 * i] = ray2[i] * ray1[0];
-      column[3 * i + 1] = ray2[i] * ray1[1];
-      column[3 * i + 2] = ray2[i];
-      column[6 + i] = ray1[i];
-    }
-    column[8] = Set(1.0);
-  }
-}
-
-// D_k = |J|^2 of the sample's constraints under the linear model f.
-HWY_INLINE void ConstraintVariances(const SampleLanes& sample, const Whitening& whitening, const Vec* f,
-                                    Vec* D) {
-  Vec F[9];
-  for (int i = 0; i < 9; ++i) F[i] = whitening(i / 3, i % 3, f[i]);
-  for (int k = 0; k < 8; ++k) {
-    const Vec in_2_x = FusedMulAdd(F[0], sample.x1[k], FusedMulAdd(F[1], sample.y1[k], F[2]));
-    const Vec in_2_y = FusedMulAdd(F[3], sample.x1[k], FusedMulAdd(F[4], sample.y1[k], F[5]));
-    const Vec in_1_x = FusedMulAdd(F[0], sample.x2[k], FusedMulAdd(F[3], sample.y2[k], F[6]));
-    const Vec in_1_y = FusedMulAdd(F[1], sample.x2[k], FusedMulAdd(F[4], sample.y2[k], F[7]));
-    D[k] = FusedMulAdd(in_2_x, in_2_x,
-                       FusedMulAdd(in_2_y, in_2_y, FusedMulAdd(in_1_x, in_1_x, in_1_y * in_1_y)));
-  }
-}
-
 // Covariance of the coordinates of delta f in m vectors b, which are overwritten: (G'b_i)' D (G'b_j), lower
 // triangle.
 template <int m>
@@ -156,34 +85,6 @@ HWY_INLINE void PropagateCovariance(const ConstraintFactors& factors, const Vec*
       }
       cov[row][c] = even + odd;
     }
-  }
-}
-
-// dE along a principal axis with coordinates l in T: with |E|^2 = 2, sqrt(2) sum_c l_c T_c.
-HWY_INLINE void Derivative(const EssentialBasis& e, const Vec* l, Mat3* dE) {
-  const Vec root_two = Set(1.41421356237309504880);
-  const Vec turn = l[0], l1 = root_two * l[1], l2 = root_two * l[2], l3 = root_two * l[3],
-            l4 = root_two * l[4];
-  // Rows in the basis v: u1 (turn v2 + l3 v3), u2 (-turn v1 + l4 v3), u3 (l1 v1 + l2 v2).
-  const Vec3 along1 = Combine(e.v[1], turn, e.v[2], l3);
-  const Vec3 along2 = Combine(e.v[0], hn::Neg(turn), e.v[2], l4);
-  const Vec3 along3 = Combine(e.v[0], l1, e.v[1], l2);
-  const Mat3 u = {{e.u[0], e.u[1], e.u[2]}};
-  const auto row = [&](Vec a, Vec b, Vec c) {
-    const Vec3 two = Combine(along1, a, along2, b);
-    return Vec3{FusedMulAdd(along3.x, c, two.x), FusedMulAdd(along3.y, c, two.y),
-                FusedMulAdd(along3.z, c, two.z)};
-  };
-  dE->row[0] = row(u.row[0].x, u.row[1].x, u.row[2].x);
-  dE->row[1] = row(u.row[0].y, u.row[1].y, u.row[2].y);
-  dE->row[2] = row(u.row[0].z, u.row[1].z, u.row[2].z);
-}
-
-HWY_INLINE void StoreWhitened(const Mat3& E, const Whitening& whitening, int lane, HypothesisBlock::Row* F) {
-  for (int i = 0; i < 3; ++i) {
-    Store(whitening(i, 0, E.row[i].x), &F[3 * i][lane]);
-    Store(whitening(i, 1, E.row[i].y), &F[3 * i + 1][lane]);
-    Store(whitening(i, 2, E.row[i].z), &F[3 * i + 2][lane]);
   }
 }
 
@@ -217,13 +118,7 @@ HWY_INLINE void FillSampleStatistic(const ConstraintFactors& factors, const Esse
 // Lanes [lane, lane + kLanes) of the block.
 template <Spread spread>
 HWY_INLINE Mask FillLanes(const Whitening& whitening, int lane, HypothesisBlock* block) {
-  SampleLanes sample;
-  for (int k = 0; k < 8; ++k) {
-    sample.x1[k] = Load(block->x1[k] + lane);
-    sample.y1[k] = Load(block->y1[k] + lane);
-    sample.x2[k] = Load(block->x2[k] + lane);
-    sample.y2[k] = Load(block->y2[k] + lane);
-  }
+  const SampleLanes<8> sample(*block, lane);
   ConstraintFactors factors;
   FillConstraints(sample, whitening, factors.columns);
   Factor(factors);
@@ -276,17 +171,21 @@ HWY_EXPORT(FillModels);
 HWY_EXPORT(FillUncertainModels);
 HWY_EXPORT(FillTestedModels);
 
+void CopySample(const MatchBlocks& matches, const Sample& sample, int hypothesis, HypothesisBlock* block) {
+  for (size_t k = 0; k < static_cast<size_t>(sample.size()); ++k) {
+    const int lane = sample[k] % kBlockSize;
+    const MatchBlock& from = matches[sample[k] / kBlockSize];
+    block->x1[k][hypothesis] = from.x1[lane];
+    block->y1[k][hypothesis] = from.y1[lane];
+    block->x2[k][hypothesis] = from.x2[lane];
+    block->y2[k][hypothesis] = from.y2[lane];
+  }
+}
+
 void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples, Spread spread,
                        HypothesisBlock* block) {
-  for (size_t hypothesis = 0; hypothesis < samples.size(); ++hypothesis) {
-    for (size_t k = 0; k < samples[hypothesis].size(); ++k) {
-      const int index = samples[hypothesis][k], lane = index % kBlockSize;
-      const MatchBlock& from = matches[index / kBlockSize];
-      block->x1[k][hypothesis] = from.x1[lane];
-      block->y1[k][hypothesis] = from.y1[lane];
-      block->x2[k][hypothesis] = from.x2[lane];
-      block->y2[k][hypothesis] = from.y2[lane];
-    }
+  for (int hypothesis = 0; hypothesis < kBlockSize; ++hypothesis) {
+    CopySample(matches, samples[static_cast<size_t>(hypothesis)], hypothesis, block);
   }
   switch (spread) {
     case Spread::kNone:

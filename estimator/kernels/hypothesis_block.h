@@ -1,10 +1,10 @@
-// Eight hypotheses side by side: from eight minimal samples to eight motions with their covariances.
+// Eight hypotheses side by side: from eight samples of eight matches to eight motions with their covariances.
 #pragma once
 
 #include <span>
 
-#include "estimator/hypothesis.h"
 #include "estimator/kernels/match_blocks.h"
+#include "estimator/sample.h"
 
 namespace rcme {
 
@@ -12,13 +12,14 @@ namespace rcme {
 struct alignas(64) HypothesisBlock {
   using Row = double[kBlockSize];
 
-  Row x1[8], y1[8], x2[8], y2[8];  // the samples: number = the match within the sample
+  // The samples: number = the match within the sample, as many as the minimal solver takes.
+  Row x1[kMaxSampleSize], y1[kMaxSampleSize], x2[kMaxSampleSize], y2[kMaxSampleSize];
 
   Row F[9];      // F_j row by row, of the E with singular values 1, 1, 0
   Row dF[5][9];  // its derivatives along the principal axes of Sigma_p: with L L' = Sigma_p, the k-th is
                  // sum_l L_lk dF/dp_l
   Row sample_statistic;       // T, see JointSampleStatistic; infinite where it has no covariance
-  std::uint8_t is_model = 0;  // bit l: sample l determines a motion, with a finite covariance
+  std::uint8_t is_model = 0;  // bit l: hypothesis l has a motion, with a finite covariance
 };
 
 // What is to be known of a hypothesis.
@@ -28,7 +29,11 @@ enum class Spread {
   kCovarianceAndMisfit,  // sample_statistic too
 };
 
-// Fills the block from eight samples (eq::model_instantiate, eq::motion_estimate, eq::cov_p).
+// Puts the matches of a sample into the block's place of a hypothesis.
+void CopySample(const MatchBlocks& matches, const Sample& sample, int hypothesis, HypothesisBlock* block);
+
+// Fills the block from eight samples of eight matches (eq::model_instantiate, eq::motion_estimate,
+// eq::cov_p).
 void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples, Spread spread,
                        HypothesisBlock* block);
 

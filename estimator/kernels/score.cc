@@ -1,5 +1,7 @@
 #include "estimator/kernels/score.h"
 
+#include <algorithm>
+
 #include "estimator/point_consistency.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -231,6 +233,20 @@ void ScanRankAware(const MatchBlocks& matches, const double* F, const VariancePo
                    double threshold, InlierScan* scan) {
   HWY_DYNAMIC_DISPATCH(ScanUncertain)
   (matches.data(), matches.num_matches(), F, variance.coefficients, threshold, scan);
+}
+
+void RemoveSample(const Sample& sample, InlierScan* scan) {
+  for (const int index : sample) {
+    const auto byte = static_cast<size_t>(index / kBlockSize);
+    const unsigned bit = 1u << (index % kBlockSize), before = scan->inliers[byte] & (bit - 1u);
+    if ((scan->inliers[byte] & bit) == 0) continue;
+    std::ptrdiff_t rank = __builtin_popcount(before);  // among the inliers
+    for (size_t b = 0; b < byte; ++b) rank += __builtin_popcount(scan->inliers[b]);
+    const auto spreads = scan->spreads.begin();
+    std::copy(spreads + rank + 1, spreads + scan->num_inliers, spreads + rank);
+    scan->inliers[byte] = static_cast<std::uint8_t>(scan->inliers[byte] & ~bit);
+    --scan->num_inliers;
+  }
 }
 
 InlierScore SummarizeEntropies(const InlierScan& scan, double offset) {

@@ -2,8 +2,12 @@
 // (eq::score-inliers). The same tests as point_consistency.h, many matches at a time.
 #pragma once
 
+#include <optional>
+
+#include "estimator/geometry/pose.h"
 #include "estimator/inlier_quality.h"
 #include "estimator/kernels/hypothesis_block.h"
+#include "estimator/sample.h"
 
 namespace rcme {
 
@@ -47,6 +51,9 @@ void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, doubl
 // d2 = g^2 / (n2 + variance of g from the motion) <= threshold.
 void ScanRankAware(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
                    double threshold, InlierScan* scan);
+
+// Takes the matches of a sample, as far as they are inliers, and their spreads out of the scan.
+void RemoveSample(const Sample& sample, InlierScan* scan);
 
 // The entropies h = log(spread) / 2 + offset of the inliers (eq. 15), summarised by psi and s (eq. 16).
 InlierScore SummarizeEntropies(const InlierScan& scan, double offset);

@@ -30,4 +30,10 @@ std::optional<LinearModel> EightPoint::Solve(const Rays& rays1, const Rays& rays
   return model;
 }
 
+ModelList<LinearModel, EightPoint::kMaxModels> EightPoint::FindModels(const Rays& rays1, const Rays& rays2) {
+  ModelList<LinearModel, kMaxModels> models;
+  if (const std::optional<LinearModel> model = Solve(rays1, rays2)) models.Add(*model);
+  return models;
+}
+
 }  // namespace rcme

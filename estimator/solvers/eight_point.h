@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "estimator/geometry/essential_matrix.h"
+#include "estimator/solvers/minimal_solver.h"
 
 namespace rcme {
 
@@ -24,7 +24,12 @@ struct LinearModel {
 class EightPoint {
  public:
   static constexpr int kSampleSize = 8;
+  static constexpr int kMaxModels = 1;
+  static constexpr SolverCase kCase = SolverCase::kOverdetermined;  // 8 parameters, F has 7
+  static constexpr int kSampleTestDof = 3;                          // 8 equations, the motion has 5
   using Rays = std::array<Eigen::Vector3d, kSampleSize>;
+  using Model = LinearModel;
+  static ModelList<Model, kMaxModels> FindModels(const Rays& rays1, const Rays& rays2);
 
   // Nothing if the eight points do not determine f (coplanar configuration, repeated points, pure rotation,
   // ...): the smallest pivot is below 1e-9 of the largest.

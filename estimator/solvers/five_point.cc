@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -151,7 +152,28 @@ FivePoint::Solutions FivePoint::Solve(const Rays& rays1, const Rays& rays2) {
     if (!polished) continue;
     solutions.E[static_cast<size_t>(solutions.count++)] = *polished;
   }
+  std::sort(solutions.E.begin(), solutions.E.begin() + solutions.count,
+            [](const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+              return std::abs(a(2, 2)) > std::abs(b(2, 2));
+            });
   return solutions;
+}
+
+ModelList<FivePoint::Model, FivePoint::kMaxModels> FivePoint::FindModels(const Rays& rays1,
+                                                                         const Rays& rays2) {
+  ModelList<Model, kMaxModels> models;
+  const Solutions solutions = Solve(rays1, rays2);
+  const Eigen::Matrix<double, 5, 9> C = ConstraintRows(rays1, rays2);
+  for (int i = 0; i < solutions.count; ++i) {
+    const RelativePose pose = PosesFromEssential(ProjectToEssential(solutions.E[static_cast<size_t>(i)]))[0];
+    const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(pose);
+    Eigen::Matrix<double, 9, 5> T;
+    for (int k = 0; k < 5; ++k) T.col(k) = Vectorize(dE_dp[static_cast<size_t>(k)]) / std::sqrt(2.0);
+    if (const auto G = ImplicitGain<5>(C, T)) {
+      models.Add({Vectorize(EssentialFromPose(pose)) / std::sqrt(2.0), *G});
+    }
+  }
+  return models;
 }
 
 }  // namespace rcme

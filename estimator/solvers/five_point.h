@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "estimator/solvers/minimal_solver.h"
+
 namespace rcme {
 
 // All essential matrices through five correspondences of calibrated rays, the exact case: five equations for
@@ -16,13 +18,21 @@ namespace rcme {
 class FivePoint {
  public:
   static constexpr int kSampleSize = 5;
-  static constexpr int kMaxSolutions = 10;
+  static constexpr int kMaxModels = 10;
+  static constexpr SolverCase kCase = SolverCase::kExact;
+  static constexpr int kSampleTestDof = 0;  // the motion fits its sample: nothing is left to test
   using Rays = std::array<Eigen::Vector3d, kSampleSize>;
+  using Model = MinimalModel<kSampleSize>;
+
+  // f = vec(E) / sqrt(2). Along the motions delta f = T delta p, T = dE/dp / sqrt(2), so that G is T (C T)^-1
+  // and Sigma_p = H^-1 D H^-T with H = C T = dg/dp.
+  static ModelList<Model, kMaxModels> FindModels(const Rays& rays1, const Rays& rays2);
 
   // E[0] ... E[count - 1], x2' E x1 = 0 in rays, Frobenius norm sqrt(2) as [t]x R has with |t| = 1; the sign
-  // and the order are arbitrary.
+  // is arbitrary. In descending order of |E_33|: another implementation that finds the same ones numbers them
+  // the same.
   struct Solutions {
-    std::array<Eigen::Matrix3d, kMaxSolutions> E;
+    std::array<Eigen::Matrix3d, kMaxModels> E;
     int count = 0;
   };
 

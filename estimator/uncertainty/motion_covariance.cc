@@ -13,24 +13,6 @@ double ConstraintVariance(const Eigen::Matrix3d& F, const Correspondence& match,
   return sigma_px * sigma_px * EvaluateConstraint(F, match).squared_gradient();
 }
 
-Eigen::Matrix<double, 8, 1> ConstraintVariances(const Eigen::Matrix3d& F,
-                                                std::span<const Correspondence, 8> sample, double sigma_px) {
-  Eigen::Matrix<double, 8, 1> variances;
-  for (int k = 0; k < 8; ++k) {
-    variances(k) = ConstraintVariance(F, sample[static_cast<size_t>(k)], sigma_px);
-  }
-  return variances;
-}
-
-Matrix9d CovarianceOfF(const LinearModel& model, const Eigen::Matrix<double, 8, 1>& constraint_variances) {
-  return model.G * constraint_variances.asDiagonal() * model.G.transpose();
-}
-
-Matrix9d CovarianceOfF(const Eigen::Matrix<double, 9, Eigen::Dynamic>& G,
-                       const Eigen::VectorXd& constraint_variances) {
-  return G * constraint_variances.asDiagonal() * G.transpose();
-}
-
 Eigen::Matrix<double, 5, 9> MotionJacobian(const RelativePose& pose) {
   const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(pose);
   Eigen::Matrix<double, 9, 5> tangent;

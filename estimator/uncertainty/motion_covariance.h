@@ -11,25 +11,20 @@
 #include "estimator/geometry/camera.h"
 #include "estimator/geometry/correspondence.h"
 #include "estimator/geometry/essential_matrix.h"
-#include "estimator/solvers/eight_point.h"
 
 namespace rcme {
 
 // Variance of the constraint g = x2' F x1 of a match: sigma^2 |J|^2, F in pixels.
 double ConstraintVariance(const Eigen::Matrix3d& F, const Correspondence& match, double sigma_px);
 
-// Those of a minimal sample, D_kk.
-Eigen::Matrix<double, 8, 1> ConstraintVariances(const Eigen::Matrix3d& F,
-                                                std::span<const Correspondence, 8> sample, double sigma_px);
-
-// Sigma_f = G D G' (9x9, rank 8, null direction f), f the unit vector of the linear model in rays. Equals the
-// paper's overdetermined case A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' (eq. 6) with dOmega/df the
-// minimum-norm implicit derivative.
-Matrix9d CovarianceOfF(const LinearModel& model, const Eigen::Matrix<double, 8, 1>& constraint_variances);
-
-// The same for a sample of m >= 8 matches, G (9 x m) of its linear least-squares fit.
-Matrix9d CovarianceOfF(const Eigen::Matrix<double, 9, Eigen::Dynamic>& G,
-                       const Eigen::VectorXd& constraint_variances);
+// Sigma_f = G D G' (9x9) of a model with gain G (9 x m), in rays, and constraint variances D (m). Of eight
+// points (rank 8, null direction f) it equals the paper's overdetermined case A (A' J_Omega' Sigma_X^-1
+// J_Omega A)^-1 A' (eq. 6) with dOmega/df the minimum-norm implicit derivative.
+template <int m>
+Matrix9d CovarianceOfF(const Eigen::Matrix<double, 9, m>& G,
+                       const Eigen::Matrix<double, m, 1>& constraint_variances) {
+  return G * constraint_variances.asDiagonal() * G.transpose();
+}
 
 // J_p = dp/df (5x9) of the step from the unit vector f to the nearest essential matrix and its motion: the
 // pseudo-inverse of the unit-norm tangent dE/dp / sqrt(2), which is the paper's -(dTheta/dp)^+ dTheta/df on

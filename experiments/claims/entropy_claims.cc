@@ -102,6 +102,8 @@ class PrintedEntropyTest {
  public:
   static constexpr bool kNeedsCovariance = true;
   static constexpr int kDegreesOfFreedom = 1;
+  static constexpr int SampleTestDof(int solver_dof) { return solver_dof; }
+  static constexpr bool kScoresExactFits = false;
   PrintedEntropyTest(const UncertainFundamental& model, double sigma_px)
       : rank_aware_(model, sigma_px), as_printed_(model, sigma_px) {}
 
@@ -128,8 +130,9 @@ class PrintedEntropyTest {
 template <typename PointTestT>
 struct SelectionPipeline {
   using PointTest = PointTestT;
-  static bool SampleIsConsistent(const MotionProblem&, const Hypothesis& hypothesis, const PointTest&,
-                                 const Thresholds& thresholds) {
+  static constexpr bool kTestsSample = true;
+  static bool SampleIsConsistent(const MotionProblem&, const Hypothesis<EightPoint>& hypothesis,
+                                 const PointTest&, const Thresholds& thresholds) {
     return JointSampleStatistic(hypothesis) <= thresholds.sample;
   }
   static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
@@ -145,8 +148,10 @@ bool SelectionFails(const Case& made, Selection selection) {
   RansacOptions options;
   options.selection = selection;
   RandomStream sampling_rng = StreamFor(made.name, StreamPurpose::kSampling);
-  return FailsOrRefuses(Score(
-      RunPipeline<SelectionPipeline<PointTest>>(made.problem(), options, sampling_rng), made.data, 0.0));
+  using Pipeline = SelectionPipeline<PointTest>;
+  const MotionEstimate estimate =
+      RunPipeline<Pipeline, ReferenceEngine<Pipeline, EightPoint>>(made.problem(), options, sampling_rng);
+  return FailsOrRefuses(Score(estimate, made.data, 0.0));
 }
 
 Outcome SelectionStatistic(Case& made) {

@@ -6,16 +6,16 @@
 namespace rcme {
 
 std::optional<UncertainFundamental> ModelOf(const MotionProblem& problem, const Sample& sample) {
-  std::optional<Hypothesis> hypothesis = InstantiateModel(problem, sample);
+  std::optional<Hypothesis<EightPoint>> hypothesis = InstantiateModel<EightPoint>(problem, {sample});
   if (!hypothesis) return std::nullopt;
   PropagateCovariance(problem, &*hypothesis);
-  return UncertainFundamental::From(hypothesis->pose, hypothesis->pose_cov, problem.camera1, problem.camera2);
+  return UncertainModelOf(problem, *hypothesis);
 }
 
 Sample DrawSampleOf(SampleKind kind, Case& made) {
   const std::vector<bool>& is_inlier = made.data.truth.is_inlier_true;
   for (int draw = 0; draw < 1'000'000; ++draw) {
-    const Sample sample = DrawSample(static_cast<int>(is_inlier.size()), made.rng);
+    const Sample sample = DrawSample(8, static_cast<int>(is_inlier.size()), made.rng);
     const bool is_good = std::all_of(sample.begin(), sample.end(),
                                      [&](int index) { return is_inlier[static_cast<size_t>(index)]; });
     if (is_good == (kind == SampleKind::kGood)) return sample;

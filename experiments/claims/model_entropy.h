@@ -3,11 +3,12 @@
 
 #include "estimator/hypothesis.h"
 #include "estimator/reference_search.h"
+#include "estimator/solvers/eight_point.h"
 #include "experiments/claims/case.h"
 
 namespace rcme {
 
-// The model of a sample with its covariances; nothing if it is degenerate.
+// The eight-point model of a sample with its covariances; nothing if it is degenerate.
 std::optional<UncertainFundamental> ModelOf(const MotionProblem& problem, const Sample& sample);
 
 // Samples of eight matches as RANSAC draws them, given that all of them are true or that not all are.

@@ -88,23 +88,12 @@ std::vector<Claim> ClaimsOf(Reading reading, const std::string& id, const std::s
 
 // The inlier set of the five-point model of the first five matches of a sample that has most inliers.
 InlierScore FivePointScore(const MotionProblem& problem, const Sample& sample) {
-  FivePoint::Rays rays1, rays2;
-  std::vector<Correspondence> matches;
-  for (size_t k = 0; k < rays1.size(); ++k) {
-    matches.push_back(problem.matches[static_cast<size_t>(sample[k])]);
-    rays1[k] = problem.camera1.Ray(matches[k].x1_px);
-    rays2[k] = problem.camera2.Ray(matches[k].x2_px);
-  }
+  const Sample first_five = {sample[0], sample[1], sample[2], sample[3], sample[4]};
   const Thresholds thresholds = Thresholds::For(problem, {}, RankAwareTest::kDegreesOfFreedom);
-  const FivePoint::Solutions solutions = FivePoint::Solve(rays1, rays2);
   InlierScore most;
-  for (int i = 0; i < solutions.count; ++i) {  // of the four poses of an E, any: the test sees E alone
-    const RelativePose pose = PosesFromEssential(ProjectToEssential(solutions.E[static_cast<size_t>(i)]))[0];
-    const std::optional<Matrix5d> pose_cov =
-        FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, matches, problem.sigma_px);
-    if (!pose_cov) continue;
-    const std::optional<UncertainFundamental> model =
-        UncertainFundamental::From(pose, *pose_cov, problem.camera1, problem.camera2);
+  for (Hypothesis<FivePoint> hypothesis : InstantiateModels<FivePoint>(problem, first_five)) {
+    PropagateCovariance(problem, &hypothesis);
+    const std::optional<UncertainFundamental> model = UncertainModelOf(problem, hypothesis);
     if (!model) continue;
     const InlierScore score = ScoreInliers(problem, RankAwareTest(*model, problem.sigma_px), thresholds);
     if (score.num_inliers > most.num_inliers) most = score;

@@ -11,7 +11,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double DistanceFromSampleMotion(const Case& made, PointDistance distance, size_t match) {
   const MotionProblem& problem = made.problem();
-  const std::optional<Hypothesis> hypothesis = FitSample(problem);
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
   if (!hypothesis) return kInfinity;
   const std::optional<UncertainFundamental> model =
       UncertainFundamental::From(hypothesis->pose, hypothesis->pose_cov, problem.camera1, problem.camera2);
@@ -20,19 +20,19 @@ double DistanceFromSampleMotion(const Case& made, PointDistance distance, size_t
 
 }  // namespace
 
-std::optional<Hypothesis> FitSample(const MotionProblem& problem) {
-  Sample sample;
+std::optional<Hypothesis<EightPoint>> FitSample(const MotionProblem& problem) {
+  Sample sample(EightPoint::kSampleSize);
   std::iota(sample.begin(), sample.end(), 0);
-  std::optional<Hypothesis> hypothesis = InstantiateModel(problem, sample);
+  std::optional<Hypothesis<EightPoint>> hypothesis = InstantiateModel<EightPoint>(problem, {sample});
   if (!hypothesis) return std::nullopt;
   PropagateCovariance(problem, &*hypothesis);
   return hypothesis;
 }
 
-double NeesOfF(const Hypothesis& hypothesis, const RelativePose& pose_true) {
-  const Eigen::Matrix<double, 9, 8>& A = hypothesis.linear.A;
+double NeesOfF(const Hypothesis<EightPoint>& hypothesis, const RelativePose& pose_true) {
+  const Eigen::Matrix<double, 9, 8>& A = hypothesis.model.A;
   Vector9d f_true = Vectorize(EssentialFromPose(pose_true)).normalized();
-  if (f_true.dot(hypothesis.linear.f) < 0.0) f_true = -f_true;
+  if (f_true.dot(hypothesis.model.f) < 0.0) f_true = -f_true;
   const Eigen::Matrix<double, 8, 1> error = A.transpose() * f_true;  // A'f = 0
   const Eigen::Matrix<double, 8, 8> covariance = A.transpose() * hypothesis.f_cov * A;
   return NormalizedErrorSquared(error, covariance);

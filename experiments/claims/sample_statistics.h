@@ -4,16 +4,17 @@
 
 #include "estimator/hypothesis.h"
 #include "estimator/point_consistency.h"
+#include "estimator/solvers/eight_point.h"
 #include "experiments/claims/case.h"
 
 namespace rcme {
 
 // The model of the first eight matches (they are in random order) with its covariances. Its motion is any of
 // the four of its essential matrix: no point test depends on which.
-std::optional<Hypothesis> FitSample(const MotionProblem& problem);
+std::optional<Hypothesis<EightPoint>> FitSample(const MotionProblem& problem);
 
 // NEES of f in the complement of f, 8 dof.
-double NeesOfF(const Hypothesis& hypothesis, const RelativePose& pose_true);
+double NeesOfF(const Hypothesis<EightPoint>& hypothesis, const RelativePose& pose_true);
 
 // Squared Mahalanobis distance of a match from an uncertain motion, in one reading.
 using PointDistance = double (*)(const UncertainFundamental& model, double sigma_px,

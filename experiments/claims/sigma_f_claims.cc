@@ -16,16 +16,16 @@ const Settings kSample = {{"num_matches", "8"}};
 const char* const kLabel = "Sec. model_instantiate, Sigma_f";
 
 Outcome NeesStatistic(Case& made) {
-  const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
   return {hypothesis ? NeesOfF(*hypothesis, made.pose_true()) : kInfinity};
 }
 
 // Largest deviation of the printed formula from G D G', over the largest entry.
 Outcome PrintedFormulaStatistic(Case& made) {
   const MotionProblem& problem = made.problem();
-  const std::optional<Hypothesis> hypothesis = FitSample(problem);
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
   if (!hypothesis) return {kInfinity};
-  const LinearModel& linear = hypothesis->linear;
+  const LinearModel& linear = hypothesis->model;
   const Matrix9d information =
       SampleInformation(linear.f, problem.camera1, problem.camera2, problem.matches, problem.sigma_px);
   const Matrix9d printed = OverdeterminedCovariance(information, HouseholderColumns(linear.f, 8));
@@ -35,9 +35,9 @@ Outcome PrintedFormulaStatistic(Case& made) {
 // Largest |A'f| of the first eight columns of the Householder matrix that reflects f onto an axis.
 Statistic NormalBasisStatistic(int onto) {
   return [onto](Case& made) -> Outcome {
-    const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
+    const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
     if (!hypothesis) return {kInfinity};
-    const Vector9d& f = hypothesis->linear.f;
+    const Vector9d& f = hypothesis->model.f;
     return {(HouseholderColumns(f, onto).transpose() * f).cwiseAbs().maxCoeff()};
   };
 }
@@ -45,23 +45,15 @@ Statistic NormalBasisStatistic(int onto) {
 // NEES of the exact case with H^-1 D H^-T, for the five-point solution nearest to the truth.
 Outcome ExactNeesStatistic(Case& made) {
   const MotionProblem& problem = made.problem();
-  FivePoint::Rays rays1, rays2;
-  for (size_t k = 0; k < rays1.size(); ++k) {
-    rays1[k] = problem.camera1.Ray(problem.matches[k].x1_px);
-    rays2[k] = problem.camera2.Ray(problem.matches[k].x2_px);
-  }
-  const FivePoint::Solutions solutions = FivePoint::Solve(rays1, rays2);
   double nearest = kInfinity;  // squared length of the error
   Outcome nees = {kInfinity};
-  for (int i = 0; i < solutions.count; ++i) {
-    const RelativePose pose = NearestPose(
-        PosesFromEssential(ProjectToEssential(solutions.E[static_cast<size_t>(i)])), made.pose_true());
-    const double squared_error = LocalCoordinates(pose, made.pose_true()).squaredNorm();
+  for (Hypothesis<FivePoint> hypothesis : InstantiateModels<FivePoint>(problem, {0, 1, 2, 3, 4})) {
+    hypothesis.pose = NearestPose(PosesFromEssential(hypothesis.projection), made.pose_true());
+    const double squared_error = LocalCoordinates(hypothesis.pose, made.pose_true()).squaredNorm();
     if (squared_error >= nearest) continue;
     nearest = squared_error;
-    const std::optional<Matrix5d> pose_cov =
-        FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, problem.matches, problem.sigma_px);
-    nees[0] = pose_cov ? NormalizedErrorOfPose(pose, *pose_cov, made.pose_true()) : kInfinity;
+    PropagateCovariance(problem, &hypothesis);
+    nees[0] = NormalizedErrorOfPose(hypothesis.pose, hypothesis.pose_cov, made.pose_true());
   }
   return nees;
 }

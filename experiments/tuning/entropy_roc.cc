@@ -26,7 +26,7 @@ void AddSamples(const HypothesisTrace& trace, const Truth& truth, Entropies* ent
   for (const ScoredHypothesis& hypothesis : trace.hypotheses) {
     if (hypothesis.proposal.verdict != SampleVerdict::kConsistent || hypothesis.score.num_inliers == 0)
       continue;
-    const bool is_good = IsAllTrue(hypothesis.proposal.sample, truth.is_inlier_true);
+    const bool is_good = IsAllTrue(hypothesis.proposal.id.sample, truth.is_inlier_true);
     std::optional<double>& first = is_good ? entropies->good_sample : entropies->bad_sample;
     if (!first) first = hypothesis.score.mean_entropy;
   }

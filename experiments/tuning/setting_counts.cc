@@ -45,7 +45,7 @@ class TrialDecisions {
 
  private:
   // What follows from a loop depends on the candidates it hands over, and on the share they have to explain.
-  using Handover = std::pair<std::vector<Sample>, double>;
+  using Handover = std::pair<std::vector<HypothesisId>, double>;
 
   TrialOutcome OutcomeUnder(const MotionEstimator& estimator) {
     const RansacEstimator* parts = AsRansac(estimator);
@@ -55,8 +55,8 @@ class TrialDecisions {
     }
     const LoopResult loop = parts->Decide(trace_);
     if (!loop.winner) return TrialOutcome::kRefusal;
-    Handover handover{{loop.winner->sample}, parts->options().least_explained_share};
-    for (const Candidate& candidate : loop.runners_up) handover.first.push_back(candidate.sample);
+    Handover handover{{loop.winner->id}, parts->options().least_explained_share};
+    for (const Candidate& candidate : loop.runners_up) handover.first.push_back(candidate.id);
     const auto known = outcomes_.find(handover);
     if (known != outcomes_.end()) return known->second;
     return outcomes_[handover] = JudgedOutcome(parts->Finish(data_.problem, loop, &refinements_));

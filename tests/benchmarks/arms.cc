@@ -31,7 +31,7 @@ double PointThreshold(int degrees_of_freedom) { return ChiSquareQuantile(degrees
 
 void DrawSamples(const Trial& trial) {
   RandomStream rng = StreamFor(trial.name, StreamPurpose::kSampling);
-  for (int j = 0; j < kNumHypotheses; ++j) DoNotOptimize(DrawSample(trial.blocks.num_matches(), rng));
+  for (int j = 0; j < kNumHypotheses; ++j) DoNotOptimize(DrawSample(8, trial.blocks.num_matches(), rng));
 }
 
 void CheckProblem(const Trial& trial) {
@@ -51,13 +51,14 @@ void InstantiateFast(const Trial& trial) {
 }
 
 void InstantiateReference(const Trial& trial) {
-  for (const Sample& sample : trial.samples) DoNotOptimize(InstantiateModel(trial.data.problem, sample));
+  for (const Sample& sample : trial.samples)
+    DoNotOptimize(InstantiateModel<EightPoint>(trial.data.problem, {sample}));
 }
 
 // The joint sample statistic too: the fast one has it from the same pass.
 void InstantiateWithCovarianceReference(const Trial& trial) {
   for (const Sample& sample : trial.samples) {
-    Hypothesis hypothesis = InstantiateModel(trial.data.problem, sample).value();
+    Hypothesis<EightPoint> hypothesis = InstantiateModel<EightPoint>(trial.data.problem, {sample}).value();
     PropagateCovariance(trial.data.problem, &hypothesis);
     DoNotOptimize(JointSampleStatistic(hypothesis));
   }
@@ -84,7 +85,8 @@ void TestSamplesFast(const Trial& trial) {
 
 // Nothing where the covariance is not finite.
 template <typename PointTest>
-std::optional<PointTest> MakePointTest(const MotionProblem& problem, const Hypothesis& hypothesis) {
+std::optional<PointTest> MakePointTest(const MotionProblem& problem,
+                                       const Hypothesis<EightPoint>& hypothesis) {
   if constexpr (!PointTest::kNeedsCovariance) {
     return PointTest(hypothesis.F, problem.sigma_px);
   } else {
@@ -97,35 +99,34 @@ std::optional<PointTest> MakePointTest(const MotionProblem& problem, const Hypot
 
 void TestSamplesReference(const Trial& trial) {
   const double threshold = PointThreshold(AsPrintedTest::kDegreesOfFreedom);
-  for (const Hypothesis& hypothesis : trial.hypotheses) {
+  for (const Hypothesis<EightPoint>& hypothesis : trial.hypotheses) {
     const auto test = MakePointTest<AsPrintedTest>(trial.data.problem, hypothesis);
     if (test) DoNotOptimize(EverySamplePointFits(trial.data.problem, hypothesis, *test, threshold));
   }
 }
 
-template <BlockSearch::Reading reading>
+template <BlockReading reading>
 void ScoreFast(const Trial& trial) {
-  using Reading = BlockSearch::Reading;
-  const double threshold = PointThreshold(reading == Reading::kAsPrinted ? 3 : 1);
+  const double threshold = PointThreshold(reading == BlockReading::kAsPrinted ? 3 : 1);
   InlierScan scan(trial.blocks);
   for (size_t j = 0; j < trial.samples.size(); ++j) {
     const WhitenedModel model(trial.hypothesis_blocks[j / kBlockSize], static_cast<int>(j % kBlockSize));
-    if constexpr (reading == Reading::kKnownPose) {
+    if constexpr (reading == BlockReading::kKnownPose) {
       ScanKnownPose(trial.blocks, model.F, threshold, &scan);
-    } else if constexpr (reading == Reading::kAsPrinted) {
+    } else if constexpr (reading == BlockReading::kAsPrinted) {
       ScanAsPrinted(trial.blocks, model, threshold, &scan);
     } else {
       ScanRankAware(trial.blocks, model.F, VariancePolynomial(model.dF), threshold, &scan);
     }
     DoNotOptimize(scan.num_inliers);
-    if constexpr (reading != Reading::kKnownPose) DoNotOptimize(SummarizeEntropies(scan, 0.0));
+    if constexpr (reading != BlockReading::kKnownPose) DoNotOptimize(SummarizeEntropies(scan, 0.0));
   }
 }
 
 template <typename PointTest>
 void ScoreReference(const Trial& trial) {
   const Thresholds thresholds = Thresholds::For(trial.data.problem, {}, PointTest::kDegreesOfFreedom);
-  for (const Hypothesis& hypothesis : trial.hypotheses) {
+  for (const Hypothesis<EightPoint>& hypothesis : trial.hypotheses) {
     const auto test = MakePointTest<PointTest>(trial.data.problem, hypothesis);
     if (test) DoNotOptimize(ScoreInliers(trial.data.problem, *test, thresholds));
   }
@@ -207,7 +208,8 @@ void RefineReprojection(const Trial& trial) {
 template <typename Matches>
 void RefineWinnerIn(const Matches& matches, const Trial& trial) {
   MotionEstimate estimate;
-  RefineWinner(matches, {}, trial.winner, matches.SetOf(IndicesOf(trial.support)), &estimate);
+  RefineWinner(matches, {}, InstantiateModel<EightPoint>(trial.data.problem, trial.winner),
+               matches.SetOf(IndicesOf(trial.support)), &estimate);
   DoNotOptimize(estimate);
 }
 void RefineWinnerFast(const Trial& trial) {
@@ -220,7 +222,6 @@ void RefineWinnerReference(const Trial& trial) {
 void FindThresholds(const Trial& trial) { DoNotOptimize(Thresholds::For(trial.data.problem, {}, 3)); }
 
 std::vector<Arm> StageArms() {
-  using Reading = BlockSearch::Reading;
   const std::string stage = "stage";
   return {{stage, "check_problem", CheckProblem},
           {stage, "pack_matches", PackMatches},
@@ -234,11 +235,11 @@ std::vector<Arm> StageArms() {
           {stage, "five_points/reference", SolveFivePointsReference},
           {stage, "test_samples/fast", TestSamplesFast},
           {stage, "test_samples/reference", TestSamplesReference},
-          {stage, "score_known_pose/fast", ScoreFast<Reading::kKnownPose>},
+          {stage, "score_known_pose/fast", ScoreFast<BlockReading::kKnownPose>},
           {stage, "score_known_pose/reference", ScoreReference<KnownPoseTest>},
-          {stage, "score_as_printed/fast", ScoreFast<Reading::kAsPrinted>},
+          {stage, "score_as_printed/fast", ScoreFast<BlockReading::kAsPrinted>},
           {stage, "score_as_printed/reference", ScoreReference<AsPrintedTest>},
-          {stage, "score_rank_aware/fast", ScoreFast<Reading::kRankAware>},
+          {stage, "score_rank_aware/fast", ScoreFast<BlockReading::kRankAware>},
           {stage, "score_rank_aware/reference", ScoreReference<RankAwareTest>},
           {stage, "scan_as_printed", ScanPrinted},
           {stage, "scan_rank_aware", ScanUncertain},

@@ -46,9 +46,9 @@ BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
 
 void BenchmarkTrial::MakeHypotheses(int num_matches) {
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
-  for (int j = 0; j < kNumHypotheses; ++j) samples.push_back(DrawSample(num_matches, rng));
+  for (int j = 0; j < kNumHypotheses; ++j) samples.push_back(DrawSample(8, num_matches, rng));
   for (const Sample& sample : samples) {
-    hypotheses.push_back(InstantiateModel(data.problem, sample).value());
+    hypotheses.push_back(InstantiateModel<EightPoint>(data.problem, {sample}).value());
     PropagateCovariance(data.problem, &hypotheses.back());
   }
   hypothesis_blocks.resize(samples.size() / kBlockSize);
@@ -88,7 +88,7 @@ void BenchmarkTrial::FindWinner() {
     ScanKnownPose(blocks, models[j].F, threshold, &scan);
     if (scan.num_inliers <= most) continue;
     most = scan.num_inliers;
-    winner = samples[j];
+    winner = {samples[j]};
     support = scan.inliers;
   }
 }

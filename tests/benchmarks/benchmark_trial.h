@@ -8,6 +8,7 @@
 #include "estimator/kernels/block_search.h"
 #include "estimator/kernels/five_point_block.h"
 #include "estimator/refinement/motion_search.h"
+#include "estimator/solvers/eight_point.h"
 #include "estimator/solvers/five_point.h"
 #include "experiments/data/data_source.h"
 
@@ -29,7 +30,7 @@ struct BenchmarkTrial {
   // The hypotheses of the samples, eight at a time and one by one, and the models of the former.
   std::vector<Sample> samples;
   std::vector<HypothesisBlock> hypothesis_blocks;
-  std::vector<Hypothesis> hypotheses;
+  std::vector<Hypothesis<EightPoint>> hypotheses;
   std::vector<WhitenedModel> models;
   std::vector<VariancePolynomial> variances;
 
@@ -41,7 +42,7 @@ struct BenchmarkTrial {
   std::vector<FiveRays> five_rays;
 
   // The hypothesis with most inliers by the known-pose test, and these.
-  Sample winner{};
+  HypothesisId winner;
   MatchMask support;
 
   // The right matches, a start off the true motion by 0.01 rad in each coordinate, and the fit from there.

@@ -11,7 +11,7 @@ constexpr int kNumMatches = 100;
 
 Candidate Make(int num_inliers, double mean_entropy, int tag = 0) {
   Candidate candidate;
-  candidate.sample[0] = tag;
+  candidate.id.sample = {tag};
   candidate.score.num_inliers = num_inliers;
   candidate.score.mean_entropy = mean_entropy;
   return candidate;
@@ -42,9 +42,9 @@ TEST(CandidateSet, GivenRatioDecidesTheSizeCondition) {
   candidates.Add(Make(40, 1.0, 1));
   candidates.Add(Make(90, 2.0, 2));  // must not raise the given omega_p
   EXPECT_EQ(candidates.CountMembers(), 2);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 1)
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 1)
       << "the best entropy is too small a set";
-  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).id.sample[0], 2);
 }
 
 TEST(CandidateSet, InferredRatioIsTheLargestShareOfAllThatPassed) {
@@ -53,14 +53,14 @@ TEST(CandidateSet, InferredRatioIsTheLargestShareOfAllThatPassed) {
   CandidateSet candidates(options, kNumMatches);
   candidates.Add(Make(20, -9.0, 1));
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 1);
   candidates.Add(Make(60, 3.0, 2));  // now at least 30 are needed: the first one is out again
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 2);
   candidates.Add(Make(30, 0.0, 3));
   candidates.Add(Make(29, -1.0, 4));
   EXPECT_EQ(candidates.CountMembers(), 2);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 3);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 3);
 }
 
 TEST(CandidateSet, LargestLambdaKeepsTheLargestSetAlone) {
@@ -68,7 +68,7 @@ TEST(CandidateSet, LargestLambdaKeepsTheLargestSetAlone) {
   candidates.Add(Make(59, -9.0, 1));
   candidates.Add(Make(60, 3.0, 2));
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 2);
 }
 
 TEST(CandidateSet, LargestSetIsAlwaysAMember) {
@@ -88,8 +88,8 @@ TEST(CandidateSet, FirstOneWinsATie) {
   CandidateSet candidates(GivenRatio(0.1, 0.5), kNumMatches);
   candidates.Add(Make(50, 1.0, 1));
   candidates.Add(Make(50, 1.0, 2));
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).sample[0], 1);
-  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).id.sample[0], 1);
 }
 
 // The tags in the order of selection: the best first, the earlier one at a tie, no more than there are.
@@ -101,7 +101,7 @@ TEST(CandidateSet, SelectsTheBestInOrder) {
   const auto tags = [&](int count) {
     std::vector<int> of;
     for (const Candidate& candidate : candidates.SelectBest(count, LessEntropy))
-      of.push_back(candidate.sample[0]);
+      of.push_back(candidate.id.sample[0]);
     return of;
   };
   EXPECT_EQ(tags(1), (std::vector<int>{1}));

@@ -37,12 +37,14 @@ std::vector<std::uint64_t> BitsOf(const MotionEstimate& e) {
   return bits;
 }
 
-class Determinism : public testing::TestWithParam<std::tuple<std::string, Reading, Implementation>> {
+class Determinism
+    : public testing::TestWithParam<std::tuple<std::string, Reading, Implementation, MinimalSolver>> {
  protected:
   std::unique_ptr<MotionEstimator> Make() const {
     RansacOptions options;
     options.reading = std::get<Reading>(GetParam());
     options.implementation = std::get<Implementation>(GetParam());
+    options.solver = std::get<MinimalSolver>(GetParam());
     return MakeRansac(std::get<std::string>(GetParam()), options);
   }
   static std::vector<std::uint64_t> Estimate(const MotionEstimator& estimator, std::uint32_t trial) {
@@ -88,18 +90,25 @@ TEST_P(Determinism, TheSameBytesFromEveryInstructionSet) {
   });
 }
 
+std::string NameOf(const testing::TestParamInfo<Determinism::ParamType>& instance) {
+  const bool is_printed = std::get<Reading>(instance.param) == Reading::kAsPrinted;
+  const bool is_fast = std::get<Implementation>(instance.param) == Implementation::kFast;
+  return std::get<std::string>(instance.param) + (is_printed ? "_printed" : "_rank_aware") +
+         (is_fast ? "_fast" : "_reference");
+}
+
 INSTANTIATE_TEST_SUITE_P(Estimators, Determinism,
                          testing::Combine(testing::Values("standard", "prcme", "rcme"),
                                           testing::Values(Reading::kAsPrinted, Reading::kRankAware),
-                                          testing::Values(Implementation::kFast, Implementation::kReference)),
-                         [](const auto& instance) {
-                           return std::get<0>(instance.param) + "_" +
-                                  (std::get<1>(instance.param) == Reading::kAsPrinted ? "printed"
-                                                                                      : "rank_aware") +
-                                  "_" +
-                                  (std::get<2>(instance.param) == Implementation::kFast ? "fast"
-                                                                                        : "reference");
-                         });
+                                          testing::Values(Implementation::kFast, Implementation::kReference),
+                                          testing::Values(MinimalSolver::kEightPoint)),
+                         NameOf);
+INSTANTIATE_TEST_SUITE_P(FivePoint, Determinism,
+                         testing::Combine(testing::Values("standard", "rcme"),
+                                          testing::Values(Reading::kAsPrinted, Reading::kRankAware),
+                                          testing::Values(Implementation::kFast),
+                                          testing::Values(MinimalSolver::kFivePoint)),
+                         NameOf);
 
 }  // namespace
 }  // namespace rcme

@@ -2,7 +2,7 @@
 // winner. What differs must be a tie within rounding, so each disagreement is replayed hypothesis by
 // hypothesis and printed with its distance to the tie.
 //
-// RCME_AGREEMENT_TRIALS=20000 makes it the long study: as many trials for each of the five arms.
+// RCME_AGREEMENT_TRIALS=20000 makes it the long study: as many trials for each of the arms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -41,13 +41,36 @@ constexpr double kConfidence = 0.9999;
 struct Arm {
   std::string label, estimator;
   Reading reading;
+  MinimalSolver solver;
+
+  RansacOptions Options() const {
+    RansacOptions options;
+    options.reading = reading;
+    options.solver = solver;
+    if (solver != MinimalSolver::kEightPoint) options.num_iterations = 16;  // 75 hypotheses, one by one
+    return options;
+  }
 };
+
+std::vector<Arm> ArmsOf(MinimalSolver solver) {
+  return {{"standard", "standard", Reading::kAsPrinted, solver},
+          {"prcme_as_printed", "prcme", Reading::kAsPrinted, solver},
+          {"rcme_as_printed", "rcme", Reading::kAsPrinted, solver},
+          {"prcme_rank_aware", "prcme", Reading::kRankAware, solver},
+          {"rcme_rank_aware", "rcme", Reading::kRankAware, solver}};
+}
+
+// Five points have no sample test, so that rcme is prcme.
 const std::vector<Arm>& Arms() {
-  static const std::vector<Arm> arms = {{"standard", "standard", Reading::kAsPrinted},
-                                        {"prcme_as_printed", "prcme", Reading::kAsPrinted},
-                                        {"rcme_as_printed", "rcme", Reading::kAsPrinted},
-                                        {"prcme_rank_aware", "prcme", Reading::kRankAware},
-                                        {"rcme_rank_aware", "rcme", Reading::kRankAware}};
+  static const std::vector<Arm> arms = [] {
+    std::vector<Arm> all = ArmsOf(MinimalSolver::kEightPoint);
+    for (Arm arm : ArmsOf(MinimalSolver::kFivePoint)) {
+      if (arm.estimator == "prcme") continue;
+      arm.label = "five_point_" + arm.label;
+      all.push_back(arm);
+    }
+    return all;
+  }();
   return arms;
 }
 
@@ -77,6 +100,8 @@ RandomStream SamplingStream(std::uint32_t trial) { return RandomStream({1, 7, tr
 MotionEstimate Estimate(const Arm& arm, RansacOptions options, Implementation implementation,
                         const MotionProblem& problem, std::uint32_t trial) {
   options.reading = arm.reading;
+  options.solver = arm.solver;
+  options.num_iterations = arm.Options().num_iterations;
   options.implementation = implementation;
   RandomStream rng = SamplingStream(trial);
   return MakeRansac(arm.estimator, options)->Estimate(problem, rng);
@@ -123,27 +148,25 @@ void KeepGreater(const std::string& kind, double margin, std::optional<Cause>* c
 }
 
 template <typename PointTest>
-constexpr BlockSearch::Reading ReadingOf() {
-  if (std::is_same_v<PointTest, KnownPoseTest>) return BlockSearch::Reading::kKnownPose;
-  return std::is_same_v<PointTest, RankAwareTest> ? BlockSearch::Reading::kRankAware
-                                                  : BlockSearch::Reading::kAsPrinted;
+constexpr BlockReading ReadingOf() {
+  if (std::is_same_v<PointTest, KnownPoseTest>) return BlockReading::kKnownPose;
+  return std::is_same_v<PointTest, RankAwareTest> ? BlockReading::kRankAware : BlockReading::kAsPrinted;
 }
 
 // One hypothesis of the reference with all that it decides.
-template <typename PointTest>
+template <typename Solver, typename PointTest>
 struct Judged {
-  Hypothesis hypothesis;
+  Hypothesis<Solver> hypothesis;
   PointTest test;
 
-  static std::optional<Judged> From(const MotionProblem& problem, const Sample& sample) {
-    std::optional<Hypothesis> hypothesis = InstantiateModel(problem, sample);
+  static std::optional<Judged> From(const MotionProblem& problem, const HypothesisId& id) {
+    std::optional<Hypothesis<Solver>> hypothesis = InstantiateModel<Solver>(problem, id);
     if (!hypothesis) return std::nullopt;
     if constexpr (!PointTest::kNeedsCovariance) {
       return Judged{*hypothesis, PointTest(hypothesis->F, problem.sigma_px)};
     } else {
       PropagateCovariance(problem, &*hypothesis);
-      const auto model = UncertainFundamental::From(hypothesis->pose, hypothesis->pose_cov, problem.camera1,
-                                                    problem.camera2);
+      const auto model = UncertainModelOf(problem, *hypothesis);
       if (!model) return std::nullopt;
       return Judged{*hypothesis, PointTest(*model, problem.sigma_px)};
     }
@@ -156,11 +179,13 @@ struct Judged {
 
   // Statistic of the sample test over its threshold.
   double SampleStatistic(const MotionProblem& problem, const Thresholds& thresholds) const {
-    if constexpr (std::is_same_v<PointTest, RankAwareTest>) {
+    if constexpr (Solver::kSampleTestDof == 0) {
+      return 0.0;
+    } else if constexpr (std::is_same_v<PointTest, RankAwareTest>) {
       return JointSampleStatistic(hypothesis) / thresholds.sample;
     } else {
       double greatest = 0.0;
-      for (const int i : hypothesis.sample) {
+      for (const int i : hypothesis.id.sample) {
         greatest = std::max(greatest, Distance(problem.matches[static_cast<size_t>(i)]));
       }
       return greatest / thresholds.point;
@@ -168,7 +193,7 @@ struct Judged {
   }
 };
 
-template <typename PointTest>
+template <typename Solver, typename PointTest>
 class Replay {
  public:
   Replay(const MotionProblem& problem, const RansacOptions& options, bool tests_sample, std::uint32_t trial)
@@ -183,17 +208,24 @@ class Replay {
 
   std::optional<Cause> FindCause() {
     std::optional<Cause> cause;
-    for (int j = 0; j < num_iterations_; ++j) CompareNext(&cause);
+    for (int j = 0; j < num_iterations_;) j += CompareNext(&cause);
     return cause;
   }
 
  private:
-  void CompareNext(std::optional<Cause>* cause) {
-    const Thresholds& thresholds = fast_.thresholds();
+  // Returns whether that was the sample's last model.
+  bool CompareNext(std::optional<Cause>* cause) {
     const Proposal fast = fast_.Next();
-    const Sample sample = DrawSample(matches_.num_matches(), reference_rng_);
-    if (sample != fast.sample) return KeepGreater("other sample", 1.0, cause);
-    const auto judged = Judged<PointTest>::From(problem_, sample);
+    if (is_first_) sample_ = DrawSample(Solver::kSampleSize, matches_.num_matches(), reference_rng_);
+    if (sample_ != fast.id.sample) KeepGreater("other sample", 1.0, cause);
+    is_first_ = fast.is_last;
+    if (sample_ == fast.id.sample) CompareModel(fast, cause);
+    return fast.is_last;
+  }
+
+  void CompareModel(const Proposal& fast, std::optional<Cause>* cause) {
+    const Thresholds& thresholds = fast_.thresholds();
+    const auto judged = Judged<Solver, PointTest>::From(problem_, fast.id);
     const bool is_fast_model = fast.verdict != SampleVerdict::kDegenerate;
     if (judged.has_value() != is_fast_model) return KeepGreater("degenerate sample", std::nan(""), cause);
     if (!judged) return;
@@ -204,9 +236,10 @@ class Replay {
     if (statistic <= 1.0) CompareScores(*judged, fast_.Score(), cause);
   }
 
-  void CompareScores(const Judged<PointTest>& judged, const InlierScore& fast, std::optional<Cause>* cause) {
+  void CompareScores(const Judged<Solver, PointTest>& judged, const InlierScore& fast,
+                     std::optional<Cause>* cause) {
     const double threshold = fast_.thresholds().point;
-    const MatchMask& support = fast_support_.FindSupport(judged.hypothesis.sample);
+    const MatchMask& support = fast_support_.FindSupport(judged.hypothesis.id);
     bool is_same_set = true;
     for (int i = 0; i < matches_.num_matches(); ++i) {
       const double d2 = judged.Distance(problem_.matches[static_cast<size_t>(i)]);
@@ -216,39 +249,36 @@ class Replay {
       KeepGreater("inlier of a hypothesis", std::abs(d2 / threshold - 1.0), cause);
     }
     if (!is_same_set) return;
-    const InlierScore reference = ScoreInliers(problem_, judged.test, fast_.thresholds());
+    const InlierScore reference =
+        ScoreInliers(problem_, judged.test, fast_.thresholds(),
+                     kScoresTheRest<Solver, PointTest> ? judged.hypothesis.id.sample : Sample());
     const double difference = RelativeDifference(fast.mean_entropy, reference.mean_entropy);
     if (difference > 1e-9) KeepGreater("entropy of a hypothesis", difference, cause);
   }
 
   const MotionProblem& problem_;
   MatchBlocks matches_;
-  BlockSearch::Tests tests_;
+  BlockTests tests_;
   RandomStream fast_rng_, reference_rng_;
-  BlockSearch fast_, fast_support_;
+  BlockSearch<Solver> fast_, fast_support_;
   int num_iterations_;
+  Sample sample_;
+  bool is_first_ = true;  // the next model is the first of a sample
 };
 
-// The loop's winner in the fast implementation: the first hypothesis with its score.
-std::optional<MatchMask> FindWinnersSupport(const Arm& arm, const MotionProblem& problem, std::uint32_t trial,
-                                            const MotionEstimate& fast) {
-  RansacOptions options;
-  options.reading = arm.reading;
-  const BlockSearch::Tests tests{arm.estimator == "standard"          ? BlockSearch::Reading::kKnownPose
-                                 : arm.reading == Reading::kRankAware ? BlockSearch::Reading::kRankAware
-                                                                      : BlockSearch::Reading::kAsPrinted,
-                                 arm.estimator == "rcme", false};
+BlockTests TestsOf(const Arm& arm) {
+  const BlockReading reading = arm.estimator == "standard"          ? BlockReading::kKnownPose
+                               : arm.reading == Reading::kRankAware ? BlockReading::kRankAware
+                                                                    : BlockReading::kAsPrinted;
+  return {reading, arm.estimator == "rcme", false};
+}
+
+// The inliers of the loop's winner in the fast implementation.
+template <typename Solver>
+MatchMask FindWinnersSupport(const Arm& arm, const MotionProblem& problem, const HypothesisId& winner) {
   const MatchBlocks matches(problem);
-  RandomStream rng = SamplingStream(trial);
-  BlockSearch search(problem, matches, options, tests, rng);
-  for (int j = 0; j < options.num_iterations; ++j) {
-    const Proposal proposal = search.Next();
-    if (proposal.verdict != SampleVerdict::kConsistent) continue;
-    const InlierScore score = search.Score();
-    if (score.num_inliers != fast.num_support || score.mean_entropy != fast.mean_entropy) continue;
-    return search.FindSupport(proposal.sample);
-  }
-  return std::nullopt;
+  RandomStream no_samples({0, 0, 0, 0});
+  return BlockSearch<Solver>(problem, matches, arm.Options(), TestsOf(arm), no_samples).FindSupport(winner);
 }
 
 // How far a match is from changing sides in the fit set or in the final inliers: the least distance of its
@@ -368,30 +398,38 @@ class RefinementReplay {
 };
 
 // Of two estimates whose hypotheses agree.
-Cause CauseAfterTheLoop(const Arm& arm, const MotionProblem& problem, std::uint32_t trial,
-                        const MotionEstimate& fast, const MotionEstimate& reference) {
+template <typename Solver>
+Cause CauseAfterTheLoop(const Arm& arm, const MotionProblem& problem, const MotionEstimate& fast,
+                        const MotionEstimate& reference) {
   if (fast.initial_pose.R != reference.initial_pose.R || fast.initial_pose.t != reference.initial_pose.t) {
     return {"selection or cheirality", RelativeDifference(fast.mean_entropy, reference.mean_entropy)};
   }
-  const std::optional<MatchMask> support = FindWinnersSupport(arm, problem, trial, fast);
-  std::optional<Cause> cause;
-  if (support) cause = RefinementReplay(problem).FindCause(*support, fast.initial_pose);
+  const MatchMask support = FindWinnersSupport<Solver>(arm, problem, fast.hypothesis);
+  const std::optional<Cause> cause = RefinementReplay(problem).FindCause(support, fast.initial_pose);
   return cause.value_or(Cause{"unknown", std::nan("")});
+}
+
+template <typename Solver>
+Cause FindCauseOf(const Arm& arm, const MotionProblem& problem, std::uint32_t trial, Difference difference,
+                  const MotionEstimate& fast, const MotionEstimate& reference) {
+  const RansacOptions options = arm.Options();
+  const bool tests_sample = arm.estimator == "rcme" && Solver::kSampleTestDof > 0;
+  std::optional<Cause> cause;
+  if (difference != Difference::kEstimate) {
+    cause = arm.estimator == "standard"
+                ? Replay<Solver, KnownPoseTest>(problem, options, false, trial).FindCause()
+            : arm.reading == Reading::kRankAware
+                ? Replay<Solver, RankAwareTest>(problem, options, tests_sample, trial).FindCause()
+                : Replay<Solver, AsPrintedTest>(problem, options, tests_sample, trial).FindCause();
+  }
+  return cause ? *cause : CauseAfterTheLoop<Solver>(arm, problem, fast, reference);
 }
 
 Cause FindCause(const Arm& arm, const MotionProblem& problem, std::uint32_t trial, Difference difference,
                 const MotionEstimate& fast, const MotionEstimate& reference) {
-  RansacOptions options;
-  options.reading = arm.reading;
-  const bool tests_sample = arm.estimator == "rcme";
-  std::optional<Cause> cause;
-  if (difference != Difference::kEstimate) {
-    cause = arm.estimator == "standard" ? Replay<KnownPoseTest>(problem, options, false, trial).FindCause()
-            : arm.reading == Reading::kRankAware
-                ? Replay<RankAwareTest>(problem, options, tests_sample, trial).FindCause()
-                : Replay<AsPrintedTest>(problem, options, tests_sample, trial).FindCause();
-  }
-  return cause ? *cause : CauseAfterTheLoop(arm, problem, trial, fast, reference);
+  return arm.solver == MinimalSolver::kFivePoint
+             ? FindCauseOf<FivePoint>(arm, problem, trial, difference, fast, reference)
+             : FindCauseOf<EightPoint>(arm, problem, trial, difference, fast, reference);
 }
 
 struct Disagreement {

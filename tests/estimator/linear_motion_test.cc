@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/hypothesis.h"
+#include "estimator/solvers/eight_point.h"
 #include "stats/consistency.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
@@ -16,7 +17,8 @@ TEST(EstimateLinearMotion, IsTheHypothesisOfAMinimalSample) {
   for (int i = 0; i < 100; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.5, rng, &random.problem);
-    Hypothesis hypothesis = InstantiateModel(random.problem, {0, 1, 2, 3, 4, 5, 6, 7}).value();
+    Hypothesis<EightPoint> hypothesis =
+        InstantiateModel<EightPoint>(random.problem, {{0, 1, 2, 3, 4, 5, 6, 7}}).value();
     PropagateCovariance(random.problem, &hypothesis);
     const LinearMotion motion = EstimateLinearMotion(random.problem).value();
     const double tolerance = 1e-12 / motion.fit.conditioning;
@@ -26,7 +28,7 @@ TEST(EstimateLinearMotion, IsTheHypothesisOfAMinimalSample) {
       nearest = std::min(nearest, LocalCoordinates(hypothesis.pose, pose).norm());
     }
     EXPECT_LT(nearest, 100.0 * tolerance);
-    EXPECT_LT(motion.fit.LocalCoordinates(hypothesis.linear.f).norm(), tolerance);
+    EXPECT_LT(motion.fit.LocalCoordinates(hypothesis.model.f).norm(), tolerance);
   }
 }
 

@@ -194,15 +194,16 @@ TEST(RansacEstimator, AShareThatIsMetExactlyIsEnough) {
 // Of refined candidates that explain as many matches the better one of the loop stays, whose turn is first.
 TEST(RansacEstimator, OfEqualMotionsTheFirstStays) {
   LoopResult loop;
-  loop.winner = Candidate{{0}, {}, 0.0};
-  loop.runners_up = {Candidate{{1}, {}, 0.0}, Candidate{{2}, {}, 0.0}, Candidate{{3}, {}, 0.0}};
+  const auto made = [](int index) { return Candidate{{{index}}, {}, 0.0}; };
+  loop.winner = made(0);
+  loop.runners_up = {made(1), made(2), made(3)};
   const auto chosen = [&](const std::vector<int>& num_explained) {
     return FinishLoop({}, 100, loop,
                       [&](const Candidate& candidate) {
                         MotionEstimate estimate;
                         estimate.status = MotionStatus::kOk;
-                        estimate.num_explained = num_explained[static_cast<size_t>(candidate.sample[0])];
-                        estimate.num_support = candidate.sample[0];
+                        estimate.num_explained = num_explained[static_cast<size_t>(candidate.id.sample[0])];
+                        estimate.num_support = candidate.id.sample[0];
                         return estimate;
                       })
         .num_support;

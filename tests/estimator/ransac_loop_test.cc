@@ -12,6 +12,7 @@
 
 #include "estimator/kernels/block_search.h"
 #include "estimator/reference_search.h"
+#include "estimator/solvers/solver_table.h"
 #include "stats/distributions.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -41,18 +42,26 @@ struct BarePipeline {
 template <typename PointTestT>
 struct BareReference : BarePipeline {
   using PointTest = PointTestT;
-  static bool SampleIsConsistent(const MotionProblem&, const Hypothesis&, const PointTest&,
-                                 const Thresholds&) {
-    return true;
-  }
+  static constexpr bool kTestsSample = false;
 };
+
+template <typename Solver>
+MinimalSolver ChoiceOf() {
+  for (const auto& [name, choice] : SolverNames()) {
+    const bool is_it = VisitSolver(
+        choice, []<typename Other>(std::type_identity<Other>) { return std::is_same_v<Solver, Other>; });
+    if (is_it) return choice;
+  }
+  throw std::logic_error("not in the table");
+}
 
 // Allocations of the loop alone; `run` makes a search and runs the loop with it.
 template <typename MakeAndRun>
-void ExpectNoAllocationPerHypothesisOrPoint(const MakeAndRun& run) {
+void ExpectNoAllocationPerHypothesisOrPoint(MinimalSolver solver, const MakeAndRun& run) {
   const auto count = [&](int num_matches, int num_iterations) {
     const MotionProblem problem = TwoCameraProblem(num_matches, 0.5, 0.2, 0);
     RansacOptions options;
+    options.solver = solver;
     options.num_iterations = num_iterations;
     RandomStream rng({1, 0, 0, 4});
     return run(problem, options, rng);
@@ -65,22 +74,23 @@ void ExpectNoAllocationPerHypothesisOrPoint(const MakeAndRun& run) {
   EXPECT_EQ(count(1000, 100), few);
 }
 
-template <typename PointTest>
+template <typename Solver, typename PointTest>
 void ExpectReferenceDoesNotAllocate() {
   ExpectNoAllocationPerHypothesisOrPoint(
-      [](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-        ReferenceSearch<BareReference<PointTest>> search(problem, options, rng);
+      ChoiceOf<Solver>(), [](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+        ReferenceSearch<BareReference<PointTest>, Solver> search(problem, options, rng);
         const long before = num_allocations;
         RunRansacLoop<BarePipeline>(options, static_cast<int>(problem.matches.size()), search);
         return num_allocations - before;
       });
 }
 
-void ExpectBlocksDoNotAllocate(BlockSearch::Reading reading) {
+template <typename Solver>
+void ExpectBlocksDoNotAllocate(BlockReading reading) {
   ExpectNoAllocationPerHypothesisOrPoint(
-      [&](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+      ChoiceOf<Solver>(), [&](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
         const MatchBlocks matches(problem);
-        BlockSearch search(problem, matches, options, {reading, true, true}, rng);
+        BlockSearch<Solver> search(problem, matches, options, {reading, true, true}, rng);
         const long before = num_allocations;
         RunRansacLoop<BarePipeline>(options, matches.num_matches(), search);
         return num_allocations - before;
@@ -88,12 +98,17 @@ void ExpectBlocksDoNotAllocate(BlockSearch::Reading reading) {
 }
 
 TEST(RansacLoop, DoesNotAllocatePerHypothesisOrPoint) {
-  ExpectReferenceDoesNotAllocate<KnownPoseTest>();
-  ExpectReferenceDoesNotAllocate<AsPrintedTest>();
-  ExpectReferenceDoesNotAllocate<RankAwareTest>();
-  ExpectBlocksDoNotAllocate(BlockSearch::Reading::kKnownPose);
-  ExpectBlocksDoNotAllocate(BlockSearch::Reading::kAsPrinted);
-  ExpectBlocksDoNotAllocate(BlockSearch::Reading::kRankAware);
+  ExpectReferenceDoesNotAllocate<EightPoint, KnownPoseTest>();
+  ExpectReferenceDoesNotAllocate<EightPoint, AsPrintedTest>();
+  ExpectReferenceDoesNotAllocate<EightPoint, RankAwareTest>();
+  ExpectReferenceDoesNotAllocate<SevenPoint, RankAwareTest>();
+  ExpectReferenceDoesNotAllocate<FivePoint, RankAwareTest>();
+  ExpectReferenceDoesNotAllocate<OnePoint, RankAwareTest>();
+  for (const BlockReading reading :
+       {BlockReading::kKnownPose, BlockReading::kAsPrinted, BlockReading::kRankAware}) {
+    ExpectBlocksDoNotAllocate<EightPoint>(reading);
+    ExpectBlocksDoNotAllocate<FivePoint>(reading);
+  }
 }
 
 // A search that has made its hypotheses before: all consistent, with these inliers and mean entropies.
@@ -101,7 +116,7 @@ class ScriptedSearch {
  public:
   explicit ScriptedSearch(std::vector<InlierScore> scores) : scores_(std::move(scores)) {}
   const Thresholds& thresholds() const { return thresholds_; }
-  Proposal Next() { return {{static_cast<int>(num_proposed_++)}, SampleVerdict::kConsistent}; }
+  Proposal Next() { return {{{static_cast<int>(num_proposed_++)}}, SampleVerdict::kConsistent}; }
   InlierScore Score() const { return scores_[num_proposed_ - 1]; }
 
  private:
@@ -134,7 +149,7 @@ TEST(RansacLoop, WithoutABoundItRunsToItsEndAndTheFirstOfEqualsWins) {
   const double off = std::numeric_limits<double>::quiet_NaN();
   const LoopResult result = RunScript({{50, -9.0}, {70, -9.0}, {70, -1.0}}, off);
   EXPECT_EQ(result.counts.num_hypotheses, 3);
-  EXPECT_EQ(result.winner->sample[0], 1);
+  EXPECT_EQ(result.winner->id.sample[0], 1);
   EXPECT_FALSE(RunScript({{39, -9.0}}, off).winner);
 }
 
@@ -161,7 +176,7 @@ TEST(Thresholds, AreThoseOfTheProblemAndTheOptions) {
 TEST(DrawSample, IndicesAreDistinctAndInRange) {
   RandomStream rng({1, 0, 0, 4});
   for (int draw = 0; draw < 1000; ++draw) {
-    const Sample sample = DrawSample(8, rng);
+    const Sample sample = DrawSample(8, 8, rng);
     EXPECT_EQ(std::set<int>(sample.begin(), sample.end()), (std::set<int>{0, 1, 2, 3, 4, 5, 6, 7}));
   }
 }
@@ -172,7 +187,7 @@ TEST(DrawSample, EverySetIsEquallyLikely) {
   RandomStream rng({1, 0, 0, 4});
   std::map<std::set<int>, int> counts;
   for (int draw = 0; draw < 45'000; ++draw) {
-    const Sample sample = DrawSample(10, rng);
+    const Sample sample = DrawSample(8, 10, rng);
     ++counts[std::set<int>(sample.begin(), sample.end())];
   }
   EXPECT_EQ(counts.size(), 45u);

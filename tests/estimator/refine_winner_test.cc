@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "estimator/reference_matches.h"
+#include "estimator/solvers/eight_point.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -33,15 +34,15 @@ class ScriptedMatches : public ReferenceMatches {
 // 30 noisy matches, the first 20 of them the support.
 struct Case {
   MotionProblem problem;
-  Sample sample;
+  std::optional<Hypothesis<EightPoint>> hypothesis;
   std::vector<int> support;
 };
 Case MakeCase() {
   RandomStream rng({.seed = 1, .purpose = 930});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 30});
   AddNoise(0.5, rng, &random.problem);
-  Case made{random.problem, {}, std::vector<int>(20)};
-  std::iota(made.sample.begin(), made.sample.end(), 0);
+  Case made{random.problem, InstantiateModel<EightPoint>(random.problem, {{0, 1, 2, 3, 4, 5, 6, 7}}),
+            std::vector<int>(20)};
   std::iota(made.support.begin(), made.support.end(), 0);
   return made;
 }
@@ -51,7 +52,7 @@ MotionEstimate Refined(const Case& made, const ScriptedMatches& matches, double 
   options.refinement = Refinement::kMle;
   options.kappa = kappa;
   MotionEstimate estimate;
-  RefineWinner(matches, options, made.sample, made.support, &estimate);
+  RefineWinner(matches, options, made.hypothesis, made.support, &estimate);
   return estimate;
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/solvers/eight_point.h"
 #include "stats/distributions.h"
 #include "stats/goodness_of_fit.h"
 #include "tests/test_support/coverage_count.h"
@@ -18,14 +19,14 @@ namespace {
 
 constexpr Sample kAllEight = {0, 1, 2, 3, 4, 5, 6, 7};
 
-std::optional<Hypothesis> Solve(const MotionProblem& problem) {
-  std::optional<Hypothesis> hypothesis = InstantiateModel(problem, kAllEight);
+std::optional<Hypothesis<EightPoint>> Solve(const MotionProblem& problem) {
+  std::optional<Hypothesis<EightPoint>> hypothesis = InstantiateModel<EightPoint>(problem, {kAllEight});
   if (hypothesis) PropagateCovariance(problem, &*hypothesis);
   return hypothesis;
 }
 
 // T from a complement that is found numerically: the null space of [tangent, vec E]'.
-double StatisticByNullSpace(const Hypothesis& hypothesis) {
+double StatisticByNullSpace(const Hypothesis<EightPoint>& hypothesis) {
   Eigen::Matrix<double, 6, 9> spanned;
   const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(hypothesis.pose);
   for (int k = 0; k < 5; ++k) spanned.row(k) = Vectorize(dE_dp[static_cast<size_t>(k)]);
@@ -33,7 +34,7 @@ double StatisticByNullSpace(const Hypothesis& hypothesis) {
   const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 9>> svd(spanned, Eigen::ComputeFullV);
   EXPECT_GT(svd.singularValues()(5), 0.1);
   const Eigen::Matrix<double, 9, 3> N = svd.matrixV().rightCols<3>();
-  const Eigen::Vector3d misfit = N.transpose() * hypothesis.linear.f;
+  const Eigen::Vector3d misfit = N.transpose() * hypothesis.model.f;
   const Eigen::Matrix3d misfit_cov = N.transpose() * hypothesis.f_cov * N;
   return misfit.dot(misfit_cov.inverse() * misfit);
 }
@@ -43,7 +44,7 @@ TEST(JointSampleStatistic, UsesTheComplementOfTheTangentAndE) {
   for (int i = 0; i < 200; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.5, rng, &random.problem);
-    const Hypothesis hypothesis = Solve(random.problem).value();
+    const Hypothesis<EightPoint> hypothesis = Solve(random.problem).value();
     const double statistic = JointSampleStatistic(hypothesis);
     EXPECT_GT(statistic, 0.0);
     EXPECT_NEAR(statistic, StatisticByNullSpace(hypothesis), 1e-6 * statistic);
@@ -54,11 +55,11 @@ TEST(JointSampleStatistic, DoesNotDependOnTheSignOfF) {
   RandomStream rng({.seed = 1, .purpose = 171});
   RandomProblem random = MakeRandomProblem(rng);
   AddNoise(0.5, rng, &random.problem);
-  Hypothesis hypothesis = Solve(random.problem).value();
+  Hypothesis<EightPoint> hypothesis = Solve(random.problem).value();
   const double statistic = JointSampleStatistic(hypothesis);
-  hypothesis.linear.f *= -1.0;
+  hypothesis.model.f *= -1.0;
   EXPECT_DOUBLE_EQ(JointSampleStatistic(hypothesis), statistic);
-  hypothesis.projection = ProjectToEssential(Matricize(hypothesis.linear.f));
+  hypothesis.projection = ProjectToEssential(Matricize(hypothesis.model.f));
   EXPECT_NEAR(JointSampleStatistic(hypothesis), statistic, 1e-9 * statistic);
 }
 
@@ -75,7 +76,7 @@ TEST(JointSampleStatistic, SingularCovarianceIsInfinite) {
   RandomStream rng({.seed = 1, .purpose = 173});
   RandomProblem random = MakeRandomProblem(rng);
   AddNoise(0.5, rng, &random.problem);
-  Hypothesis hypothesis = Solve(random.problem).value();
+  Hypothesis<EightPoint> hypothesis = Solve(random.problem).value();
   hypothesis.f_cov.setZero();
   EXPECT_TRUE(std::isinf(JointSampleStatistic(hypothesis)));
 }
@@ -123,7 +124,7 @@ CoverageCount PassRate(bool with_outlier, int num_trials, std::uint32_t purpose)
     if (with_outlier) {
       random.problem.matches[rng.IntegerBelow(8)].x2_px << rng.Uniform(0.0, 799.0), rng.Uniform(0.0, 599.0);
     }
-    const std::optional<Hypothesis> hypothesis = Solve(random.problem);
+    const std::optional<Hypothesis<EightPoint>> hypothesis = Solve(random.problem);
     passes.Add(hypothesis && JointSampleStatistic(*hypothesis) <= ChiSquareQuantile(3, 0.95));
   }
   return passes;
@@ -139,8 +140,8 @@ TEST(EverySamplePointFits, FailsIfOnePointIsBeyondTheThreshold) {
   RandomStream rng({.seed = 1, .purpose = 183});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 9});
   random.problem.sigma_px = 0.5;
-  Hypothesis hypothesis;
-  hypothesis.sample = kAllEight;
+  Hypothesis<EightPoint> hypothesis;
+  hypothesis.id.sample = kAllEight;
   const KnownPoseTest test(FundamentalFromEssential(EssentialFromPose(random.pose_true),
                                                     random.problem.camera1, random.problem.camera2),
                            random.problem.sigma_px);

@@ -15,6 +15,7 @@
 #include "estimator/point_consistency.h"
 #include "estimator/ransac_loop.h"
 #include "estimator/sample_consistency.h"
+#include "estimator/solvers/eight_point.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/random_problem.h"
 
@@ -37,7 +38,7 @@ Case MakeCase(std::uint32_t trial, double sigma_px = 0.5) {
   for (size_t i = 0; i < 60; i += 10) {
     c.problem.matches[i].x2_px << rng.Uniform(0.0, 799.0), rng.Uniform(0.0, 599.0);
   }
-  for (Sample& sample : c.samples) sample = DrawSample(60, rng);
+  for (Sample& sample : c.samples) sample = DrawSample(8, 60, rng);
   return c;
 }
 
@@ -53,15 +54,15 @@ Eigen::Matrix3d MatrixOf(const HypothesisBlock::Row (&rows)[9], int lane) {
   return matrix;
 }
 
-std::optional<Hypothesis> Scalar(const MotionProblem& problem, const Sample& sample) {
-  std::optional<Hypothesis> hypothesis = InstantiateModel(problem, sample);
+std::optional<Hypothesis<EightPoint>> Scalar(const MotionProblem& problem, const Sample& sample) {
+  std::optional<Hypothesis<EightPoint>> hypothesis = InstantiateModel<EightPoint>(problem, {sample});
   if (hypothesis) PropagateCovariance(problem, &*hypothesis);
   return hypothesis;
 }
 
-double Conditioning(const Hypothesis& hypothesis) {
+double Conditioning(const Hypothesis<EightPoint>& hypothesis) {
   const Eigen::Vector3d& s = hypothesis.projection.singular_values;
-  return hypothesis.linear.G.norm() * s(0) * s(0) / (s(1) * s(1) - s(2) * s(2));
+  return hypothesis.model.G.norm() * s(0) * s(0) / (s(1) * s(1) - s(2) * s(2));
 }
 
 // sum_k (x2' dF_k x1)^2 of the block and of the scalar model, of one match.
@@ -105,7 +106,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesis) {
       const HypothesisBlock block = Instantiate(c, Spread::kCovarianceAndMisfit);
       ASSERT_EQ(block.is_model, 0xff);
       for (int lane = 0; lane < kBlockSize; ++lane) {
-        const Hypothesis scalar = Scalar(c.problem, c.samples[static_cast<size_t>(lane)]).value();
+        const Hypothesis<EightPoint> scalar = Scalar(c.problem, c.samples[static_cast<size_t>(lane)]).value();
         const double tolerance = 1e-13 * Conditioning(scalar);
         const Eigen::Matrix3d F = MatrixOf(block.F, lane);
         const Eigen::Matrix3d expected = matches.FundamentalFromEssential(EssentialFromPose(scalar.pose));
@@ -141,6 +142,7 @@ Case MakeCaseOfCloseSingularValues(std::uint32_t trial, double gap) {
     ray(1 - free) = -(line(free) * ray(free) + line(2)) / line(1 - free);
     match.x2_px = c.problem.camera2.Project(ray);
   }
+  c.samples.fill(Sample(8));
   for (int i = 0; i < 64; ++i) c.samples[static_cast<size_t>(i / 8)][static_cast<size_t>(i % 8)] = i;
   return c;
 }
@@ -155,7 +157,8 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesisWhereSingularValuesAreClose) {
       const MatchBlocks matches(c.problem);
       const HypothesisBlock block = Instantiate(c, Spread::kNone);
       for (int lane = 0; lane < kBlockSize; ++lane) {
-        const Hypothesis scalar = InstantiateModel(c.problem, c.samples[static_cast<size_t>(lane)]).value();
+        const Hypothesis<EightPoint> scalar =
+            InstantiateModel<EightPoint>(c.problem, {c.samples[static_cast<size_t>(lane)]}).value();
         const Eigen::Matrix3d F = MatrixOf(block.F, lane);
         const Eigen::Matrix3d expected = matches.FundamentalFromEssential(EssentialFromPose(scalar.pose));
         of_F.Add(std::min((F - expected).norm(), (F + expected).norm()) / expected.norm(),
@@ -221,7 +224,7 @@ Case MakeSpoilt(const Spoil& spoil, size_t spoilt, std::uint32_t trial) {
   spoil(&random);
   Case c{random.problem};
   for (size_t lane = 0; lane < c.samples.size(); ++lane) {
-    c.samples[lane] = lane == spoilt ? Sample{0, 1, 2, 3, 4, 5, 6, 7} : DrawSample(22, rng);
+    c.samples[lane] = lane == spoilt ? Sample{0, 1, 2, 3, 4, 5, 6, 7} : DrawSample(8, 22, rng);
     if (lane == spoilt) continue;
     for (int& index : c.samples[lane]) index += 8;
   }
@@ -234,7 +237,7 @@ TEST_F(HypothesisBlockTest, RefusesWhatTheScalarSolverRefuses) {
       for (std::uint32_t trial = 0; trial < 24; ++trial) {
         const size_t lane = trial % 8;
         const Case c = MakeSpoilt(spoil, lane, trial);
-        EXPECT_FALSE(InstantiateModel(c.problem, c.samples[lane])) << name;
+        EXPECT_FALSE(InstantiateModel<EightPoint>(c.problem, {c.samples[lane]})) << name;
         for (const Spread spread : {Spread::kNone, Spread::kCovariance, Spread::kCovarianceAndMisfit}) {
           EXPECT_EQ(Instantiate(c, spread).is_model, 0xff & ~(1u << lane)) << name << ", trial " << trial;
         }

@@ -23,6 +23,7 @@
 #include "estimator/ransac_loop.h"
 #include "estimator/reference_search.h"
 #include "estimator/sample_consistency.h"
+#include "estimator/solvers/eight_point.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/random_problem.h"
 
@@ -349,7 +350,7 @@ std::vector<std::optional<bool>> ScalarVerdicts(const MotionProblem& problem,
                                                 double threshold) {
   std::vector<std::optional<bool>> verdicts;
   for (const Sample& sample : samples) {
-    Hypothesis hypothesis = InstantiateModel(problem, sample).value();
+    Hypothesis<EightPoint> hypothesis = InstantiateModel<EightPoint>(problem, {sample}).value();
     PropagateCovariance(problem, &hypothesis);
     const AsPrintedTest test(
         UncertainFundamental::From(hypothesis.pose, hypothesis.pose_cov, problem.camera1, problem.camera2)
@@ -370,7 +371,7 @@ TEST_F(ScoreTest, SamplesAreConsistentWhereEveryPointFits) {
       const Case c = MakeCase(40, 300 + trial);
       std::array<Sample, kBlockSize> samples{};
       for (Sample& sample : samples) {
-        sample = DrawSample(26, rng);  // of the matches that are right
+        sample = DrawSample(8, 26, rng);  // of the matches that are right
         for (int& index : sample) index = 3 * (index / 2) + 1 + index % 2;
       }
       HypothesisBlock block;

@@ -3,19 +3,21 @@
 #include <gtest/gtest.h>
 
 #include "estimator/hypothesis.h"
+#include "estimator/solvers/eight_point.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
 namespace {
 
 // The first `count` random problems' hypotheses of their eight matches.
-std::vector<std::pair<MotionProblem, Hypothesis>> RandomHypotheses(std::uint32_t count) {
-  std::vector<std::pair<MotionProblem, Hypothesis>> hypotheses;
+std::vector<std::pair<MotionProblem, Hypothesis<EightPoint>>> RandomHypotheses(std::uint32_t count) {
+  std::vector<std::pair<MotionProblem, Hypothesis<EightPoint>>> hypotheses;
   for (std::uint32_t trial = 0; hypotheses.size() < count; ++trial) {
     RandomStream rng({1, 0, trial, 90});
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.1, rng, &random.problem);
-    std::optional<Hypothesis> hypothesis = InstantiateModel(random.problem, {0, 1, 2, 3, 4, 5, 6, 7});
+    std::optional<Hypothesis<EightPoint>> hypothesis =
+        InstantiateModel<EightPoint>(random.problem, {{0, 1, 2, 3, 4, 5, 6, 7}});
     if (!hypothesis) continue;
     PropagateCovariance(random.problem, &*hypothesis);
     hypotheses.emplace_back(random.problem, *hypothesis);
@@ -25,10 +27,9 @@ std::vector<std::pair<MotionProblem, Hypothesis>> RandomHypotheses(std::uint32_t
 
 TEST(OverdeterminedCovariance, IsTheCovarianceByTheGainOfTheSolver) {
   for (const auto& [problem, hypothesis] : RandomHypotheses(50)) {
-    const Matrix9d information = SampleInformation(hypothesis.linear.f, problem.camera1, problem.camera2,
+    const Matrix9d information = SampleInformation(hypothesis.model.f, problem.camera1, problem.camera2,
                                                    problem.matches, problem.sigma_px);
-    const Matrix9d printed =
-        OverdeterminedCovariance(information, HouseholderColumns(hypothesis.linear.f, 8));
+    const Matrix9d printed = OverdeterminedCovariance(information, HouseholderColumns(hypothesis.model.f, 8));
     const double scale = hypothesis.f_cov.cwiseAbs().maxCoeff();
     ASSERT_GT(scale, 0.0);
     EXPECT_LT((printed - hypothesis.f_cov).cwiseAbs().maxCoeff(), 1e-5 * scale);
@@ -37,7 +38,7 @@ TEST(OverdeterminedCovariance, IsTheCovarianceByTheGainOfTheSolver) {
 
 TEST(HouseholderColumns, AreOrthonormalAndNormalToFOnlyForTheLastAxis) {
   for (const auto& [problem, hypothesis] : RandomHypotheses(20)) {
-    const Vector9d& f = hypothesis.linear.f;
+    const Vector9d& f = hypothesis.model.f;
     for (const int onto : {0, 4, 8}) {
       const Eigen::Matrix<double, 9, 8> A = HouseholderColumns(f, onto);
       EXPECT_LT((A.transpose() * A - Eigen::Matrix<double, 8, 8>::Identity()).cwiseAbs().maxCoeff(), 1e-14);

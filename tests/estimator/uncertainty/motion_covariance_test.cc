@@ -12,6 +12,7 @@
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/hypothesis.h"
+#include "estimator/solvers/eight_point.h"
 #include "estimator/solvers/five_point.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
@@ -23,8 +24,8 @@ namespace {
 
 constexpr Sample kAllEight = {0, 1, 2, 3, 4, 5, 6, 7};
 
-Hypothesis Solve(const MotionProblem& problem) {
-  Hypothesis hypothesis = InstantiateModel(problem, kAllEight).value();
+Hypothesis<EightPoint> Solve(const MotionProblem& problem) {
+  Hypothesis<EightPoint> hypothesis = InstantiateModel<EightPoint>(problem, {kAllEight}).value();
   PropagateCovariance(problem, &hypothesis);
   return hypothesis;
 }
@@ -36,24 +37,21 @@ RelativePose NearestTo(const RelativePose& reference, const std::array<RelativeP
   });
 }
 
-TEST(ConstraintVariances, AreSigmaSquaredTimesTheSquaredGradient) {
+TEST(ConstraintVariance, IsSigmaSquaredTimesTheSquaredGradient) {
   RandomStream rng({.seed = 1, .purpose = 150});
   const RandomProblem random = MakeRandomProblem(rng);
   const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(random.pose_true),
                                                      random.problem.camera1, random.problem.camera2);
-  std::array<Correspondence, 8> sample;
-  std::copy_n(random.problem.matches.begin(), 8, sample.begin());
-  const Eigen::Matrix<double, 8, 1> variances = ConstraintVariances(F, sample, 0.7);
-  for (int k = 0; k < 8; ++k) {
-    const Correspondence& match = sample[static_cast<size_t>(k)];
+  for (const Correspondence& match : random.problem.matches) {
+    const double variance = ConstraintVariance(F, match, 0.7);
     const auto g = [&](const Eigen::VectorXd& X) {
       const Eigen::Vector3d x1(X(0), X(1), 1.0), x2(X(2), X(3), 1.0);
       return Eigen::VectorXd::Constant(1, x2.dot(F * x1));
     };
     Eigen::Vector4d X;
     X << match.x1_px, match.x2_px;
-    EXPECT_NEAR(variances(k), 0.49 * NumericJacobian(g, X, 0.5).squaredNorm(), 1e-9 * variances(k));
-    EXPECT_GT(variances(k), 0.0);
+    EXPECT_NEAR(variance, 0.49 * NumericJacobian(g, X, 0.5).squaredNorm(), 1e-9 * variance);
+    EXPECT_GT(variance, 0.0);
   }
 }
 
@@ -65,8 +63,8 @@ TEST(CovarianceOfF, EqualsTheTextbookForm) {
   for (int i = 0; i < 100; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.5, rng, &random.problem);
-    const Hypothesis hypothesis = Solve(random.problem);
-    const Eigen::Matrix3d F = FundamentalFromEssential(Matricize(hypothesis.linear.f), random.problem.camera1,
+    const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
+    const Eigen::Matrix3d F = FundamentalFromEssential(Matricize(hypothesis.model.f), random.problem.camera1,
                                                        random.problem.camera2);
     Matrix9d information = Matrix9d::Zero();
     double largest_term = 0.0;
@@ -80,7 +78,7 @@ TEST(CovarianceOfF, EqualsTheTextbookForm) {
       information += J_omega.transpose() * J_omega / (random.problem.sigma_px * random.problem.sigma_px);
     }
     largest_term = information.norm();
-    const Eigen::Matrix<double, 9, 8>& A = hypothesis.linear.A;
+    const Eigen::Matrix<double, 9, 8>& A = hypothesis.model.A;
     const Eigen::Matrix<double, 8, 8> reduced = A.transpose() * information * A;
     const Matrix9d textbook = A * reduced.ldlt().solve(A.transpose());
     // The textbook form squares the condition number; ours does not.
@@ -94,11 +92,11 @@ TEST(CovarianceOfF, HasRankEightAndNullVectorF) {
   RandomStream rng({.seed = 1, .purpose = 152});
   RandomProblem random = MakeRandomProblem(rng);
   AddNoise(0.5, rng, &random.problem);
-  const Hypothesis hypothesis = Solve(random.problem);
-  EXPECT_LT((hypothesis.f_cov * hypothesis.linear.f).norm(), 1e-13 * hypothesis.f_cov.norm());
+  const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
+  EXPECT_LT((hypothesis.f_cov * hypothesis.model.f).norm(), 1e-13 * hypothesis.f_cov.norm());
   EXPECT_LT((hypothesis.f_cov - hypothesis.f_cov.transpose()).norm(), 1e-15 * hypothesis.f_cov.norm());
   const Eigen::Matrix<double, 8, 8> inside =
-      hypothesis.linear.A.transpose() * hypothesis.f_cov * hypothesis.linear.A;
+      hypothesis.model.A.transpose() * hypothesis.f_cov * hypothesis.model.A;
   EXPECT_EQ(inside.llt().info(), Eigen::Success);
 }
 
@@ -135,7 +133,7 @@ TEST(CovarianceOfMotion, IsTheSameForAllFourPosesUpToTheirTangents) {
   for (int i = 0; i < 20; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.5, rng, &random.problem);
-    const Hypothesis hypothesis = Solve(random.problem);
+    const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
     const Eigen::Vector3d ray1(0.2, -0.1, 1.0), ray2(-0.15, 0.22, 1.0);
     std::vector<double> variances;
     for (const RelativePose& pose : PosesFromEssential(hypothesis.projection)) {
@@ -182,7 +180,7 @@ NormalizedErrors MeasureErrors(double sigma_px, int num_trials, std::uint32_t pu
   for (int trial = 0; trial < num_trials; ++trial) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(sigma_px, rng, &random.problem);
-    const Hypothesis hypothesis = Solve(random.problem);
+    const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
     // The estimate's own tangent, as a user of the covariance would have it.
     const RelativePose estimate = NearestTo(random.pose_true, PosesFromEssential(hypothesis.projection));
     const Matrix5d pose_cov = CovarianceOfMotion(estimate, hypothesis.f_cov);
@@ -190,8 +188,8 @@ NormalizedErrors MeasureErrors(double sigma_px, int num_trials, std::uint32_t pu
     errors.pose.push_back(pose_error.dot(pose_cov.llt().solve(pose_error)));
 
     Vector9d f_true = Vectorize(EssentialFromPose(random.pose_true)) / std::sqrt(2.0);
-    if (f_true.dot(hypothesis.linear.f) < 0.0) f_true = -f_true;
-    const Eigen::Matrix<double, 9, 8>& A = hypothesis.linear.A;
+    if (f_true.dot(hypothesis.model.f) < 0.0) f_true = -f_true;
+    const Eigen::Matrix<double, 9, 8>& A = hypothesis.model.A;
     const Eigen::Matrix<double, 8, 1> f_error = A.transpose() * f_true;
     const Eigen::Matrix<double, 8, 8> f_cov = A.transpose() * hypothesis.f_cov * A;
     errors.f.push_back(f_error.dot(f_cov.llt().solve(f_error)));

@@ -74,7 +74,7 @@ double DrawWithGrossErrors(RandomStream& rng) {  // 2 % with five times the spre
 Statistic FreshPointWith(Matrix5d (*mutate)(const Matrix5d&)) {
   return [mutate](Case& made) -> Outcome {
     const MotionProblem& problem = made.problem();
-    const std::optional<Hypothesis> hypothesis = FitSample(problem);
+    const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
     if (!hypothesis) return {kInfinity};
     const auto model = UncertainFundamental::From(hypothesis->pose, mutate(hypothesis->pose_cov),
                                                   problem.camera1, problem.camera2);
@@ -85,22 +85,22 @@ Statistic FreshPointWith(Matrix5d (*mutate)(const Matrix5d&)) {
 // NEES of f where the constraints' variances leave out the noise of one image.
 Outcome NeesOfFFromOneImage(Case& made) {
   const MotionProblem& problem = made.problem();
-  std::optional<Hypothesis> hypothesis = FitSample(problem);
+  std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
   if (!hypothesis) return {kInfinity};
   const Eigen::Matrix3d F =
-      FundamentalFromEssential(Matricize(hypothesis->linear.f), problem.camera1, problem.camera2);
+      FundamentalFromEssential(Matricize(hypothesis->model.f), problem.camera1, problem.camera2);
   Eigen::Matrix<double, 8, 1> variances;
   for (int k = 0; k < 8; ++k) {
     const auto& match = problem.matches[static_cast<size_t>(hypothesis->sample[static_cast<size_t>(k)])];
     variances(k) =
         problem.sigma_px * problem.sigma_px * EvaluateConstraint(F, match).gradient.head<2>().squaredNorm();
   }
-  hypothesis->f_cov = CovarianceOfF(hypothesis->linear, variances);
+  hypothesis->f_cov = CovarianceOfF(hypothesis->model.G, variances);
   return {NeesOfF(*hypothesis, made.pose_true())};
 }
 
 Outcome SoundNeesOfF(Case& made) {
-  const std::optional<Hypothesis> hypothesis = FitSample(made.problem());
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
   return {hypothesis ? NeesOfF(*hypothesis, made.pose_true()) : kInfinity};
 }
 

@@ -84,7 +84,7 @@ TEST(EntropyRoc, SamplesAreGoodWhereAllEightMatchesAreTrue) {
       RandomStream rng = StreamFor({plain.study.seed, condition.index, trial, 0}, StreamPurpose::kSampling);
       const std::vector<bool>& is_true = result.data.truth.is_inlier_true;
       int num_wrong = 0;
-      for (const int i : DrawSample(static_cast<int>(is_true.size()), rng)) {
+      for (const int i : DrawSample(8, static_cast<int>(is_true.size()), rng)) {
         num_wrong += !is_true[static_cast<size_t>(i)];
       }
       (num_wrong == 0 ? expected.good : expected.bad).push_back(result.records[1].mean_entropy);

@@ -1,0 +1,125 @@
+// Eight five-point motions side by side against the scalar Hypothesis, on every instruction set.
+#include "estimator/kernels/exact_block.h"
+
+#include <gtest/gtest.h>
+
+#include "estimator/hypothesis.h"
+#include "estimator/kernels/block_search.h"
+#include "estimator/kernels/score.h"
+#include "estimator/ransac_loop.h"
+#include "estimator/solvers/five_point.h"
+#include "tests/test_support/every_target.h"
+#include "tests/test_support/random_problem.h"
+
+namespace rcme {
+namespace {
+
+class ExactBlockTest : public OnEveryTarget {};
+
+MotionProblem MakeProblem(std::uint32_t trial) {
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2720});
+  MotionProblem problem = MakeRandomProblem(rng, {.num_matches = 60}).problem;
+  AddNoise(0.5, rng, &problem);
+  return problem;
+}
+
+Correspondence Whitened(const MatchBlocks& matches, int match) {
+  const MatchBlock& at = matches[match / kBlockSize];
+  const int l = match % kBlockSize;
+  return {{at.x1[l], at.y1[l]}, {at.x2[l], at.y2[l]}};
+}
+
+double VarianceOfG(const HypothesisBlock& block, int lane, const Correspondence& whitened) {
+  double variance = 0.0;
+  for (const auto& dF : block.dF) {
+    Eigen::Matrix3d matrix;
+    for (int i = 0; i < 9; ++i) matrix(i / 3, i % 3) = dF[i][lane];
+    variance += std::pow(EvaluateConstraint(matrix, whitened).g, 2);
+  }
+  return variance;
+}
+double VarianceOfG(const UncertainFundamental& model, const Correspondence& match) {
+  double variance = 0.0;
+  for (const Eigen::Matrix3d& dF : model.dF_whitened) {
+    variance += std::pow(EvaluateConstraint(dF, match).g, 2);
+  }
+  return variance;
+}
+
+// F up to its sign, and the variance of g of matches; tolerance: rounding times the gain of the sample.
+TEST_F(ExactBlockTest, IsTheScalarHypothesis) {
+  Run([] {
+    int num_models = 0, num_sharp = 0;
+    for (std::uint32_t trial = 0; trial < 20; ++trial) {
+      const MotionProblem problem = MakeProblem(trial);
+      const MatchBlocks matches(problem);
+      RandomStream rng({.seed = 1, .trial = trial, .purpose = 2721});
+      BlockSource<FivePoint> source;
+      HypothesisBlock block;
+      ProposalBlock proposals;
+      for (int turn = 0; turn < 4; ++turn) {
+        source.FillNext(matches, Spread::kCovariance, rng, &block, &proposals);
+        for (int lane = 0; lane < kBlockSize; ++lane) {
+          if (!(block.is_model >> lane & 1)) continue;
+          auto scalar = InstantiateModel<FivePoint>(problem, proposals[static_cast<size_t>(lane)].id).value();
+          PropagateCovariance(problem, &scalar);
+          const double tolerance = 1e-12 * scalar.model.G.norm();
+          ++num_models;
+          num_sharp += tolerance < 1e-6;
+          const Eigen::Matrix3d expected = matches.FundamentalFromEssential(EssentialFromPose(scalar.pose));
+          Eigen::Matrix3d F;
+          for (int i = 0; i < 9; ++i) F(i / 3, i % 3) = block.F[i][lane];
+          EXPECT_LT(std::min((F - expected).norm(), (F + expected).norm()), tolerance * expected.norm());
+          const UncertainFundamental model = UncertainModelOf(problem, scalar).value();
+          for (int i = 0; i < 60; i += 7) {
+            const double variance = VarianceOfG(model, problem.matches[static_cast<size_t>(i)]);
+            EXPECT_GT(variance, 0.0);
+            EXPECT_NEAR(VarianceOfG(block, lane, Whitened(matches, i)), variance, tolerance * variance);
+          }
+        }
+      }
+    }
+    EXPECT_GT(num_models, 400);
+    EXPECT_GT(num_sharp, 9 * num_models / 10);
+  });
+}
+
+// The models of the samples that the reference draws, in its order and with its numbers.
+TEST_F(ExactBlockTest, NumbersSamplesAndModelsAsTheReferenceDoes) {
+  const MotionProblem problem = MakeProblem(100);
+  const MatchBlocks matches(problem);
+  RandomStream rng({.seed = 1, .purpose = 2722}), reference_rng({.seed = 1, .purpose = 2722});
+  BlockSource<FivePoint> source;
+  HypothesisBlock block;
+  ProposalBlock proposals;
+  size_t lane = kBlockSize;
+  for (int j = 0; j < 100; ++j) {
+    const Sample sample = DrawSample(5, 60, reference_rng);
+    const int count = std::max(InstantiateModels<FivePoint>(problem, sample).count, 1);
+    for (int model = 0; model < count; ++model) {
+      if (lane == kBlockSize) {
+        source.FillNext(matches, Spread::kNone, rng, &block, &proposals);
+        lane = 0;
+      }
+      EXPECT_EQ(proposals[lane].id, (HypothesisId{sample, model}));
+      EXPECT_EQ(proposals[lane++].is_last, model + 1 == count);
+    }
+  }
+}
+
+TEST(RemoveSample, TakesItsInliersAndTheirSpreadsOut) {
+  const MotionProblem problem = MakeProblem(101);
+  const MatchBlocks matches(problem);
+  InlierScan scan(matches);
+  scan.inliers = MaskOf(std::vector<int>{1, 7, 8, 20, 59}, matches);
+  scan.num_inliers = 5;
+  for (size_t i = 0; i < 5; ++i) scan.spreads[i] = std::vector<double>{1.0, 7.0, 8.0, 20.0, 59.0}[i];
+  RemoveSample({59, 8, 9, 1}, &scan);
+  EXPECT_EQ(IndicesOf(scan.inliers), (std::vector<int>{7, 20}));
+  EXPECT_EQ(scan.num_inliers, 2);
+  EXPECT_EQ(scan.spreads[0], 7.0);
+  EXPECT_EQ(scan.spreads[1], 20.0);
+}
+
+}  // namespace
+}  // namespace rcme
