@@ -150,7 +150,7 @@ TYPED_TEST(MinimalSolverTest, GHasANumericTwin) {
         steps(k) = 1e-3 * std::min(1.0 / model.G.norm(), line.head<2>().norm());
       }
       const Eigen::MatrixXd numeric = NumericJacobian(f_of, Eigen::VectorXd::Zero(m), steps);
-      EXPECT_JACOBIAN_NEAR(-model.G, numeric, 1e-5);
+      EXPECT_JACOBIAN_NEAR(-model.G, numeric, 1e-4);  // next to double roots f bends most
       ++num_compared;
     }
   }
