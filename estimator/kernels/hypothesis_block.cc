@@ -14,9 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Sigma_p (eq::cov_p) and the misfit's covariance from Sigma_f (eq. 6), without forming Sigma_f. Beside the basis T of the
-// motions (hypothesis_lanes-inl.h) three of the products of the projection span what is normal to the
-// essential matrices:
+// Sigma_p (eq::cov_p) and the misfit's covariance from Sigma_f (eq. 6), without forming Sigma_f. Beside the
+// basis T of the motions (hypothesis_lanes-inl.h) three of the products of the projection span what is normal
+// to the essential matrices:
 //
 //   N = (u1 v1' - u2 v2') / sqrt(2), (u1 v2' + u2 v1') / sqrt(2), u3 v3'
 //

@@ -38,8 +38,7 @@ class TrialDecisions {
       const TrialOutcome outcome = OutcomeUnder(*plan.estimators[s]);
       const MotionEstimator* without = plan.without_limits[s].get();
       const auto known = decided_.find(without);
-      visit(s, outcome,
-            known == decided_.end() ? decided_[without] = OutcomeUnder(*without) : known->second);
+      visit(s, outcome, known == decided_.end() ? decided_[without] = OutcomeUnder(*without) : known->second);
     }
   }
 

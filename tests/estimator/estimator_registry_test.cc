@@ -40,7 +40,8 @@ std::string WordFor(const EstimatorVariant& variant, const std::string& option) 
 std::vector<EstimatorVariant> Variants() {
   std::vector<EstimatorVariant> variants;
   for (EstimatorVariant variant : EstimatorVariants({"solver", "reading", "implementation"})) {
-    const std::string solver = WordFor(variant, "solver"), implementation = WordFor(variant, "implementation");
+    const std::string solver = WordFor(variant, "solver"),
+                      implementation = WordFor(variant, "implementation");
     if (implementation == "automatic") continue;
     if (implementation == "fast" && solver != "eight_point" && solver != "five_point") continue;
     // Up to ten models a sample, one by one: fewer samples will do.

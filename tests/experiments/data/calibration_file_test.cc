@@ -55,7 +55,9 @@ TEST_F(CalibrationFile, GivesEveryIntrinsicOfBothCameras) {
 }
 
 TEST_F(CalibrationFile, AMatchFileWillDo) {
-  const std::string path = Write("pair.csv", std::string(kTwoCameras) + "x1,y1,x2,y2\n1,2,3,4\n");
+  std::string with_matches = kTwoCameras;
+  with_matches += "x1,y1,x2,y2\n1,2,3,4\n";
+  const std::string path = Write("pair.csv", with_matches);
   EXPECT_EQ(WithCalibration(From(path)), WithCalibration(From(Write("no matches.csv", kTwoCameras))));
 }
 
