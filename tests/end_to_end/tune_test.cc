@@ -124,13 +124,13 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(IsRefused(Call("transfer", {"--out", folder_.Path("t")}), {"plain.yaml", "no block 'tune'"}));
 }
 
-// Another estimator than in the file, which does not take all levels.
-TEST_F(TuneProgram, ACombinationThatTheEstimatorDoesNotTake) {
+// Another estimator than in the file, which does not have one of the options.
+TEST_F(TuneProgram, AnOptionThatTheEstimatorDoesNotHave) {
   std::string yaml = ReadBytes(study_);
   yaml.replace(yaml.find("{mu: "), 5, "{selection: [mean_entropy, predictive_likelihood], mu: ");
   study_ = folder_.Write("selection.yaml", yaml);
   EXPECT_TRUE(IsRefused(Tune({"--out", out_, "--tune", "estimator=standard"}),
-                        {"tune: options: standard", "selection: predictive_likelihood", "rank_aware"}));
+                        {"estimator standard has no option 'selection'", "its options: solver, "}));
 }
 
 // Found before the work, which would take minutes here.

@@ -20,7 +20,9 @@ class UnknownEstimator : public testing::Test {
   UnknownEstimator() {
     AddTestEstimators();
     NameProgram("/somewhere/own_rcme");
-    const StudyPlan plan = MakePlan(ParseStudy(SmallStudyYaml() + "  - {name: peer}\n", "own.yaml"));
+    std::string yaml = SmallStudyYaml();
+    yaml += "  - {name: peer}\n";
+    const StudyPlan plan = MakePlan(ParseStudy(yaml, "own.yaml"));
     ResultStore store = ResultStore::OpenForRun(run_, plan);
     RunStudy(plan, 1, &store);
     NameProgram("rcme");

@@ -154,7 +154,7 @@ TEST(EstimatorOptions, OneThatIsNotThereListsThoseThatAre) {
       [] {
         MakeEstimator("standard", {{"mu", "3"}});
       },
-      {"estimator standard has no option 'mu'", "its options: num_iterations", "kappa"}));
+      {"estimator standard has no option 'mu'", "its options: solver, num_iterations", "kappa"}));
   EXPECT_TRUE(ThrowsInputError(
       [] {
         MakeEstimator("prcme", {{"sample_significance_level", "0.1"}});

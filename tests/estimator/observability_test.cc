@@ -185,9 +185,9 @@ TEST(DirectionNotObservable, NotAsPrintedUnlessAskedFor) {
   options.reading = Reading::kRankAware;
   EXPECT_EQ(options.ObservabilityLevelOrDefault(), 0.001);
   EXPECT_EQ(options.ChanceLevelOrDefault(), 0.001);
-  FindParameter(Parameters(options), "chance_significance_level").SetFromText("off");
+  FindParameter(MotionTestParameters(options, true), "chance_significance_level").SetFromText("off");
   EXPECT_EQ(options.ChanceLevelOrDefault(), 1.0);
-  EXPECT_EQ(FindParameter(Parameters(options), "chance_significance_level").Value(), "off");
+  EXPECT_EQ(FindParameter(MotionTestParameters(options, true), "chance_significance_level").Value(), "off");
 }
 
 TEST(DirectionNotObservable, TheSameFromTheReferenceAndFromPieces) {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "estimator/refinement/sampson_mle.h"
+#include "estimator/uncertainty/motion_covariance.h"
 #include "experiments/claims/call_estimator.h"
 #include "experiments/claims/decide_check.h"
 #include "experiments/claims/sample_statistics.h"
@@ -91,7 +92,7 @@ Outcome NeesOfFFromOneImage(Case& made) {
       FundamentalFromEssential(Matricize(hypothesis->model.f), problem.camera1, problem.camera2);
   Eigen::Matrix<double, 8, 1> variances;
   for (int k = 0; k < 8; ++k) {
-    const auto& match = problem.matches[static_cast<size_t>(hypothesis->sample[static_cast<size_t>(k)])];
+    const auto& match = problem.matches[static_cast<size_t>(hypothesis->id.sample[static_cast<size_t>(k)])];
     variances(k) =
         problem.sigma_px * problem.sigma_px * EvaluateConstraint(F, match).gradient.head<2>().squaredNorm();
   }

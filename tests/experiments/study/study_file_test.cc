@@ -342,11 +342,11 @@ TEST(Override, Errors) {
   EXPECT_TRUE(refuses("num_matches", "1e999", {"num_matches", "whole number"}));
   EXPECT_TRUE(refuses("ours.mu", "x", {"mu", "'x'", "or auto"}));
   EXPECT_TRUE(refuses("theirs.mu", "1", {"--set", "no estimator 'theirs'", "standard, ours"}));
-  EXPECT_TRUE(
-      refuses("ours.mus", "1", {"estimator rcme has no option 'mus'", "its options: num_iterations"}));
+  EXPECT_TRUE(refuses("ours.mus", "1",
+                      {"estimator rcme has no option 'mus'", "its options: solver, num_iterations"}));
   EXPECT_TRUE(
       refuses("standard.mu", "1", {"estimator standard has no option 'mu'", "its options", "lambda"}));
-  EXPECT_TRUE(refuses("mus", "1", {"'mus'", "options of the estimators: num_iterations", "mu,"}));
+  EXPECT_TRUE(refuses("mus", "1", {"'mus'", "options of the estimators: solver, num_iterations", "mu,"}));
   EXPECT_TRUE(refuses("kappa", "2", {"kappa", "'2'", "a number in [0, 1]"}));
   EXPECT_TRUE(refuses("max_rotation_error_deg", "181", {"max_rotation_error_deg", "a number in [0, 180]"}));
   EXPECT_TRUE(refuses("scene", "moon", {"'moon'", "give one of"}));
