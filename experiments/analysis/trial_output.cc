@@ -132,6 +132,12 @@ std::vector<int> SpreadOver(const std::vector<Correspondence>& matches, const st
   return selected;
 }
 
+// The winning hypothesis: its sample, and which of the solver's models of it; null without one.
+Json HypothesisAsJson(const HypothesisId& id) {
+  if (id.sample.size() == 0) return nullptr;
+  return {{"sample", std::vector<int>(id.sample.begin(), id.sample.end())}, {"model", id.model}};
+}
+
 Json EstimateAsJson(const StudyPlan& plan, const TrialResult& result, size_t e, double baseline_m) {
   const MotionEstimate& estimate = result.estimates[e];
   const TrialRecord& record = result.records[e];
@@ -143,6 +149,7 @@ Json EstimateAsJson(const StudyPlan& plan, const TrialResult& result, size_t e, 
                {"direction_error_deg", JsonNumber(record.direction_error_deg)},
                {"inlier_precision", JsonNumber(record.inlier_precision)},
                {"inlier_recall", JsonNumber(record.inlier_recall)},
+               {"hypothesis", HypothesisAsJson(estimate.hypothesis)},
                {"inliers", estimate.inliers}};
   for (const char* key : {"R", "t", "F", "centre2_in_cam1_m"}) json[key] = nullptr;
   if (estimate.status != MotionStatus::kOk) return json;

@@ -36,12 +36,15 @@ Numbers NumbersOf(const MotionEstimate& e) {
                      {"num_poor_inlier_sets", e.counts.num_poor_inlier_sets},
                      {"num_too_small_inlier_sets", e.counts.num_too_small_inlier_sets},
                      {"num_candidates", e.counts.num_candidates},
+                     {"model of the hypothesis", e.hypothesis.model},
+                     {"size of its sample", e.hypothesis.sample.size()},
                      {"number of inliers", static_cast<double>(e.inliers.size())}};
   Add("R", e.cam2_from_cam1.R, &numbers);
   Add("t", e.cam2_from_cam1.t, &numbers);
   Add("pose_cov", e.pose_cov, &numbers);
   Add("initial R", e.initial_pose.R, &numbers);
   Add("initial t", e.initial_pose.t, &numbers);
+  for (const int index : e.hypothesis.sample) numbers.emplace_back("a match of the sample", index);
   for (const int index : e.inliers) numbers.emplace_back("an inlier", index);
   return numbers;
 }

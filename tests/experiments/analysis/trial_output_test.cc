@@ -143,6 +143,11 @@ TEST(TrialAsJson, SaysWhichTrialItIsAndHowItEnded) {
   for (size_t e = 0; e < 2; ++e) {
     EXPECT_EQ(json["estimators"][e]["label"], plan.study.estimators[e].label);
     EXPECT_EQ(json["estimators"][e]["inliers"], Json(result.estimates[e].inliers));
+    const HypothesisId& id = result.estimates[e].hypothesis;
+    EXPECT_EQ(json["estimators"][e]["hypothesis"]["sample"],
+              Json(std::vector<int>(id.sample.begin(), id.sample.end())));
+    EXPECT_EQ(id.sample.size(), 8);
+    EXPECT_EQ(json["estimators"][e]["hypothesis"]["model"], 0);
     EXPECT_EQ(json["estimators"][e]["rotation_error_deg"],
               Json(JsonNumber(result.records[e].rotation_error_deg)));
   }
