@@ -9,25 +9,36 @@
 namespace rcme {
 
 template <typename Solver>
+SampleRays<Solver>::SampleRays(const MotionProblem& problem, const Sample& sample) {
+  for (size_t k = 0; k < first.size(); ++k) {
+    const Correspondence& match = problem.matches[static_cast<size_t>(sample[k])];
+    first[k] = problem.camera1.Ray(match.x1_px);
+    second[k] = problem.camera2.Ray(match.x2_px);
+  }
+}
+
+template <typename Solver>
+std::optional<Hypothesis<Solver>> HypothesisFromModel(const MotionProblem& problem, const HypothesisId& id,
+                                                      const typename Solver::Model& model) {
+  Hypothesis<Solver> hypothesis;
+  hypothesis.id = id;
+  hypothesis.model = model;
+  hypothesis.projection = ProjectToEssential(Matricize(model.f));
+  if (!hypothesis.projection.DeterminesDirection()) return std::nullopt;
+  hypothesis.pose = PosesFromEssential(hypothesis.projection)[0];
+  hypothesis.F =
+      FundamentalFromEssential(EssentialFromPose(hypothesis.pose), problem.camera1, problem.camera2);
+  return hypothesis;
+}
+
+template <typename Solver>
 ModelList<Hypothesis<Solver>, Solver::kMaxModels> InstantiateModels(const MotionProblem& problem,
                                                                     const Sample& sample) {
-  typename Solver::Rays rays1, rays2;
-  for (size_t k = 0; k < rays1.size(); ++k) {
-    const Correspondence& match = problem.matches[static_cast<size_t>(sample[k])];
-    rays1[k] = problem.camera1.Ray(match.x1_px);
-    rays2[k] = problem.camera2.Ray(match.x2_px);
-  }
+  const SampleRays<Solver> rays(problem, sample);
   ModelList<Hypothesis<Solver>, Solver::kMaxModels> hypotheses;
-  for (const typename Solver::Model& model : Solver::FindModels(rays1, rays2)) {
-    Hypothesis<Solver> hypothesis;
-    hypothesis.id = {sample, hypotheses.count};
-    hypothesis.model = model;
-    hypothesis.projection = ProjectToEssential(Matricize(model.f));
-    if (!hypothesis.projection.DeterminesDirection()) continue;
-    hypothesis.pose = PosesFromEssential(hypothesis.projection)[0];
-    hypothesis.F =
-        FundamentalFromEssential(EssentialFromPose(hypothesis.pose), problem.camera1, problem.camera2);
-    hypotheses.Add(hypothesis);
+  for (const typename Solver::Model& model : Solver::FindModels(rays.first, rays.second)) {
+    const auto hypothesis = HypothesisFromModel<Solver>(problem, {sample, hypotheses.count}, model);
+    if (hypothesis) hypotheses.Add(*hypothesis);
   }
   return hypotheses;
 }
@@ -72,6 +83,9 @@ std::optional<UncertainFundamental> UncertainModelOf(const MotionProblem& proble
 
 // One line per minimal solver.
 #define RCME_INSTANTIATE_HYPOTHESES_OF(Solver)                                                               \
+  template struct SampleRays<Solver>;                                                                        \
+  template std::optional<Hypothesis<Solver>> HypothesisFromModel<Solver>(                                    \
+      const MotionProblem&, const HypothesisId&, const Solver::Model&);                                      \
   template ModelList<Hypothesis<Solver>, Solver::kMaxModels> InstantiateModels<Solver>(const MotionProblem&, \
                                                                                        const Sample&);       \
   template std::optional<Hypothesis<Solver>> InstantiateModel<Solver>(const MotionProblem&,                  \

@@ -33,6 +33,19 @@ struct Hypothesis {
   Matrix5d pose_factor = Matrix5d::Zero();
 };
 
+// The rays K^-1 [x; 1] of a sample in both cameras.
+template <typename Solver>
+struct SampleRays {
+  typename Solver::Rays first, second;
+
+  SampleRays(const MotionProblem& problem, const Sample& sample);
+};
+
+// p_j of a model f_j; nothing if f_j determines no direction of the translation.
+template <typename Solver>
+std::optional<Hypothesis<Solver>> HypothesisFromModel(const MotionProblem& problem, const HypothesisId& id,
+                                                      const typename Solver::Model& model);
+
 // f_j and p_j of every model of the sample; none if the sample is degenerate. The k-th has the id (sample,
 // k).
 template <typename Solver>

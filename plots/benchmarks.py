@@ -17,7 +17,7 @@ from matplotlib.ticker import FuncFormatter
 from common import style
 from common.command_line import Parser, PlotError
 
-LOOKS = {  # the second part of an arm's name, or its group
+LOOKS = {  # the second part of a case's name, or its group
     "fast": dict(color=style.BLUE, marker="o"),
     "reference": dict(color=style.VERMILLION, marker="s"),
     "peer": dict(color=style.BLACK, marker="D"),
@@ -48,21 +48,21 @@ def read(path):
             content = json.load(file)
     except (OSError, ValueError) as error:
         raise PlotError(f"{path}: cannot be read as JSON ({error}).") from error
-    missing = [key for key in ("run", "ratios", "arms", "series") if key not in content]
+    missing = [key for key in ("run", "ratios", "cases", "series") if key not in content]
     if missing:
         raise PlotError(f"{path}: has no {', '.join(missing)}; expected the output of rcme_ratios.")
     return content
 
 
-def rows_of(arms, groups):
-    """{label: {variant: microseconds}} of the arms in the groups, in the file's order."""
+def rows_of(cases, groups):
+    """{label: {variant: microseconds}} of the cases in the groups, in the file's order."""
     rows = {}
-    for arm in arms:
-        if arm["group"] in groups:
-            stage, _, variant = arm["name"].partition("/")
-            variant = variant or ("peer" if arm["group"] == "peer" else "only")
+    for case in cases:
+        if case["group"] in groups:
+            stage, _, variant = case["name"].partition("/")
+            variant = variant or ("peer" if case["group"] == "peer" else "only")
             label = LABELS.get(stage) or style.in_words(stage)
-            rows.setdefault(label, {})[variant] = arm["microseconds"]
+            rows.setdefault(label, {})[variant] = case["microseconds"]
     return rows
 
 
@@ -122,8 +122,8 @@ def draw(content):
     for row, names in zip(rows, (("stages", "estimators"), tuple(SERIES))):
         cells = row.subgridspec(1, len(names))
         axes.update({name: figure.add_subplot(cell) for name, cell in zip(names, cells)})
-    draw_times(axes["stages"], rows_of(content["arms"], ["stage"]))
-    draw_times(axes["estimators"], rows_of(content["arms"], ["estimator", "peer", "trial"]))
+    draw_times(axes["stages"], rows_of(content["cases"], ["stage"]))
+    draw_times(axes["estimators"], rows_of(content["cases"], ["estimator", "peer", "trial"]))
     for panel in SERIES:
         draw_series(axes[panel], content, panel)
     titles = {"stages": "Stages (200 hypotheses)", "estimators": "Whole calls", "n": "Cost against n",

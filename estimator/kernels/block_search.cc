@@ -43,11 +43,11 @@ BlockSearch<Solver>::BlockSearch(const MotionProblem& problem, const MatchBlocks
 }
 
 template <typename Solver>
-Spread BlockSearch<Solver>::SpreadOfModels() const {
+RequestedOutputs BlockSearch<Solver>::OutputsOfModels() const {
   const bool needs_misfit = tests_.tests_sample && tests_.reading == BlockReading::kRankAware;
-  return tests_.reading == BlockReading::kKnownPose ? Spread::kNone
-         : needs_misfit                             ? Spread::kCovarianceAndMisfit
-                                                    : Spread::kCovariance;
+  return tests_.reading == BlockReading::kKnownPose ? RequestedOutputs::kNone
+         : needs_misfit                             ? RequestedOutputs::kCovarianceAndMisfit
+                                                    : RequestedOutputs::kCovariance;
 }
 
 template <typename Solver>
@@ -64,7 +64,7 @@ std::uint8_t BlockSearch<Solver>::FindConsistent() const {
 template <typename Solver>
 Proposal BlockSearch<Solver>::Next() {
   if (++lane_ == kBlockSize) {
-    source_.FillNext(matches_, SpreadOfModels(), rng_, &block_, &proposals_);
+    source_.FillNext(matches_, OutputsOfModels(), rng_, &block_, &proposals_);
     is_consistent_ = FindConsistent();
     lane_ = 0;
   }
@@ -108,8 +108,14 @@ InlierScore BlockSearch<Solver>::ScoreLane(int lane, const Sample& left_out) {
 }
 
 template <typename Solver>
+std::optional<Hypothesis<Solver>> BlockSearch<Solver>::FindHypothesis(const HypothesisId& id) {
+  lane_ = kBlockSize - 1;  // the block holds no proposals any more
+  return source_.FindHypothesis(problem_, matches_, id);
+}
+
+template <typename Solver>
 const MatchMask& BlockSearch<Solver>::FindSupport(const HypothesisId& id) {
-  source_.FillFirst(matches_, SpreadOfModels(), id, &block_);
+  source_.FillFirst(matches_, OutputsOfModels(), id, &block_);
   ScoreLane(0, {});
   lane_ = kBlockSize - 1;  // the block holds no proposals any more
   return scan_.inliers;

@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "estimator/hypothesis.h"
 #include "estimator/kernels/block_source.h"
 #include "estimator/kernels/score.h"
 #include "estimator/point_consistency.h"
@@ -32,14 +31,12 @@ class BlockSearch {
   InlierScore Score();
 
   // The model of a hypothesis in the arithmetic of the reference: what follows the loop goes on from it.
-  std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id) const {
-    return InstantiateModel<Solver>(problem_, id);
-  }
+  std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id);
   // The inliers of a hypothesis.
   const MatchMask& FindSupport(const HypothesisId& id);
 
  private:
-  Spread SpreadOfModels() const;
+  RequestedOutputs OutputsOfModels() const;
   std::uint8_t FindConsistent() const;  // lanes of the block whose sample agrees with its model
   // The score without the matches `left_out`.
   InlierScore ScoreLane(int lane, const Sample& left_out);

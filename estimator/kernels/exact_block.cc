@@ -140,9 +140,9 @@ namespace rcme {
 HWY_EXPORT(FillExactModels);
 HWY_EXPORT(FillUncertainExactModels);
 
-void InstantiateExactModels(const RayScale& ray_scale, const EssentialBlock& essentials, Spread spread,
-                            HypothesisBlock* block) {
-  if (spread == Spread::kNone) {
+void InstantiateExactModels(const RayScale& ray_scale, const EssentialBlock& essentials,
+                            RequestedOutputs outputs, HypothesisBlock* block) {
+  if (outputs == RequestedOutputs::kNone) {
     HWY_DYNAMIC_DISPATCH(FillExactModels)(ray_scale, essentials, block);
   } else {
     HWY_DYNAMIC_DISPATCH(FillUncertainExactModels)(ray_scale, essentials, block);

@@ -11,9 +11,9 @@ struct alignas(64) EssentialBlock {
   HypothesisBlock::Row E[9];
 };
 
-// Fills F, dF unless `spread` is kNone, and is_model of the block, whose samples of five matches are in place
-// (eq::motion_estimate, eq::cov_p). There is no sample_statistic: the motion fits its sample.
-void InstantiateExactModels(const RayScale& ray_scale, const EssentialBlock& essentials, Spread spread,
-                            HypothesisBlock* block);
+// Fills F, dF unless `outputs` is kNone, and is_model of the block, whose samples of five matches are in
+// place (eq::motion_estimate, eq::cov_p). There is no sample_statistic: the motion fits its sample.
+void InstantiateExactModels(const RayScale& ray_scale, const EssentialBlock& essentials,
+                            RequestedOutputs outputs, HypothesisBlock* block);
 
 }  // namespace rcme

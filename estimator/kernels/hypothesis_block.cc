@@ -116,7 +116,7 @@ HWY_INLINE void FillSampleStatistic(const ConstraintFactors& factors, const Esse
 }
 
 // Lanes [lane, lane + kLanes) of the block.
-template <Spread spread>
+template <RequestedOutputs outputs>
 HWY_INLINE Mask FillLanes(const Whitening& whitening, int lane, HypothesisBlock* block) {
   const SampleLanes<8> sample(*block, lane);
   ConstraintFactors factors;
@@ -132,33 +132,33 @@ HWY_INLINE Mask FillLanes(const Whitening& whitening, int lane, HypothesisBlock*
       whitening, lane, block->F);
   const Mask is_model =
       hn::And(factors.smallest_pivot > Set(1e-9) * factors.largest_pivot, basis.determines_direction);
-  if constexpr (spread == Spread::kNone) return is_model;
+  if constexpr (outputs == RequestedOutputs::kNone) return is_model;
   Vec D[8];
   ConstraintVariances(sample, whitening, f, D);
-  if constexpr (spread == Spread::kCovarianceAndMisfit) {
+  if constexpr (outputs == RequestedOutputs::kCovarianceAndMisfit) {
     FillSampleStatistic(factors, basis, D, lane, block);
   }
   return hn::And(is_model, FillDerivatives(factors, basis, D, whitening, lane, block));
 }
 
-template <Spread spread>
+template <RequestedOutputs outputs>
 void FillBlock(const RayScale& ray_scale, HypothesisBlock* block) {
   const Whitening whitening(ray_scale);
   unsigned is_model = 0;
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-    is_model |= BitsOf(FillLanes<spread>(whitening, lane, block)) << lane;
+    is_model |= BitsOf(FillLanes<outputs>(whitening, lane, block)) << lane;
   }
   block->is_model = static_cast<std::uint8_t>(is_model);
 }
 
 void FillModels(const RayScale& ray_scale, HypothesisBlock* block) {
-  FillBlock<Spread::kNone>(ray_scale, block);
+  FillBlock<RequestedOutputs::kNone>(ray_scale, block);
 }
 void FillUncertainModels(const RayScale& ray_scale, HypothesisBlock* block) {
-  FillBlock<Spread::kCovariance>(ray_scale, block);
+  FillBlock<RequestedOutputs::kCovariance>(ray_scale, block);
 }
 void FillTestedModels(const RayScale& ray_scale, HypothesisBlock* block) {
-  FillBlock<Spread::kCovarianceAndMisfit>(ray_scale, block);
+  FillBlock<RequestedOutputs::kCovarianceAndMisfit>(ray_scale, block);
 }
 
 }  // namespace rcme::HWY_NAMESPACE
@@ -182,17 +182,17 @@ void CopySample(const MatchBlocks& matches, const Sample& sample, int hypothesis
   }
 }
 
-void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples, Spread spread,
-                       HypothesisBlock* block) {
+void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples,
+                       RequestedOutputs outputs, HypothesisBlock* block) {
   for (int hypothesis = 0; hypothesis < kBlockSize; ++hypothesis) {
     CopySample(matches, samples[static_cast<size_t>(hypothesis)], hypothesis, block);
   }
-  switch (spread) {
-    case Spread::kNone:
+  switch (outputs) {
+    case RequestedOutputs::kNone:
       return HWY_DYNAMIC_DISPATCH(FillModels)(matches.ray_scale(), block);
-    case Spread::kCovariance:
+    case RequestedOutputs::kCovariance:
       return HWY_DYNAMIC_DISPATCH(FillUncertainModels)(matches.ray_scale(), block);
-    case Spread::kCovarianceAndMisfit:
+    case RequestedOutputs::kCovarianceAndMisfit:
       return HWY_DYNAMIC_DISPATCH(FillTestedModels)(matches.ray_scale(), block);
   }
 }

@@ -23,7 +23,7 @@ struct alignas(64) HypothesisBlock {
 };
 
 // What is to be known of a hypothesis.
-enum class Spread {
+enum class RequestedOutputs {
   kNone,                 // F alone
   kCovariance,           // dF too
   kCovarianceAndMisfit,  // sample_statistic too
@@ -34,7 +34,7 @@ void CopySample(const MatchBlocks& matches, const Sample& sample, int hypothesis
 
 // Fills the block from eight samples of eight matches (eq::model_instantiate, eq::motion_estimate,
 // eq::cov_p).
-void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples, Spread spread,
-                       HypothesisBlock* block);
+void InstantiateModels(const MatchBlocks& matches, std::span<const Sample, kBlockSize> samples,
+                       RequestedOutputs outputs, HypothesisBlock* block);
 
 }  // namespace rcme

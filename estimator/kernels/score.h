@@ -16,7 +16,8 @@ struct WhitenedModel {
   double F[9];
   double dF[5][9];
 
-  WhitenedModel(const HypothesisBlock& block, int hypothesis);  // dF unset where the block's Spread is kNone
+  WhitenedModel(const HypothesisBlock& block,
+                int hypothesis);  // dF unset where the block's RequestedOutputs is kNone
   // Nothing if pose_cov is not finite and positive semi-definite.
   static std::optional<WhitenedModel> From(const MatchBlocks& matches, const RelativePose& pose,
                                            const Matrix5d& pose_cov);

@@ -118,6 +118,17 @@ std::optional<Eigen::Matrix3d> Polish(const Eigen::Matrix3d& E, const FivePoint:
   return EssentialFromPose(pose);
 }
 
+// f and G of a solution; nothing if it is not isolated.
+std::optional<FivePoint::Model> ModelOf(const Eigen::Matrix3d& E, const Eigen::Matrix<double, 5, 9>& C) {
+  const RelativePose pose = PosesFromEssential(ProjectToEssential(E))[0];
+  const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(pose);
+  Eigen::Matrix<double, 9, 5> T;
+  for (int k = 0; k < 5; ++k) T.col(k) = Vectorize(dE_dp[static_cast<size_t>(k)]) / std::sqrt(2.0);
+  const auto G = ImplicitGain<5>(C, T);
+  if (!G) return std::nullopt;
+  return FivePoint::Model{Vectorize(EssentialFromPose(pose)) / std::sqrt(2.0), *G};
+}
+
 }  // namespace
 
 FivePoint::Solutions FivePoint::Solve(const Rays& rays1, const Rays& rays2) {
@@ -165,15 +176,21 @@ ModelList<FivePoint::Model, FivePoint::kMaxModels> FivePoint::FindModels(const R
   const Solutions solutions = Solve(rays1, rays2);
   const Eigen::Matrix<double, 5, 9> C = ConstraintRows(rays1, rays2);
   for (int i = 0; i < solutions.count; ++i) {
-    const RelativePose pose = PosesFromEssential(ProjectToEssential(solutions.E[static_cast<size_t>(i)]))[0];
-    const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(pose);
-    Eigen::Matrix<double, 9, 5> T;
-    for (int k = 0; k < 5; ++k) T.col(k) = Vectorize(dE_dp[static_cast<size_t>(k)]) / std::sqrt(2.0);
-    if (const auto G = ImplicitGain<5>(C, T)) {
-      models.Add({Vectorize(EssentialFromPose(pose)) / std::sqrt(2.0), *G});
-    }
+    if (const auto model = ModelOf(solutions.E[static_cast<size_t>(i)], C)) models.Add(*model);
   }
   return models;
+}
+
+std::optional<FivePoint::Model> FivePoint::ModelNear(const Eigen::Matrix3d& E, const Rays& rays1,
+                                                     const Rays& rays2) {
+  Rays unit_rays1, unit_rays2;
+  for (size_t k = 0; k < rays1.size(); ++k) {
+    unit_rays1[k] = rays1[k].normalized();
+    unit_rays2[k] = rays2[k].normalized();
+  }
+  const std::optional<Eigen::Matrix3d> polished = Polish(E, unit_rays1, unit_rays2);
+  if (!polished) return std::nullopt;
+  return ModelOf(*polished, ConstraintRows(rays1, rays2));
 }
 
 }  // namespace rcme

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "estimator/solvers/minimal_solver.h"
 
@@ -28,9 +29,13 @@ class FivePoint {
   // and Sigma_p = H^-1 D H^-T with H = C T = dg/dp.
   static ModelList<Model, kMaxModels> FindModels(const Rays& rays1, const Rays& rays2);
 
+  // The model next to `E`, by Newton's method: what FindModels has if another implementation found `E`.
+  // Nothing if the iteration does not settle or the solution is not isolated.
+  static std::optional<Model> ModelNear(const Eigen::Matrix3d& E, const Rays& rays1, const Rays& rays2);
+
   // E[0] ... E[count - 1], x2' E x1 = 0 in rays, Frobenius norm sqrt(2) as [t]x R has with |t| = 1; the sign
   // is arbitrary. In descending order of |E_33|: another implementation that finds the same ones numbers them
-  // the same.
+  // the same (kernels/block_source.h).
   struct Solutions {
     std::array<Eigen::Matrix3d, kMaxModels> E;
     int count = 0;

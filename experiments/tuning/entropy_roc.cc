@@ -85,10 +85,10 @@ std::vector<size_t> ScenesOf(const StudyPlan& plan, std::int64_t trials_per_cond
   return scenes;
 }
 
-void AddRoc(size_t estimator, const std::string& of, const std::vector<Entropies>& trials,
+void AddRoc(size_t estimator, const std::string& population, const std::vector<Entropies>& trials,
             const std::vector<size_t>& scenes, std::optional<double> Entropies::*good,
             std::optional<double> Entropies::*bad, std::vector<EntropyRoc>* rocs) {
-  EntropyRoc roc{estimator, of, {}, {}, {}};
+  EntropyRoc roc{estimator, population, {}, {}, {}};
   std::vector<ScoreCluster> clusters(scenes.empty() ? 0 : 1 + std::ranges::max(scenes));
   for (size_t t = 0; t < trials.size(); ++t) {
     if (const auto& psi = trials[t].*good) {

@@ -17,7 +17,7 @@ struct EntropyRoc {
   // "samples": of a trial the first model of eight true matches (good) and the first of a sample with a wrong
   // one (bad), among those that pass the sample test. "winners": the model that is selected without a quality
   // test, good where the estimate is within the bounds.
-  std::string of;
+  std::string population;
   std::vector<double> good, bad;  // psi; at most one of each per trial
   // P(psi of a good one < psi of a bad one); clustered by scene, which is a trial's own where it is
   // simulated.

@@ -76,14 +76,14 @@ class TrialDecisions {
 
 // Counters of one condition and setting that several threads add to.
 struct SharedCount {
-  std::array<std::atomic<std::int64_t>, 4> of{};  // failures, refusals, good, false refusals
+  std::atomic<std::int64_t> failures = 0, refusals = 0, good = 0, false_refusals = 0;
   void Add(TrialOutcome outcome, TrialOutcome without_limits) {
     const bool is_refused = outcome == TrialOutcome::kRefusal,
                is_good = without_limits == TrialOutcome::kSuccess;
-    of[0] += outcome == TrialOutcome::kFailure;
-    of[1] += is_refused;
-    of[2] += is_good;
-    of[3] += is_refused && is_good;
+    failures += outcome == TrialOutcome::kFailure;
+    refusals += is_refused;
+    good += is_good;
+    false_refusals += is_refused && is_good;
   }
 };
 
@@ -128,8 +128,9 @@ SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, 
                });
   SettingCounts counts(num_conditions, std::vector<SettingCount>(num_settings));
   for (size_t i = 0; i < shared.size(); ++i) {
-    const auto& of = shared[i].of;
-    counts[i / num_settings][i % num_settings] = {per_condition, of[0], of[1], of[2], of[3]};
+    const SharedCount& count = shared[i];
+    counts[i / num_settings][i % num_settings] = {per_condition, count.failures, count.refusals, count.good,
+                                                  count.false_refusals};
   }
   return counts;
 }

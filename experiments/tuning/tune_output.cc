@@ -61,15 +61,15 @@ std::string VerifiedAsTable(const TuneResult& result) {
 std::string EstimatorsAsTable(const std::vector<VerifiedEstimator>& estimators) {
   Rows rows = {{"estimator", "failure", "refusal", "failure or refusal", "tuned minus this", "p (McNemar)"}};
   for (size_t e = 0; e < estimators.size(); ++e) {
-    const VerifiedEstimator& of = estimators[e];
-    const Interval difference = RiskDifferenceInterval(of.against_first);
+    const VerifiedEstimator& counts = estimators[e];
+    const Interval difference = RiskDifferenceInterval(counts.against_first);
     rows.push_back(
-        {e == 0 ? "tuned" : of.spec.label, RateForTable(of.failure), RateForTable(of.refusal),
-         RateForTable(of.failure_or_refusal),
+        {e == 0 ? "tuned" : counts.spec.label, RateForTable(counts.failure), RateForTable(counts.refusal),
+         RateForTable(counts.failure_or_refusal),
          e == 0 ? ""
-                : fmt::format("{:+.2f} % [{:+.2f}, {:+.2f}]", 100.0 * of.against_first.RiskDifference(),
+                : fmt::format("{:+.2f} % [{:+.2f}, {:+.2f}]", 100.0 * counts.against_first.RiskDifference(),
                               100.0 * difference.lower, 100.0 * difference.upper),
-         e == 0 ? "" : fmt::format("{:.2g}", McNemarExactPValue(of.against_first))});
+         e == 0 ? "" : fmt::format("{:.2g}", McNemarExactPValue(counts.against_first))});
   }
   return FormatColumns(rows);
 }
@@ -77,7 +77,7 @@ std::string EstimatorsAsTable(const std::vector<VerifiedEstimator>& estimators) 
 std::string RocsAsTable(const StudyPlan& plan, const std::vector<EntropyRoc>& rocs) {
   Rows rows = {{"estimator", "models", "area under the curve", "good", "bad"}};
   for (const EntropyRoc& roc : rocs) {
-    rows.push_back({plan.study.estimators[roc.estimator].label, roc.of,
+    rows.push_back({plan.study.estimators[roc.estimator].label, roc.population,
                     fmt::format("{:.3f} [{:.3f}, {:.3f}]", roc.area.value, roc.area.interval.lower,
                                 roc.area.interval.upper),
                     fmt::format("{}", roc.good.size()), fmt::format("{}", roc.bad.size())});
@@ -109,10 +109,10 @@ std::string VerdictInWords(const Tuning& tuning, const TuneResult& result) {
   return "on fresh trials too few to decide whether the target holds (95 % intervals)";
 }
 
-Json EstimatorAsJson(const VerifiedEstimator& of) {
-  return {{"failure", RateAsJson(of.failure)},
-          {"refusal", RateAsJson(of.refusal)},
-          {"failure_or_refusal", RateAsJson(of.failure_or_refusal)}};
+Json EstimatorAsJson(const VerifiedEstimator& counts) {
+  return {{"failure", RateAsJson(counts.failure)},
+          {"refusal", RateAsJson(counts.refusal)},
+          {"failure_or_refusal", RateAsJson(counts.failure_or_refusal)}};
 }
 
 bool IsNumber(const std::string& text) {
@@ -207,7 +207,7 @@ Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
   const RocPoint at_mu = PointAt(curve, mu);
   return {
       {"estimator", spec.label},
-      {"of", roc.of},
+      {"population", roc.population},
       {"score", is_printed ? "psi, nats" : "excess entropy, nats"},
       {"auc",
        {{"value", roc.area.value}, {"lower", roc.area.interval.lower}, {"upper", roc.area.interval.upper}}},

@@ -13,12 +13,12 @@ void AddTrial(const std::vector<TrialRecord>& records, const FailureBounds& boun
   std::vector<bool> is_bad;
   for (const TrialRecord& record : records) is_bad.push_back(HasFailedOrRefused(record, bounds));
   for (size_t e = 0; e < records.size(); ++e) {
-    VerifiedEstimator& of = (*verified)[e];
-    for (ErrorCount* count : {&of.failure, &of.refusal, &of.failure_or_refusal}) ++count->n;
-    of.failure.errors += HasFailed(records[e], bounds);
-    of.refusal.errors += HasRefused(records[e]);
-    of.failure_or_refusal.errors += is_bad[e];
-    of.against_first.Add(is_bad[0], is_bad[e]);
+    VerifiedEstimator& counts = (*verified)[e];
+    for (ErrorCount* count : {&counts.failure, &counts.refusal, &counts.failure_or_refusal}) ++count->n;
+    counts.failure.errors += HasFailed(records[e], bounds);
+    counts.refusal.errors += HasRefused(records[e]);
+    counts.failure_or_refusal.errors += is_bad[e];
+    counts.against_first.Add(is_bad[0], is_bad[e]);
   }
 }
 

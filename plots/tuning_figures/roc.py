@@ -20,11 +20,11 @@ def looks_of(rocs):
 
 
 def line_of(roc, look):
-    return {**look.line(), "linestyle": DASHES[roc.of], "linewidth": 1.3, "markersize": 0.9 * look.marker_size}
+    return {**look.line(), "linestyle": DASHES[roc.population], "linewidth": 1.3, "markersize": 0.9 * look.marker_size}
 
 
 def name_of(roc):
-    return f"{style.label_of(roc.estimator)}, {roc.of}"
+    return f"{style.label_of(roc.estimator)}, {roc.population}"
 
 
 def auc_in_words(roc):

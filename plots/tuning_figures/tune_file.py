@@ -99,7 +99,7 @@ class Mark:
 @dataclass(frozen=True)
 class Roc:
     estimator: str
-    of: str
+    population: str
     score: str
     auc: Rate
     num_good: int
@@ -261,7 +261,7 @@ def read_auc(node, is_empty):
 
 def read_roc(node):
     num_good, num_bad = node.count("num_good"), node.count("num_bad")
-    return Roc(node.text("estimator"), node.one_of("of", (SAMPLES, WINNERS)), node.text("score"),
+    return Roc(node.text("estimator"), node.one_of("population", (SAMPLES, WINNERS)), node.text("score"),
                read_auc(node.node("auc"), is_empty=0 in (num_good, num_bad)), num_good, num_bad, read_curve(node),
                tuple(map(read_mark, node.nodes("marks", "mark"))))
 

@@ -54,7 +54,7 @@ void BenchmarkTrial::MakeHypotheses(int num_matches) {
   hypothesis_blocks.resize(samples.size() / kBlockSize);
   for (size_t b = 0; b < hypothesis_blocks.size(); ++b) {
     InstantiateModels(blocks, std::span<const Sample, kBlockSize>(&samples[b * kBlockSize], kBlockSize),
-                      Spread::kCovariance, &hypothesis_blocks[b]);
+                      RequestedOutputs::kCovariance, &hypothesis_blocks[b]);
     for (int lane = 0; lane < kBlockSize; ++lane) models.emplace_back(hypothesis_blocks[b], lane);
   }
   for (const WhitenedModel& model : models) variances.emplace_back(model.dF);

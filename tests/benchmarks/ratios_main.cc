@@ -1,6 +1,6 @@
-// All arms (arms.h), growing problems and studies, in interleaved rounds; writes their times, the ratios
-// between them, percentages of the machine's peak and exponents, each a median over rounds with its interval,
-// as JSON.
+// All cases (benchmark_cases.h), growing problems and studies, in interleaved rounds; writes their times, the
+// ratios between them, percentages of the machine's peak and exponents, each a median over rounds with its
+// interval, as JSON.
 //   build/release/bin/rcme_ratios --out benchmarks.json          (scripts/benchmark does it, draws and
 //   compares)
 
@@ -15,7 +15,7 @@
 
 #include "experiments/base/file_output.h"
 #include "experiments/study/study_file.h"
-#include "tests/benchmarks/arms.h"
+#include "tests/benchmarks/benchmark_cases.h"
 #include "tests/benchmarks/engine_fixture.h"
 #include "tests/benchmarks/fma_peak.h"
 #include "tests/benchmarks/rounds.h"
@@ -46,10 +46,10 @@ Extent Quick() {
 // For the test of what is written: the numbers mean nothing.
 Extent Tiny() { return {6, 1e-6, 1, {100, 200}, {8, 16}, {10, 20}, 4}; }
 
-// One run of an arm is one call per trial.
-Task TaskOf(const std::string& name, const Arm& arm, const std::vector<BenchmarkTrial>& trials,
+// One run of a case is one call per trial.
+Task TaskOf(const std::string& name, const BenchmarkCase& timed, const std::vector<BenchmarkTrial>& trials,
             int num_trials) {
-  const auto run = [&trials, num_trials, call = arm.call] {
+  const auto run = [&trials, num_trials, call = timed.call] {
     for (int i = 0; i < num_trials; ++i) call(trials[static_cast<size_t>(i)]);
   };
   return {name, run, static_cast<double>(num_trials)};
@@ -58,28 +58,30 @@ Task TaskOf(const std::string& name, const Arm& arm, const std::vector<Benchmark
 std::string SizedName(const std::string& series, int size) { return fmt::format("{}/{}", series, size); }
 
 // pRCME as printed: it scores every hypothesis.
-Arm PrcmeArm(int num_iterations) {
+BenchmarkCase PrcmeCase(int num_iterations) {
   RansacOptions options;
   options.num_iterations = num_iterations;
-  return EstimatorArm("prcme", "prcme", options);
+  return EstimatorCase("prcme", "prcme", options);
 }
 
-const Arm& FindArm(const std::vector<Arm>& arms, const std::string& name) {
-  return *std::find_if(arms.begin(), arms.end(), [&](const Arm& arm) { return arm.name == name; });
+const BenchmarkCase& FindCase(const std::vector<BenchmarkCase>& cases, const std::string& name) {
+  return *std::find_if(cases.begin(), cases.end(),
+                       [&](const BenchmarkCase& timed) { return timed.name == name; });
 }
 
-void AddGrowingProblems(const Extent& extent, const std::vector<Arm>& arms, std::vector<Task>* tasks) {
+void AddGrowingProblems(const Extent& extent, const std::vector<BenchmarkCase>& cases,
+                        std::vector<Task>* tasks) {
   static std::map<int, std::vector<BenchmarkTrial>> trials;  // as long as the tasks
   const int num_trials = std::min(extent.num_trials, 4);
   for (const int n : extent.num_matches) {
     trials[n] = MakeBenchmarkTrials(n, num_trials);
-    tasks->push_back(TaskOf(SizedName("n", n), PrcmeArm(kNumHypotheses), trials[n], num_trials));
+    tasks->push_back(TaskOf(SizedName("n", n), PrcmeCase(kNumHypotheses), trials[n], num_trials));
     tasks->push_back(
-        TaskOf(SizedName("n_scoring", n), FindArm(arms, "score_as_printed/fast"), trials[n], num_trials));
+        TaskOf(SizedName("n_scoring", n), FindCase(cases, "score_as_printed/fast"), trials[n], num_trials));
   }
   for (const int iterations : extent.num_iterations) {
     tasks->push_back(
-        TaskOf(SizedName("iterations", iterations), PrcmeArm(iterations), BenchmarkTrials(), num_trials));
+        TaskOf(SizedName("iterations", iterations), PrcmeCase(iterations), BenchmarkTrials(), num_trials));
   }
 }
 
@@ -89,7 +91,7 @@ void AddStudy(const std::string& name, const StudyPlan& plan, int num_threads, s
       {name, [shared, num_threads] { RunToScratchFile(*shared, num_threads); }, 1.0, Task::Clock::kWall});
 }
 
-// A study of rcme as printed on the problem of all the arms.
+// A study of rcme as printed on the problem of all the cases.
 StudyPlan RcmePlan(int trials) {
   return MakePlan(ParseStudy(
       fmt::format("name: throughput\nseed: 1\ntrials: {}\ndata: {{scene: uniform_volume, num_matches: 500, "
@@ -107,10 +109,11 @@ void AddStudies(const Extent& extent, std::vector<Task>* tasks) {
   }
 }
 
-std::vector<Task> MakeTasks(const Extent& extent, const std::vector<Arm>& arms) {
+std::vector<Task> MakeTasks(const Extent& extent, const std::vector<BenchmarkCase>& cases) {
   std::vector<Task> tasks;
-  for (const Arm& arm : arms) tasks.push_back(TaskOf(arm.name, arm, BenchmarkTrials(), extent.num_trials));
-  AddGrowingProblems(extent, arms, &tasks);
+  for (const BenchmarkCase& timed : cases)
+    tasks.push_back(TaskOf(timed.name, timed, BenchmarkTrials(), extent.num_trials));
+  AddGrowingProblems(extent, cases, &tasks);
   AddStudies(extent, &tasks);
   tasks.push_back(
       {"fma_peak", [] { benchmark::DoNotOptimize(RunFusedMultiplyAdds()); }, 1.0 * kFmaChains * kFmaSteps});
@@ -244,17 +247,17 @@ void WriteRatios(const std::vector<Ratio>& ratios, ordered_json* out) {
   }
 }
 
-// Time of every arm; of a stage that exists twice also the reference's over the fast one's.
-void WriteArms(const std::vector<Arm>& arms, const Times& times, ordered_json* out) {
-  (*out)["arms"] = ordered_json::array();
-  for (const Arm& arm : arms) {
-    ordered_json row = {{"group", arm.group}, {"name", arm.name}};
-    row["microseconds"] = Described(times.at(arm.name), 1e6);
-    (*out)["arms"].push_back(row);
-    const size_t slash = arm.name.find("/reference");
+// Time of every case; of a stage that exists twice also the reference's over the fast one's.
+void WriteCases(const std::vector<BenchmarkCase>& cases, const Times& times, ordered_json* out) {
+  (*out)["cases"] = ordered_json::array();
+  for (const BenchmarkCase& timed : cases) {
+    ordered_json row = {{"group", timed.group}, {"name", timed.name}};
+    row["microseconds"] = Described(times.at(timed.name), 1e6);
+    (*out)["cases"].push_back(row);
+    const size_t slash = timed.name.find("/reference");
     if (slash == std::string::npos) continue;
-    const std::string stage = arm.name.substr(0, slash);
-    (*out)["speedups"][stage] = Described(Quotient(times.at(arm.name), times.at(stage + "/fast")));
+    const std::string stage = timed.name.substr(0, slash);
+    (*out)["speedups"][stage] = Described(Quotient(times.at(timed.name), times.at(stage + "/fast")));
   }
 }
 
@@ -296,13 +299,13 @@ ordered_json DescribeRun(const Extent& extent, const Times& times, const std::st
 
 void Run(const Extent& extent, const std::string& extent_name, const std::string& path) {
   const double load_average = LoadAverage();
-  const std::vector<Arm> arms = AllArms();
-  const Times times = MeasureRounds(MakeTasks(extent, arms), extent.num_rounds, extent.least_seconds);
+  const std::vector<BenchmarkCase> cases = AllBenchmarkCases();
+  const Times times = MeasureRounds(MakeTasks(extent, cases), extent.num_rounds, extent.least_seconds);
   ordered_json out;
   out["run"] = DescribeRun(extent, times, extent_name);
   out["run"]["load_average_at_start"] = load_average;
   WriteRatios(MakeRatios(extent, times), &out);
-  WriteArms(arms, times, &out);
+  WriteCases(cases, times, &out);
   WriteSeries(extent, times, &out);
   WriteFileWhole(path, out.dump(1) + "\n");
 }

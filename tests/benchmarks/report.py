@@ -112,13 +112,13 @@ def ratio_lines(now, baseline):
 
 
 def arm_lines(now):
-    yield f"{'arm':<42} {'us':>9}   {'95 % interval':<20} {'reference / fast':>16}"
-    for arm in now["arms"]:
-        time = arm["microseconds"]
-        stage, _, variant = arm["name"].partition("/")
+    yield f"{'case':<42} {'us':>9}   {'95 % interval':<20} {'reference / fast':>16}"
+    for case in now["cases"]:
+        time = case["microseconds"]
+        stage, _, variant = case["name"].partition("/")
         speedup = f"{now['speedups'][stage]['median']:16.3g}" if variant == "fast" else ""
         interval = f"[{time['lower']:.4g}, {time['upper']:.4g}]"
-        yield f"{arm['name']:<42} {time['median']:9.4g}   {interval:<20} {speedup}".rstrip()
+        yield f"{case['name']:<42} {time['median']:9.4g}   {interval:<20} {speedup}".rstrip()
 
 
 def report(now, baseline):

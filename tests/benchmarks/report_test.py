@@ -31,10 +31,10 @@ def result(**changes):
     run = {"instruction_set": "AVX2", "cores": 2, "rounds": 11, "load_average_at_start": 0.1, "problem": "a problem",
            "clock": "a clock", "poselib": "skipped"}
     time = {"median": 3.0, "lower": 2.0, "upper": 4.0}
-    arms = [{"group": "stage", "name": name, "microseconds": time} for name in ("refine/fast", "refine/reference", "scan")]
+    cases = [{"group": "stage", "name": name, "microseconds": time} for name in ("refine/fast", "refine/reference", "scan")]
     return {"run": run, "ratios": {name: value for name, (_, value, _) in values.items()},
             "intervals": {name: {"lower": low, "upper": high} for name, (low, _, high) in values.items()},
-            "arms": arms, "speedups": {"refine": time}}
+            "cases": cases, "speedups": {"refine": time}}
 
 
 class Comparison(unittest.TestCase):

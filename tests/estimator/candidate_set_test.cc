@@ -99,10 +99,10 @@ TEST(CandidateSet, SelectsTheBestInOrder) {
   for (int i = 0; i < 7; ++i)
     candidates.Add(Make(i == 6 ? 4 : 50, entropies[i], i));  // the last is too small
   const auto tags = [&](int count) {
-    std::vector<int> of;
+    std::vector<int> first_matches;
     for (const Candidate& candidate : candidates.SelectBest(count, LessEntropy))
-      of.push_back(candidate.id.sample[0]);
-    return of;
+      first_matches.push_back(candidate.id.sample[0]);
+    return first_matches;
   };
   EXPECT_EQ(tags(1), (std::vector<int>{1}));
   EXPECT_EQ(tags(4), (std::vector<int>{1, 3, 4, 2}));

@@ -230,11 +230,11 @@ TEST(RansacEstimator, TheWinnerIsTheBestByWhatSelects) {
     int num_worse = 0;
     for (const ScoredHypothesis& hypothesis : trace.hypotheses) {
       if (hypothesis.score.num_inliers == 0) continue;
-      const auto of = [&](const InlierScore& score) {
+      const auto quantity = [&](const InlierScore& score) {
         return selection == Selection::kMeanEntropy ? score.mean_entropy : score.negative_log_likelihood;
       };
-      EXPECT_LE(of(winner), of(hypothesis.score));
-      num_worse += of(winner) < of(hypothesis.score);
+      EXPECT_LE(quantity(winner), quantity(hypothesis.score));
+      num_worse += quantity(winner) < quantity(hypothesis.score);
     }
     EXPECT_GT(num_worse, 40);
   }

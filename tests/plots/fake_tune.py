@@ -71,11 +71,11 @@ def other(label, words, levels, failure, refusal):
             "failure_or_refusal": rate(failure + refusal)}
 
 
-def roc(estimator, of, score, power, marks):
+def roc(estimator, population, score, power, marks):
     """A curve y = x^power."""
     xs = [(i / 60) ** 2 for i in range(61)]
     curve = [[None if x in (0, 1) else round(-8 + 20 * x, 3), x, x ** power] for x in xs]
-    return {"estimator": estimator, "of": of, "score": score, "num_good": 900, "num_bad": 850, "curve": curve,
+    return {"estimator": estimator, "population": population, "score": score, "num_good": 900, "num_bad": 850, "curve": curve,
             "auc": {"value": 1 / (1 + power), "lower": 1 / (1 + power) - 0.013, "upper": 1 / (1 + power) + 0.011},
             "marks": [{"words": words, "false_accept_rate": x, "true_accept_rate": x ** power} for words, x in marks]}
 

@@ -304,7 +304,7 @@ class TheRocCurves(TuneTest):
                                               "RCME, rank-aware, samples", "RCME, rank-aware, winners")):
             line = next(line for line in axes.lines if line.get_label() == f"_{name}")
             self.assertEqual(line.get_xydata().tolist(), [point[1:] for point in entry["curve"]])
-            self.assertEqual(line.is_dashed(), entry["of"] == "winners")
+            self.assertEqual(line.is_dashed(), entry["population"] == "winners")
             auc = f"{name} AUC {entry['auc']['value']:.3f}"
             self.assertTrue(any(text.startswith(auc) for text in legend_of(figure)))
         self.assertEqual(points_of(axes, "_mark"), [(mark["false_accept_rate"], mark["true_accept_rate"])
@@ -385,7 +385,7 @@ class TheCommand(TuneTest):
                 ({"others": [fake.other("rcme", "", ["1"], 0.1, 0.1)]}, ("other 1", "expected 2")),
                 ({"others": [fake.other("rcme", "", ["1", "no"], 0.1, 0.1)]},
                  ("other 1", "'no' of lambda", "a number")),
-                ({"roc": [fake.rocs()[0] | {"of": "models"}]}, ("roc 1", "'samples'")),
+                ({"roc": [fake.rocs()[0] | {"population": "models"}]}, ("roc 1", "'samples'")),
                 ({"roc": [fake.rocs()[0] | {"curve": [[0, 1.5, 0]]}]}, ("roc 1", "'curve'")),
         ):
             self.assert_refused(self.run_main(whole | changes), "tune.json", *named)

@@ -42,9 +42,9 @@ Case MakeCase(std::uint32_t trial, double sigma_px = 0.5) {
   return c;
 }
 
-HypothesisBlock Instantiate(const Case& c, Spread spread) {
+HypothesisBlock Instantiate(const Case& c, RequestedOutputs outputs) {
   HypothesisBlock block;
-  InstantiateModels(MatchBlocks(c.problem), c.samples, spread, &block);
+  InstantiateModels(MatchBlocks(c.problem), c.samples, outputs, &block);
   return block;
 }
 
@@ -103,7 +103,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesis) {
     for (std::uint32_t trial = 0; trial < 60; ++trial) {
       const Case c = MakeCase(trial);
       const MatchBlocks matches(c.problem);
-      const HypothesisBlock block = Instantiate(c, Spread::kCovarianceAndMisfit);
+      const HypothesisBlock block = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
       ASSERT_EQ(block.is_model, 0xff);
       for (int lane = 0; lane < kBlockSize; ++lane) {
         const Hypothesis<EightPoint> scalar = Scalar(c.problem, c.samples[static_cast<size_t>(lane)]).value();
@@ -155,7 +155,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesisWhereSingularValuesAreClose) {
     for (std::uint32_t trial = 0; trial < 60; ++trial) {
       const Case c = MakeCaseOfCloseSingularValues(trial, trial % 2 == 0 ? 1e-4 : 1e-5);
       const MatchBlocks matches(c.problem);
-      const HypothesisBlock block = Instantiate(c, Spread::kNone);
+      const HypothesisBlock block = Instantiate(c, RequestedOutputs::kNone);
       for (int lane = 0; lane < kBlockSize; ++lane) {
         const Hypothesis<EightPoint> scalar =
             InstantiateModel<EightPoint>(c.problem, {c.samples[static_cast<size_t>(lane)]}).value();
@@ -172,8 +172,9 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesisWhereSingularValuesAreClose) {
 TEST_F(HypothesisBlockTest, LessToKnowDoesNotChangeTheRest) {
   const Case c = MakeCase(1000);
   Run([&] {
-    const HypothesisBlock all = Instantiate(c, Spread::kCovarianceAndMisfit);
-    const HypothesisBlock some = Instantiate(c, Spread::kCovariance), least = Instantiate(c, Spread::kNone);
+    const HypothesisBlock all = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
+    const HypothesisBlock some = Instantiate(c, RequestedOutputs::kCovariance),
+                          least = Instantiate(c, RequestedOutputs::kNone);
     EXPECT_EQ(std::memcmp(all.F, some.F, sizeof(all.F)), 0);
     EXPECT_EQ(std::memcmp(all.F, least.F, sizeof(all.F)), 0);
     EXPECT_EQ(std::memcmp(all.dF, some.dF, sizeof(all.dF)), 0);
@@ -238,8 +239,9 @@ TEST_F(HypothesisBlockTest, RefusesWhatTheScalarSolverRefuses) {
         const size_t lane = trial % 8;
         const Case c = MakeSpoilt(spoil, lane, trial);
         EXPECT_FALSE(InstantiateModel<EightPoint>(c.problem, {c.samples[lane]})) << name;
-        for (const Spread spread : {Spread::kNone, Spread::kCovariance, Spread::kCovarianceAndMisfit}) {
-          EXPECT_EQ(Instantiate(c, spread).is_model, 0xff & ~(1u << lane)) << name << ", trial " << trial;
+        for (const RequestedOutputs outputs : {RequestedOutputs::kNone, RequestedOutputs::kCovariance,
+                                               RequestedOutputs::kCovarianceAndMisfit}) {
+          EXPECT_EQ(Instantiate(c, outputs).is_model, 0xff & ~(1u << lane)) << name << ", trial " << trial;
         }
       }
     }
@@ -251,9 +253,9 @@ TEST_F(HypothesisBlockTest, ALaneDoesNotTouchTheOthers) {
     for (const auto& [name, spoil] : DegenerateSamples()) {
       for (int spoilt = 0; spoilt < kBlockSize; ++spoilt) {
         Case c = MakeSpoilt(spoil, static_cast<size_t>(spoilt), 100);
-        const HypothesisBlock with = Instantiate(c, Spread::kCovarianceAndMisfit);
+        const HypothesisBlock with = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
         c.samples[static_cast<size_t>(spoilt)] = {8, 9, 10, 11, 12, 13, 14, 15};
-        const HypothesisBlock without = Instantiate(c, Spread::kCovarianceAndMisfit);
+        const HypothesisBlock without = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
         EXPECT_EQ(without.is_model, 0xff);
         for (int lane = 0; lane < kBlockSize; ++lane) {
           if (lane == spoilt) continue;
@@ -271,7 +273,7 @@ TEST_F(HypothesisBlockTest, EveryLaneGivesTheSameBits) {
   Case c = MakeCase(2000);
   c.samples.fill(c.samples[3]);
   Run([&] {
-    const HypothesisBlock block = Instantiate(c, Spread::kCovarianceAndMisfit);
+    const HypothesisBlock block = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
     for (int lane = 1; lane < kBlockSize; ++lane) {
       EXPECT_EQ(MatrixOf(block.F, lane), MatrixOf(block.F, 0));
       EXPECT_EQ(block.sample_statistic[lane], block.sample_statistic[0]);

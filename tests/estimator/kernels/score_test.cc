@@ -375,7 +375,7 @@ TEST_F(ScoreTest, SamplesAreConsistentWhereEveryPointFits) {
         for (int& index : sample) index = 3 * (index / 2) + 1 + index % 2;
       }
       HypothesisBlock block;
-      InstantiateModels(MatchBlocks(c.problem), samples, Spread::kCovariance, &block);
+      InstantiateModels(MatchBlocks(c.problem), samples, RequestedOutputs::kCovariance, &block);
       for (const double threshold : {2.0, 7.815, 50.0}) {
         const auto expected = ScalarVerdicts(c.problem, samples, threshold);
         const unsigned bits = FindConsistentSamples(block, threshold);

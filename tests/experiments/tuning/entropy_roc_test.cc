@@ -62,8 +62,8 @@ void ExpectWinnersOfPlainCalls(int num_refined) {
   }
   const std::vector<EntropyRoc> rocs = Measure(WithTest(20, num_refined), {5, 45});
   ASSERT_EQ(rocs.size(), 2u) << "the standard estimator has no entropies";
-  EXPECT_EQ(rocs[0].of, "samples");
-  EXPECT_EQ(rocs[1].of, "winners");
+  EXPECT_EQ(rocs[0].population, "samples");
+  EXPECT_EQ(rocs[1].population, "winners");
   EXPECT_EQ(rocs[1].estimator, 1u);
   ExpectSame(rocs[1], expected);
 }
@@ -92,7 +92,7 @@ TEST(EntropyRoc, SamplesAreGoodWhereAllEightMatchesAreTrue) {
   }
   const std::vector<EntropyRoc> rocs = Measure(WithTest(1), {0, 300});
   ASSERT_FALSE(rocs.empty());
-  ASSERT_EQ(rocs[0].of, "samples");
+  ASSERT_EQ(rocs[0].population, "samples");
   ExpectSame(rocs[0], expected);
 }
 
@@ -110,7 +110,7 @@ TEST(EntropyRoc, OfATrialTheFirstOfEachKindCounts) {
   int num_trials = 0;
   for (std::uint32_t trial = 0; trial < 40; ++trial) {
     const std::vector<EntropyRoc> first = Measure(few, {trial, trial + 1});
-    if (first.empty() || first[0].of != "samples") continue;
+    if (first.empty() || first[0].population != "samples") continue;
     const std::vector<EntropyRoc> later = Measure(many, {trial, trial + 1});
     ASSERT_FALSE(later.empty());
     EXPECT_EQ(later[0].good, first[0].good) << trial;

@@ -133,13 +133,13 @@ TEST(Tune, VerifiesTheTunedEstimatorAndThoseOfTheStudyOnTheLastTrials) {
   }
   ASSERT_EQ(result.estimators.size(), 3u);
   for (size_t e = 0; e < 3; ++e) {
-    const VerifiedEstimator& of = result.estimators[e];
-    EXPECT_EQ(of.failure.n, 20);
-    EXPECT_EQ(of.failure.errors, expected[e].failure.errors) << e;
-    EXPECT_EQ(of.refusal.errors, expected[e].refusal.errors) << e;
-    EXPECT_EQ(of.failure_or_refusal.errors, expected[e].failure_or_refusal.errors) << e;
-    EXPECT_EQ(of.against_first.first_only, expected[e].against_first.first_only) << e;
-    EXPECT_EQ(of.against_first.second_only, expected[e].against_first.second_only) << e;
+    const VerifiedEstimator& counts = result.estimators[e];
+    EXPECT_EQ(counts.failure.n, 20);
+    EXPECT_EQ(counts.failure.errors, expected[e].failure.errors) << e;
+    EXPECT_EQ(counts.refusal.errors, expected[e].refusal.errors) << e;
+    EXPECT_EQ(counts.failure_or_refusal.errors, expected[e].failure_or_refusal.errors) << e;
+    EXPECT_EQ(counts.against_first.first_only, expected[e].against_first.first_only) << e;
+    EXPECT_EQ(counts.against_first.second_only, expected[e].against_first.second_only) << e;
   }
   EXPECT_EQ(result.estimators[1].spec.label, "standard");
   EXPECT_EQ(result.estimators[2].spec.label, "ours");

@@ -1,6 +1,6 @@
 // PoseLib is not a Debian package; where CMake finds it, its relative pose (LO-RANSAC over five-point
 // samples, then refinement) is timed beside ours, all its options default.
-#include "tests/benchmarks/arms.h"
+#include "tests/benchmarks/benchmark_cases.h"
 
 #ifdef RCME_HAS_POSELIB
 #include <PoseLib/poselib.h>
@@ -43,11 +43,13 @@ void EstimateRelativePose(const BenchmarkTrial& trial) {
 
 }  // namespace
 
-std::vector<Arm> PoseLibArms() { return {{"peer", "poselib_relative_pose", EstimateRelativePose}}; }
+std::vector<BenchmarkCase> PoseLibCases() {
+  return {{"peer", "poselib_relative_pose", EstimateRelativePose}};
+}
 
 #else
 
-std::vector<Arm> PoseLibArms() { return {}; }
+std::vector<BenchmarkCase> PoseLibCases() { return {}; }
 
 #endif
 

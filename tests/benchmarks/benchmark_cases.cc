@@ -1,4 +1,4 @@
-#include "tests/benchmarks/arms.h"
+#include "tests/benchmarks/benchmark_cases.h"
 
 #include <benchmark/benchmark.h>
 
@@ -40,12 +40,12 @@ void CheckProblem(const Trial& trial) {
 
 void PackMatches(const Trial& trial) { DoNotOptimize(MatchBlocks(trial.data.problem)); }
 
-template <Spread spread>
+template <RequestedOutputs outputs>
 void InstantiateFast(const Trial& trial) {
   HypothesisBlock block;
   for (size_t j = 0; j < trial.samples.size(); j += kBlockSize) {
     InstantiateModels(trial.blocks, std::span<const Sample, kBlockSize>(&trial.samples[j], kBlockSize),
-                      spread, &block);
+                      outputs, &block);
     DoNotOptimize(block);
   }
 }
@@ -221,15 +221,15 @@ void RefineWinnerReference(const Trial& trial) {
 
 void FindThresholds(const Trial& trial) { DoNotOptimize(Thresholds::For(trial.data.problem, {}, 3)); }
 
-std::vector<Arm> StageArms() {
+std::vector<BenchmarkCase> StageCases() {
   const std::string stage = "stage";
   return {{stage, "check_problem", CheckProblem},
           {stage, "pack_matches", PackMatches},
           {stage, "find_thresholds", FindThresholds},
           {stage, "draw_samples", DrawSamples},
-          {stage, "instantiate/fast", InstantiateFast<Spread::kNone>},
+          {stage, "instantiate/fast", InstantiateFast<RequestedOutputs::kNone>},
           {stage, "instantiate/reference", InstantiateReference},
-          {stage, "instantiate_with_covariance/fast", InstantiateFast<Spread::kCovariance>},
+          {stage, "instantiate_with_covariance/fast", InstantiateFast<RequestedOutputs::kCovariance>},
           {stage, "instantiate_with_covariance/reference", InstantiateWithCovarianceReference},
           {stage, "five_points/fast", SolveFivePointsFast},
           {stage, "five_points/reference", SolveFivePointsReference},
@@ -259,8 +259,8 @@ std::vector<Arm> StageArms() {
           {stage, "refine_winner/reference", RefineWinnerReference}};
 }
 
-std::vector<Arm> EstimatorArms() {
-  std::vector<Arm> arms;
+std::vector<BenchmarkCase> EstimatorCases() {
+  std::vector<BenchmarkCase> cases;
   for (const auto& [label, estimator, reading] : {std::tuple{"standard", "standard", Reading::kAsPrinted},
                                                   {"prcme_as_printed", "prcme", Reading::kAsPrinted},
                                                   {"prcme_rank_aware", "prcme", Reading::kRankAware},
@@ -268,32 +268,32 @@ std::vector<Arm> EstimatorArms() {
                                                   {"rcme_rank_aware", "rcme", Reading::kRankAware}}) {
     RansacOptions options;
     options.reading = reading;
-    arms.push_back(EstimatorArm(label + std::string("/fast"), estimator, options));
+    cases.push_back(EstimatorCase(label + std::string("/fast"), estimator, options));
     options.implementation = Implementation::kReference;
     options.refinement_error = RefinementError::kReprojection;
-    arms.push_back(EstimatorArm(label + std::string("/reference"), estimator, options));
+    cases.push_back(EstimatorCase(label + std::string("/reference"), estimator, options));
   }
-  return arms;
+  return cases;
 }
 
-Arm OpenCvArm(const std::string& name, const std::function<cv::Mat(const Trial&)>& call) {
+BenchmarkCase OpenCvCase(const std::string& name, const std::function<cv::Mat(const Trial&)>& call) {
   return {"peer", name, [call](const Trial& trial) { DoNotOptimize(call(trial)); }};
 }
 
-std::vector<Arm> OpenCvArms() {
+std::vector<BenchmarkCase> OpenCvCases() {
   cv::setNumThreads(1);
-  return {OpenCvArm("opencv_ransac_200",
-                    [](const Trial& t) {
-                      return cv::findFundamentalMat(t.x1, t.x2, cv::FM_RANSAC, 1.0, 0.999999, 200);
-                    }),
-          OpenCvArm("opencv_usac_magsac",
-                    [](const Trial& t) { return cv::findFundamentalMat(t.x1, t.x2, cv::USAC_MAGSAC); }),
-          OpenCvArm("opencv_usac_accurate",
-                    [](const Trial& t) { return cv::findFundamentalMat(t.x1, t.x2, cv::USAC_ACCURATE); })};
+  return {OpenCvCase("opencv_ransac_200",
+                     [](const Trial& t) {
+                       return cv::findFundamentalMat(t.x1, t.x2, cv::FM_RANSAC, 1.0, 0.999999, 200);
+                     }),
+          OpenCvCase("opencv_usac_magsac",
+                     [](const Trial& t) { return cv::findFundamentalMat(t.x1, t.x2, cv::USAC_MAGSAC); }),
+          OpenCvCase("opencv_usac_accurate",
+                     [](const Trial& t) { return cv::findFundamentalMat(t.x1, t.x2, cv::USAC_ACCURATE); })};
 }
 
 // A trial of a study with one estimator: its data made, estimated, scored.
-std::vector<Arm> TrialArms() {
+std::vector<BenchmarkCase> TrialCases() {
   const auto plan = std::make_shared<const StudyPlan>(MakePlan(ParseStudy(
       "name: trial\nseed: 1\ntrials: 8\ndata: {scene: uniform_volume, num_matches: 500, outlier_ratio: 0.2, "
       "sigma_px: 0.5, severity: skipped}\nestimators:\n  - {name: rcme}\n",
@@ -307,7 +307,8 @@ std::vector<Arm> TrialArms() {
 
 }  // namespace
 
-Arm EstimatorArm(const std::string& name, const std::string& estimator, const RansacOptions& options) {
+BenchmarkCase EstimatorCase(const std::string& name, const std::string& estimator,
+                            const RansacOptions& options) {
   const std::shared_ptr<const MotionEstimator> made = MakeRansac(estimator, options);
   return {"estimator", name, [made](const Trial& trial) {
             RandomStream rng = StreamFor(trial.name, StreamPurpose::kSampling);
@@ -315,12 +316,12 @@ Arm EstimatorArm(const std::string& name, const std::string& estimator, const Ra
           }};
 }
 
-std::vector<Arm> AllArms() {
-  std::vector<Arm> arms;
-  for (const auto& group : {StageArms(), EstimatorArms(), OpenCvArms(), PoseLibArms(), TrialArms()}) {
-    arms.insert(arms.end(), group.begin(), group.end());
+std::vector<BenchmarkCase> AllBenchmarkCases() {
+  std::vector<BenchmarkCase> cases;
+  for (const auto& group : {StageCases(), EstimatorCases(), OpenCvCases(), PoseLibCases(), TrialCases()}) {
+    cases.insert(cases.end(), group.begin(), group.end());
   }
-  return arms;
+  return cases;
 }
 
 }  // namespace rcme

@@ -1,5 +1,5 @@
-// What is timed, named once for two programs: rcme_benchmark (Google Benchmark: one arm after the other, for
-// work on one of them) and rcme_ratios (all arms in turn, round after round, for ratios that last).
+// What is timed, named once for two programs: rcme_benchmark (Google Benchmark: one case after the other, for
+// work on one of them) and rcme_ratios (all cases in turn, round after round, for ratios that last).
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 namespace rcme {
 
 // Names are "stage/fast" and "stage/reference" where a stage exists twice.
-struct Arm {
+struct BenchmarkCase {
   std::string group;  // stage, estimator, peer, trial
   std::string name;
   std::function<void(const BenchmarkTrial&)> call;
@@ -20,12 +20,13 @@ struct Arm {
 
 // Every stage of a call, 200 hypotheses where it has to do with hypotheses; every estimator of the RANSAC
 // family in both implementations; other people's estimators; a trial of a study.
-std::vector<Arm> AllArms();
+std::vector<BenchmarkCase> AllBenchmarkCases();
 
 // The call of an estimator with these options on one trial's matches.
-Arm EstimatorArm(const std::string& name, const std::string& estimator, const RansacOptions& options);
+BenchmarkCase EstimatorCase(const std::string& name, const std::string& estimator,
+                            const RansacOptions& options);
 
 // PoseLib's estimator where the library is installed, and nothing where it is not.
-std::vector<Arm> PoseLibArms();
+std::vector<BenchmarkCase> PoseLibCases();
 
 }  // namespace rcme
