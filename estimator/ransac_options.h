@@ -48,7 +48,8 @@ enum class MinimalSolver {
   kOnePoint,    // a car on a plane, one; cameras upright (solvers/one_point.h)
 };
 
-// Two implementations of the same mathematics; they agree to rounding.
+// Two implementations of the same mathematics. They agree to rounding, but for solutions of five points that
+// nearly coincide, of which each misses others (kernels/five_point_block.h).
 enum class Implementation {
   kAutomatic,  // fast where the solver has it, else reference
   kFast,       // eight hypotheses, eight matches at a time, closed forms: kernels/; of eight and five points

@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kEnd = std::int64_t{1} << 32;  // after the last trial there can be
 constexpr size_t kMaxFindings = 5;
 
-// Whether `action` ends without damage; `note` is told what it is.
+// Whether `action` ends without damage; `note` gets a sentence about the damage.
 template <typename Action, typename Note>
 bool IsUndamaged(Action action, Note note) {
   try {

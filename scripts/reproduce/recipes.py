@@ -21,7 +21,7 @@ KEYS = {"name", "folder", "cpu_minutes", "needs", "commands", "files", "machine"
 
 
 class ResultError(Exception):
-    """What people are told, without a traceback."""
+    """The message of a failed step, without a traceback."""
 
 
 @dataclass
