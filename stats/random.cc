@@ -1,6 +1,7 @@
 #include "stats/random.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "stats/portable_math.h"
 
@@ -15,8 +16,12 @@ std::array<std::uint32_t, 4> Philox4x32(const std::array<std::uint32_t, 4>& coun
 }
 
 RandomStream::RandomStream(const StreamName& name)
-    : next_{{0, name.trial, name.condition, name.purpose},
-            {static_cast<std::uint32_t>(name.seed), static_cast<std::uint32_t>(name.seed >> 32)}} {}
+    : next_{{0, name.trial, static_cast<std::uint32_t>(name.condition),
+             static_cast<std::uint32_t>(name.condition >> 32 << 16) | name.purpose},
+            {static_cast<std::uint32_t>(name.seed), static_cast<std::uint32_t>(name.seed >> 32)}} {
+  if (name.condition >> 48 != 0) throw std::out_of_range("a stream's condition has at most 48 bits");
+  if (name.purpose >> 16 != 0) throw std::out_of_range("a stream's purpose has at most 16 bits");
+}
 
 void RandomStream::Refill() {
   PhiloxWordPairs(next_, kNumPairs, pairs_.data());

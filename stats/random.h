@@ -17,13 +17,14 @@ namespace rcme {
 
 struct StreamName {
   std::uint64_t seed = 0;
-  std::uint32_t condition = 0;
+  std::uint64_t condition = 0;  // a number or a hash of at most 48 bits
   std::uint32_t trial = 0;
-  std::uint32_t purpose = 0;
+  std::uint32_t purpose = 0;  // at most 16 bits
 };
 
 class RandomStream {
  public:
+  // Throws std::out_of_range: a condition or purpose that is too large.
   explicit RandomStream(const StreamName& name);
 
   std::uint32_t Next32() {

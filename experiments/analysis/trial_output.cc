@@ -61,8 +61,8 @@ struct TrueSetting {
 
   TrueSetting(const StudyPlan& plan, const TrialResult& result)
       : camera1(result.data.problem.camera1), camera2(result.data.problem.camera2) {
-    scene = ConditionOf(plan, result)
-                .source->SceneOf({plan.study.seed, result.problem.condition, result.problem.trial, 0});
+    const Condition& condition = ConditionOf(plan, result);
+    scene = condition.source->SceneOf(NameOfTrial(plan, condition, result.problem.trial));
     if (!scene) return;
     camera1 = scene->camera1;
     camera2 = scene->camera2;

@@ -40,7 +40,7 @@ ConditionCases CasesOf(const StudyPlan& plan, const Condition& condition) {
     cases.levels.emplace_back(plan.factor_names[f], condition.levels[f]);
   }
   for (std::uint32_t trial = 0; trial < kNumFirst; ++trial) {
-    cases.first.push_back(cases.make({plan.study.seed, condition.index, trial, 0}));
+    cases.first.push_back(cases.make(NameOfTrial(plan, condition, trial)));
   }
   return cases;
 }

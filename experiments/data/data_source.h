@@ -23,7 +23,8 @@ enum class StreamPurpose : std::uint32_t {
   kSampling = 4,
   kMonteCarlo = 5,
   kCheck = 6,
-  kSeverity = 7
+  kSeverity = 7,
+  kPilotScene = 8
 };
 
 // The stream of a trial for a purpose.

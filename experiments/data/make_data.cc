@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/match_folder.h"
@@ -87,6 +88,9 @@ struct Configured {
   }
 
   std::vector<Parameter> AllParameters() { return simulated ? simulated->Parameters() : Parameters(folder); }
+  std::vector<Parameter> SceneParameters() {
+    return simulated ? simulated->SceneParameters() : std::vector<Parameter>();
+  }
 
   Settings ChosenNames() const {
     return simulated ? simulated->ChosenParts() : Settings{{"scene", kMatchFilesScene}};
@@ -121,6 +125,24 @@ Settings ResolveSettings(const Settings& settings) {
   const Settings values = ValuesOf(configured.AllParameters());
   resolved.insert(resolved.end(), values.begin(), values.end());
   return resolved;
+}
+
+Settings DistinctiveSettings(const Settings& settings, bool of_scene) {
+  static const std::set<std::string> kWithoutEffect = {"folder", "severity"},
+                                     kNotOfTheScene = {"noise", "outliers"};
+  Configured configured(settings);
+  Settings distinctive = configured.ChosenNames();
+  Configured defaults(distinctive);
+  if (of_scene)
+    std::erase_if(distinctive, [](const auto& choice) { return kNotOfTheScene.contains(choice.first); });
+  const auto parameters = of_scene ? configured.SceneParameters() : configured.AllParameters();
+  const auto at_default = of_scene ? defaults.SceneParameters() : defaults.AllParameters();
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const std::string &name = parameters[i].name(), value = parameters[i].Value();
+    if (value == at_default[i].Value() || kWithoutEffect.contains(name)) continue;
+    distinctive.emplace_back(name, value);
+  }
+  return distinctive;
 }
 
 std::vector<SettingHelp> DescribeSettings(const Settings& settings) {

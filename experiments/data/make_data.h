@@ -26,6 +26,11 @@ DataSources MakeDataSources(const Settings& settings);
 // Every parameter of the scene with its value, `scene` first. Throws InputError that names key and value.
 Settings ResolveSettings(const Settings& settings);
 
+// Those of the resolved settings that are not at their defaults, `scene` and the other choices first; with
+// `of_scene` those that shape the scene alone, without noise, outliers and assumed calibration. Equal for two
+// data blocks that mean the same. Not among them: where a folder lies, and what is only measured.
+Settings DistinctiveSettings(const Settings& settings, bool of_scene);
+
 // The keys of a `data:` block that choose a part of the simulation by name; the choice decides which other
 // keys there are.
 bool IsChoice(const std::string& key);

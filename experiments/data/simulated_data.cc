@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "simulator/noise_registry.h"
 #include "simulator/outlier_registry.h"
@@ -29,7 +28,7 @@ SimulatedData::SimulatedData(const Choices& choices)
 }
 
 std::vector<Parameter> SimulatedData::Parameters() {
-  std::vector<Parameter> all = scenes_.Parameters();
+  std::vector<Parameter> all = SceneParameters();
   for (const std::vector<Parameter>& more :
        {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(assumed_)}) {
     all.insert(all.end(), more.begin(), more.end());
@@ -41,9 +40,8 @@ std::vector<Parameter> SimulatedData::Parameters() {
 }
 
 void SimulatedData::FixBaseline() {
-  // Scenes of a condition that no study has (kMaxConditions), whatever the study's seed.
-  constexpr std::uint32_t kPilotCondition = std::numeric_limits<std::uint32_t>::max();
-  scenes_.FixBaseline({0, kPilotCondition, 0, static_cast<std::uint32_t>(StreamPurpose::kScene)});
+  // The same scenes whatever the study's seed.
+  scenes_.FixBaseline({0, 0, 0, static_cast<std::uint32_t>(StreamPurpose::kPilotScene)});
 }
 
 std::string SimulatedData::Identity() const {

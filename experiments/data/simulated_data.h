@@ -24,6 +24,8 @@ class SimulatedData : public DataSource {
   // Throws InputError that lists what is allowed.
   explicit SimulatedData(const Choices& choices);
   std::vector<Parameter> Parameters();
+  // Those that shape the scene: the others say what the images give of it.
+  std::vector<Parameter> SceneParameters() { return scenes_.Parameters(); }
 
   // To be called once all parameters are set; see SceneGenerator.
   void FixBaseline();

@@ -46,6 +46,9 @@ struct Study {
   std::uint64_t seed = 1;
   int trials = 100;  // per condition; for a folder of pairs, passes over each pair
   Settings data;     // fixed settings
+  // One set of scenes, noise and outliers for all conditions whose scene is shaped alike, so that differences
+  // between levels of the outlier ratio or the noise level are paired.
+  bool common_scenes = false;
   Design design = Design::kFullFactorial;
   std::vector<Factor> factors;
   std::vector<EstimatorSpec> estimators;

@@ -52,6 +52,11 @@ Parameter DesignParameter(Design* design) {
       "which combinations of the factors' levels are run");
 }
 
+Parameter CommonScenesParameter(bool* common_scenes) {
+  return Parameter::Choice<bool>("common_scenes", common_scenes, {{"true", true}, {"false", false}},
+                                 "the same scenes in all conditions whose scene is shaped alike");
+}
+
 // An entry of the list of estimators; {file: tuned.yaml} is that file's, seen from the study's folder.
 EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
   if (!node.IsMap() || !node["file"]) return ReadEstimatorEntry(place, node, "estimators", {"file"});
@@ -230,8 +235,8 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
   Study study;
   study.name = std::filesystem::path(path).stem().string();
   for (const auto& [key, node] : Entries(place, root, "study",
-                                         {"name", "description", "ademp", "seed", "trials", "data", "design",
-                                          "factors", "estimators", "failure", "tune"})) {
+                                         {"name", "description", "ademp", "seed", "trials", "common_scenes",
+                                          "data", "design", "factors", "estimators", "failure", "tune"})) {
     if (key == "name") study.name = Name(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
@@ -243,6 +248,11 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
       for (const auto& [setting, value] : Entries(place, node, "data", {})) {
         study.data.emplace_back(setting, Scalar(place, value, setting));
       }
+    }
+    if (key == "common_scenes") {
+      place.At(node, [&, node = node] {
+        CommonScenesParameter(&study.common_scenes).SetFromText(Scalar(place, node, "common_scenes"));
+      });
     }
     if (key == "ademp") study.ademp = ReadAdemp(place, node);
     if (key == "design") study.design = ReadDesign(place, node);
@@ -267,9 +277,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
 
 Study LoadStudy(const std::string& path) { return ParseStudy(ReadInputText(path, StudyFileKind()), path); }
 
-Study ParseStudy(const std::string& yaml, const std::string& path) {
-  return ReadStudy(yaml, path);
-}
+Study ParseStudy(const std::string& yaml, const std::string& path) { return ReadStudy(yaml, path); }
 
 void Override(Study* study, const std::string& key, const std::string& value) {
   const size_t dot = key.rfind('.');
@@ -301,6 +309,7 @@ std::string ToYaml(const Study& study) {
   }
   out << YAML::Key << "seed" << YAML::Value << study.seed;
   out << YAML::Key << "trials" << YAML::Value << study.trials;
+  if (study.common_scenes) out << YAML::Key << "common_scenes" << YAML::Value << true;
   out << YAML::Key << "data" << YAML::Value << YAML::BeginMap;
   for (const auto& [key, value] : WrittenData(study)) out << YAML::Key << key << YAML::Value << value;
   out << YAML::EndMap;

@@ -41,12 +41,36 @@ std::string Identity(const StudyPlan& plan) {
   return identity;
 }
 
+// The FNV-1a hash, whose 64 bits are folded to the 48 of a stream's condition.
+std::uint64_t StreamKey(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char letter : text) {
+    hash ^= static_cast<unsigned char>(letter);
+    hash *= 0x100000001b3;
+  }
+  return (hash >> 48 ^ hash) & 0xffff'ffff'ffff;
+}
+
+// Equal for two conditions that draw the same scenes, noise and outliers: those that mean the same, in any
+// study; with common_scenes those whose scene is shaped alike. `pair_scene`: which scene of a folder.
+std::string WhatIsDrawn(const Study& study, const Settings& settings, const std::string& pair_scene) {
+  std::string text;
+  for (const auto& [key, value] : DistinctiveSettings(settings, study.common_scenes)) {
+    text += key + "=" + value + "\n";
+  }
+  return text + pair_scene;
+}
+
 }  // namespace
 
 std::int64_t StudyPlan::NumTrials() const {
   std::int64_t sum = 0;
   for (const Condition& condition : conditions) sum += condition.num_trials;
   return sum;
+}
+
+StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
+  return {plan.study.seed, condition.stream_key, trial, 0};
 }
 
 StudyPlan MakePlan(const Study& given) {
@@ -56,16 +80,21 @@ StudyPlan MakePlan(const Study& given) {
     throw InputError(fmt::format("factors: {} cannot vary; give the intrinsics of own_intrinsics as factors",
                                  kCalibrationKey));
   }
+  if (study.common_scenes &&
+      std::ranges::count(study.data, Settings::value_type("scene", kMatchFilesScene)) > 0) {
+    throw InputError("common_scenes: pairs of match files have no scenes to share; leave it out");
+  }
   StudyPlan plan;
   plan.study = study;
   for (const Factor& factor : study.factors) plan.factor_names.push_back(factor.key);
   for (const std::vector<std::string>& levels : DesignRows(study)) {
-    const DataSources made = MakeDataSources(SettingsOf(study, levels));
+    const Settings settings = SettingsOf(study, levels);
+    const DataSources made = MakeDataSources(settings);
     const bool is_first = plan.conditions.empty();
     if (is_first && !made.implied_factor.empty()) plan.factor_names.push_back(made.implied_factor);
     for (const auto& [level, source] : made.sources) {
       Condition condition{static_cast<std::uint32_t>(plan.conditions.size()), levels, source,
-                          source->NumTrials(study.trials)};
+                          source->NumTrials(study.trials), StreamKey(WhatIsDrawn(study, settings, level))};
       if (!made.implied_factor.empty()) condition.levels.push_back(level);
       plan.conditions.push_back(std::move(condition));
     }

@@ -15,6 +15,7 @@ struct Condition {
   std::vector<std::string> levels;  // one per factor of the plan
   std::shared_ptr<const DataSource> source;
   int num_trials = 0;
+  std::uint64_t stream_key = 0;  // of its random streams: what the condition is, whatever its index
 };
 
 // A study made ready to run: its conditions in a fixed order (first factor slowest), its estimators built.
@@ -28,6 +29,9 @@ struct StudyPlan {
 
   std::int64_t NumTrials() const;
 };
+
+// Names the random streams of a trial, but for their purpose (data_source.h).
+StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
 
 // Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions.
 StudyPlan MakePlan(const Study& study);

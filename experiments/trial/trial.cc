@@ -58,11 +58,11 @@ void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecor
   if (num_true > 0) record->inlier_recall = 1.0 * num_found / num_true;
 }
 
-ProblemRecord Describe(const TrialData& data, const StreamName& name) {
+ProblemRecord Describe(const TrialData& data, const Condition& condition, std::uint32_t trial) {
   const std::vector<bool>& is_inlier = data.truth.is_inlier_true;
   const double num_inliers =
       is_inlier.empty() ? kNaN : static_cast<double>(std::count(is_inlier.begin(), is_inlier.end(), true));
-  return {name.condition, name.trial, data.weight, num_inliers, data.severity};
+  return {condition.index, trial, data.weight, num_inliers, data.severity};
 }
 
 TrialRecord ScoreJudged(const MotionEstimate& judged, const TrialData& data, double seconds) {
@@ -119,10 +119,10 @@ TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double 
 }
 
 TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
-  const StreamName name{plan.study.seed, condition.index, trial, 0};
+  const StreamName name = NameOfTrial(plan, condition, trial);
   TrialResult result;
   result.data = condition.source->Make(name);
-  result.problem = Describe(result.data, name);
+  result.problem = Describe(result.data, condition, trial);
   result.estimates.reserve(plan.estimators.size());
   result.records.reserve(plan.estimators.size());
   for (size_t e = 0; e < plan.estimators.size(); ++e) {

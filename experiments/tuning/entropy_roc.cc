@@ -115,7 +115,7 @@ std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange tri
                                                 std::vector<Entropies>(static_cast<size_t>(NumTrials(all))));
   ForEachTrial(all, num_threads, progress,
                [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
-                 const StreamName name{plan.study.seed, condition.index, trial, 0};
+                 const StreamName name = NameOfTrial(plan, condition, trial);
                  const TrialData data = condition.source->Make(name);
                  for (size_t e = 0; e < estimators.size(); ++e) {
                    if (!estimators[e]) continue;

@@ -17,7 +17,7 @@ namespace {
 class TrialDecisions {
  public:
   TrialDecisions(const StudyPlan& plan, const Condition& condition, std::uint32_t trial)
-      : name_{plan.study.seed, condition.index, trial, 0},
+      : name_(NameOfTrial(plan, condition, trial)),
         bounds_(plan.study.failure),
         data_(condition.source->Make(name_)) {
     if (data_.weight != 1.0) throw InputError("tune: tilted_to: trials with weights cannot be tuned on");

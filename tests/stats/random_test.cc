@@ -105,20 +105,27 @@ TEST(RandomStream, ShuffleIsTheKnownOne) {
 
 TEST(RandomStream, EveryPartOfTheNameMatters) {
   const StreamName name{.seed = 1, .condition = 2, .trial = 3, .purpose = 4};
-  std::vector<StreamName> names(6, name);
+  std::vector<StreamName> names(7, name);
   names[1].seed = 2;
   names[2].seed = 1 + (1ULL << 32);  // the high half too
   names[3].condition = 3;
   names[4].trial = 4;
   names[5].purpose = 5;
+  names[6].condition = 2 + (1ULL << 32);  // its high part too
   std::map<std::uint32_t, int> seen;
   constexpr int kWords = 1000;
   for (const StreamName& each : names) {
     RandomStream rng(each);
     for (int i = 0; i < kWords; ++i) ++seen[rng.Next32()];
   }
-  // 6000 words of 2^32 possible: 0.004 repetitions expected; two equal streams would give 1000.
-  EXPECT_GE(seen.size(), 6u * kWords - 3u);
+  // 7000 words of 2^32 possible: 0.006 repetitions expected; two equal streams would give 1000.
+  EXPECT_GE(seen.size(), 7u * kWords - 3u);
+}
+
+TEST(RandomStream, ANameThatIsTooLargeIsRefused) {
+  EXPECT_NO_THROW(RandomStream({.condition = (1ULL << 48) - 1, .purpose = 65535}));
+  EXPECT_THROW(RandomStream({.condition = 1ULL << 48}), std::out_of_range);
+  EXPECT_THROW(RandomStream({.purpose = 65536}), std::out_of_range);
 }
 
 TEST(RandomStream, SameNameGivesTheSameNumbersWhateverElseIsDrawn) {

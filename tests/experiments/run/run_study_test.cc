@@ -50,7 +50,7 @@ class QuickData : public DataSource {
   int NumTrials(int trials) const override { return trials; }
   TrialData Make(const StreamName& name) const override {
     TrialData data;
-    data.problem.sigma_px = name.trial + 0.1 * name.condition;
+    data.problem.sigma_px = name.trial + 0.1 * static_cast<double>(name.condition % 97);
     return data;
   }
 };

@@ -81,7 +81,7 @@ TEST(EntropyRoc, SamplesAreGoodWhereAllEightMatchesAreTrue) {
     for (std::uint32_t trial = 0; trial < 300; ++trial) {
       const TrialResult result = RunTrial(plain, condition, trial);
       if (result.records[1].counts.num_candidates == 0) continue;
-      RandomStream rng = StreamFor({plain.study.seed, condition.index, trial, 0}, StreamPurpose::kSampling);
+      RandomStream rng = StreamFor(NameOfTrial(plain, condition, trial), StreamPurpose::kSampling);
       const std::vector<bool>& is_true = result.data.truth.is_inlier_true;
       int num_wrong = 0;
       for (const int i : DrawSample(8, static_cast<int>(is_true.size()), rng)) {
@@ -123,7 +123,7 @@ TEST(EntropyRoc, OfATrialTheFirstOfEachKindCounts) {
 TEST(EntropyRoc, WithoutABadOneThereIsNoCurve) {
   Study study = WithTest(20).study;
   study.factors[0].levels = {"0"};
-  for (const EntropyRoc& roc : Measure(MakePlan(study), {0, 10})) EXPECT_NE(roc.of, "samples");
+  for (const EntropyRoc& roc : Measure(MakePlan(study), {0, 10})) EXPECT_NE(roc.population, "samples");
 }
 
 TEST(EntropyRoc, DoesNotDependOnThreads) {

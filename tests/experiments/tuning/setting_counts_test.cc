@@ -66,10 +66,10 @@ TEST(SettingCounts, AreThoseOfPlainCalls) {
       "  options: {mu: [1, 2.5, 6], lambda: [0.5, 1], selection: [mean_entropy, predictive_likelihood], "
       "significance_level: [0.01, 0.2], chance_significance_level: [off], "
       "observability_significance_level: [off]}\n");  // else hardly a trial fails
-  ExpectPlainCounts(plan, {0, 20});
+  ExpectPlainCounts(plan, {0, 40});
   std::set<std::string> different;
   SettingCount all;
-  for (const SettingCount& count : Count(plan, 1, {0, 20})) {
+  for (const SettingCount& count : Count(plan, 1, {0, 40})) {
     different.insert(Text({count}));
     all += count;
   }
@@ -97,8 +97,8 @@ StudyPlan PlanWithNarrowBounds(const std::string& options) {
 TEST(SettingCounts, AreThoseOfPlainCallsWithSeveralRefined) {
   const StudyPlan plan = PlanWithNarrowBounds(
       "num_refined: [1, 4, 20], least_explained_share: [0, 0.55, 0.75], num_iterations: [30]");
-  ExpectPlainCounts(plan, {0, 20});
-  const std::vector<SettingCount> counts = Count(plan, 1, {0, 20});
+  ExpectPlainCounts(plan, {0, 60});
+  const std::vector<SettingCount> counts = Count(plan, 1, {0, 60});
   EXPECT_NE(Text({counts[0]}), Text({counts[6]})) << "how many are refined does not matter";
   EXPECT_EQ(counts[0].good, counts[2].good) << "the share is a limit, not a measure of the good";
   EXPECT_GT(counts[2].false_refusals, 3) << "that it refuses good motions is not seen";
