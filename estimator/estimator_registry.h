@@ -16,6 +16,7 @@ struct EstimatorEntry {
   std::string name;
   std::string doc;
   std::function<std::unique_ptr<EstimatorModel>()> make;  // with default options
+  bool is_peer = false;  // another library's: `rcme audit` asks it nothing unless a study names it
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 

@@ -11,6 +11,7 @@ const std::string& StatusName(MotionStatus status) {
                                                  "too_few_explained",
                                                  "direction_not_observable",
                                                  "not_better_than_chance",
+                                                 "library_error",
                                                  "invalid_input",
                                                  "invalid_motion",
                                                  "invalid_covariance"};
@@ -26,6 +27,7 @@ const std::vector<MotionStatus>& AllStatuses() {
                                                 MotionStatus::kTooFewExplained,
                                                 MotionStatus::kDirectionNotObservable,
                                                 MotionStatus::kNotBetterThanChance,
+                                                MotionStatus::kLibraryError,
                                                 MotionStatus::kInvalidInput,
                                                 MotionStatus::kInvalidMotion,
                                                 MotionStatus::kInvalidCovariance};

@@ -19,7 +19,8 @@ enum class MotionStatus {
   kTooFewExplained,         // the refined motion explains a smaller share of the matches than was asked for
   kDirectionNotObservable,  // the parallax is within its noise: the rotation is given, the direction is not
   kNotBetterThanChance,     // no more matches agree with the motion than would agree with any motion
-  kInvalidInput,            // NaN or infinite coordinates, a singular camera, a noise level not positive
+  kLibraryError,  // another library that the estimator calls failed: an exception, or no finite motion
+  kInvalidInput,  // NaN or infinite coordinates, a singular camera, a noise level not positive
   // Never an estimator's own: what the check of its answer makes of kOk.
   kInvalidMotion,      // not a rotation and a unit vector, or not finite
   kInvalidCovariance,  // not finite, symmetric and positive semidefinite

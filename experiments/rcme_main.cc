@@ -1,5 +1,9 @@
 // rcme: statistical validation of robust two-view motion estimators.
 
 #include "experiments/program.h"
+#include "peers/peer_registry.h"
 
-int main(int argc, char** argv) { return rcme::RunProgram(argc, argv); }
+int main(int argc, char** argv) {
+  rcme::AddPeers();
+  return rcme::RunProgram(argc, argv);
+}

@@ -1,0 +1,118 @@
+// OpenCV's RANSAC and its least median of squares, both for the fundamental matrix of seven points.
+#include <numbers>
+#include <numeric>
+#include <opencv2/calib3d.hpp>
+
+#include "peers/peers.h"
+#include "peers/recover_pose.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kSampleSize = 7;
+
+// Defaults are those of cv::findFundamentalMat.
+struct FundamentalOptions {
+  int method = cv::FM_RANSAC;
+  double threshold_sigma = 2.0;  // FM_RANSAC only
+  double confidence = 0.99;
+  int max_iterations = 1000;
+  double max_depth = kDefaultMaxDepth;
+};
+
+// FM_RANSAC compares with the threshold the larger of the distances of a match's two points from their
+// epipolar lines, |e| / min(|l1|, |l2|), e the constraint and l1, l2 the normals of the lines. The variance
+// of e is sigma^2 (|l1|^2 + |l2|^2), so that where both have one length the distance has the standard
+// deviation sqrt(2) sigma. FM_LMEDS has no threshold: inliers are the matches within 2.5 robust standard
+// deviations, 1.4826 (1 + 5 / (n - 7)) times the median of the distances.
+double ThresholdPx(const FundamentalOptions& options, double sigma_px) {
+  return std::numbers::sqrt2 * options.threshold_sigma * sigma_px;
+}
+
+MotionProblem Reordered(const MotionProblem& problem, const std::vector<int>& order) {
+  MotionProblem reordered = problem;
+  for (size_t i = 0; i < order.size(); ++i)
+    reordered.matches[i] = problem.matches[static_cast<size_t>(order[i])];
+  return reordered;
+}
+
+// F, E = K2' F K1, and the motion of the essential matrix next to it. Both methods draw their samples from a
+// generator that always begins alike: what the stream decides is the order in which OpenCV gets the matches.
+// Of exactly seven matches OpenCV gives up to three F: the first with most points in front is taken.
+std::optional<PeerAnswer> AskFindFundamentalMat(const MotionProblem& problem,
+                                                const FundamentalOptions& options, RandomStream& rng) {
+  std::vector<int> order(problem.matches.size());
+  std::iota(order.begin(), order.end(), 0);
+  rng.Shuffle(std::span(order));
+  const MotionProblem reordered = Reordered(problem, order);
+  const CvPoints points = PixelsOf(reordered);
+  cv::Mat mask;
+  const cv::Mat Fs = cv::findFundamentalMat(points.image1, points.image2, options.method,
+                                            ThresholdPx(options, problem.sigma_px), options.confidence,
+                                            options.max_iterations, mask);
+  const cv::Mat K1(CvMatrix(problem.camera1.K())), K2(CvMatrix(problem.camera2.K()));
+  std::optional<PeerAnswer> best;
+  for (int row = 0; row + 3 <= Fs.rows; row += 3) {
+    const cv::Mat E = K2.t() * Fs.rowRange(row, row + 3) * K1;
+    std::optional<PeerAnswer> answer = RecoverPose(reordered, E, mask, options.max_depth);
+    if (answer && (!best || answer->inliers.size() > best->inliers.size())) best = std::move(answer);
+  }
+  if (!best) return std::nullopt;
+  for (int& i : best->inliers) i = order[static_cast<size_t>(i)];
+  return best;
+}
+
+class OpenCvFundamental : public MotionEstimator {
+ public:
+  explicit OpenCvFundamental(const FundamentalOptions& options) : options_(options) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return CallPeer(problem, kSampleSize, "OpenCV",
+                    [&] { return AskFindFundamentalMat(problem, options_, rng); });
+  }
+
+ private:
+  FundamentalOptions options_;
+};
+
+class FundamentalModel : public EstimatorModel {
+ public:
+  explicit FundamentalModel(int method) { options_.method = method; }
+
+  std::vector<Parameter> Parameters() override {
+    FundamentalOptions& o = options_;
+    std::vector<Parameter> all;
+    const bool is_ransac = o.method == cv::FM_RANSAC;
+    if (is_ransac) {
+      all.push_back(Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
+                                    "a match is an inlier up to so many standard deviations of its distance; "
+                                    "with fewer than 15 matches OpenCV takes LMedS and no threshold"));
+    }
+    all.push_back(Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
+                                  is_ransac
+                                      ? "that a sample without a wrong match was drawn, when the loop ends"
+                                      : "that a sample without a wrong match is drawn where 45 % are wrong; "
+                                        "sets the number of samples"));
+    all.push_back(
+        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples"));
+    all.push_back(MaxDepthParameter(&o.max_depth));
+    return all;
+  }
+  std::unique_ptr<MotionEstimator> Make() const override {
+    return std::make_unique<OpenCvFundamental>(options_);
+  }
+
+ private:
+  FundamentalOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<EstimatorModel> OpenCvRansacModel() {
+  return std::make_unique<FundamentalModel>(cv::FM_RANSAC);
+}
+std::unique_ptr<EstimatorModel> OpenCvLmedsModel() {
+  return std::make_unique<FundamentalModel>(cv::FM_LMEDS);
+}
+
+}  // namespace rcme

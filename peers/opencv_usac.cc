@@ -1,0 +1,113 @@
+// OpenCV's USAC for the essential matrix, with the camera matrices of both images.
+#include <opencv2/calib3d.hpp>
+
+#include "peers/peers.h"
+#include "peers/recover_pose.h"
+
+namespace rcme {
+namespace {
+
+// Defaults are those of cv::UsacParams.
+struct UsacOptions {
+  cv::ScoreMethod score = cv::SCORE_METHOD_MSAC;
+  cv::LocalOptimMethod local_optimisation = cv::LOCAL_OPTIM_INNER_LO;
+  cv::SamplingMethod sampler = cv::SAMPLING_UNIFORM;
+  double threshold_sigma = 2.0;
+  double confidence = 0.99;
+  int max_iterations = 5000;
+  double max_depth = kDefaultMaxDepth;
+};
+
+// Size and number of the samples of a local optimisation. UsacParams has one default for all of them; these
+// are what OpenCV's own choices of each use for essential matrices (USAC_DEFAULT, USAC_ACCURATE,
+// USAC_MAGSAC).
+void SetLocalSamples(cv::UsacParams* params) {
+  const bool is_cut = params->loMethod == cv::LOCAL_OPTIM_GC;
+  const bool is_sigma = params->loMethod == cv::LOCAL_OPTIM_SIGMA;
+  params->loSampleSize = is_cut ? 20 : is_sigma ? 50 : 21;
+  params->loIterations = is_cut ? 25 : is_sigma ? 10 : 15;
+}
+
+// USAC compares with the squared threshold the symmetric epipolar distance e^2 (1 / |l1|^2 + 1 / |l2|^2), e
+// the constraint and l1, l2 the normals of the two epipolar lines. The variance of e is sigma^2 (|l1|^2 +
+// |l2|^2), so that where both have one length the distance has the standard deviation 2 sigma. USAC takes
+// the threshold in pixels and divides it by the mean of the four focal lengths.
+double ThresholdPx(const UsacOptions& options, double sigma_px) {
+  return 2.0 * options.threshold_sigma * sigma_px;
+}
+
+class OpenCvUsac : public MotionEstimator {
+ public:
+  explicit OpenCvUsac(const UsacOptions& options) : options_(options) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return CallPeer(problem, 5, "OpenCV", [&] { return Ask(problem, rng); });
+  }
+
+ private:
+  std::optional<PeerAnswer> Ask(const MotionProblem& problem, RandomStream& rng) const {
+    cv::UsacParams params;
+    params.score = options_.score;
+    params.loMethod = options_.local_optimisation;
+    params.sampler = options_.sampler;
+    params.threshold = ThresholdPx(options_, problem.sigma_px);
+    params.confidence = options_.confidence;
+    params.maxIterations = options_.max_iterations;
+    params.isParallel = false;
+    params.randomGeneratorState = static_cast<int>(rng.Next32() >> 2);  // its parts add small numbers to it
+    SetLocalSamples(&params);
+    const CvPoints points = PixelsOf(problem);
+    cv::Mat mask;
+    const cv::Mat E =
+        cv::findEssentialMat(points.image1, points.image2, CvMatrix(problem.camera1.K()),
+                             CvMatrix(problem.camera2.K()), cv::noArray(), cv::noArray(), mask, params);
+    if (E.rows != 3 || E.cols != 3) return std::nullopt;
+    return RecoverPose(problem, E, mask, options_.max_depth);
+  }
+
+  UsacOptions options_;
+};
+
+class UsacModel : public EstimatorModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    UsacOptions& o = options_;
+    return {
+        Parameter::Choice("score", &o.score,
+                          {{"msac", cv::SCORE_METHOD_MSAC},
+                           {"magsac", cv::SCORE_METHOD_MAGSAC},
+                           {"lmeds", cv::SCORE_METHOD_LMEDS}},
+                          "what a hypothesis is chosen by"),
+        Parameter::Choice("local_optimisation", &o.local_optimisation,
+                          {{"none", cv::LOCAL_OPTIM_NULL},
+                           {"inner", cv::LOCAL_OPTIM_INNER_LO},
+                           {"inner_and_iterative", cv::LOCAL_OPTIM_INNER_AND_ITER_LO},
+                           {"graph_cut", cv::LOCAL_OPTIM_GC},
+                           {"sigma", cv::LOCAL_OPTIM_SIGMA}},
+                          "what is done to a hypothesis that is better than those before; sigma: MAGSAC++"),
+        Parameter::Choice("sampler", &o.sampler,
+                          {{"uniform", cv::SAMPLING_UNIFORM},
+                           {"prosac", cv::SAMPLING_PROSAC},
+                           {"napsac", cv::SAMPLING_NAPSAC},
+                           {"progressive_napsac", cv::SAMPLING_PROGRESSIVE_NAPSAC}},
+                          "how samples are drawn; prosac and progressive_napsac hold the first matches to be "
+                          "the best, but a simulation lists them in random order"),
+        Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
+                        "a match is an inlier up to so many standard deviations of its distance; magsac "
+                        "looks up to 3.2 times as far"),
+        Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
+                        "that a sample without a wrong match was drawn, when the loop ends early"),
+        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples"),
+        MaxDepthParameter(&o.max_depth)};
+  }
+  std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<OpenCvUsac>(options_); }
+
+ private:
+  UsacOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<EstimatorModel> OpenCvUsacModel() { return std::make_unique<UsacModel>(); }
+
+}  // namespace rcme

@@ -1,0 +1,74 @@
+#include "peers/peer_call.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "estimator/geometry/essential_matrix.h"
+#include "estimator/geometry/sampson.h"
+#include "estimator/motion_tests.h"
+#include "estimator/problem_check.h"
+#include "estimator/refine_winner.h"
+#include "estimator/uncertainty/motion_covariance.h"
+
+namespace rcme {
+namespace {
+
+// As in the family of `standard` by default.
+constexpr double kSignificanceLevel = 0.05;
+
+MotionEstimate Refusal(MotionStatus status, std::string message) {
+  MotionEstimate estimate;
+  estimate.status = status;
+  estimate.message = std::move(message);
+  return estimate;
+}
+
+int CountExplained(const MotionProblem& problem, const RelativePose& pose) {
+  const Eigen::Matrix3d F =
+      FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
+  const double bound = ConsistencyThreshold(kSignificanceLevel) * problem.sigma_px * problem.sigma_px;
+  return static_cast<int>(std::ranges::count_if(problem.matches, [&](const Correspondence& match) {
+    return SquaredSampsonDistance(F, match) <= bound;
+  }));
+}
+
+MotionEstimate EstimateFrom(const MotionProblem& problem, const std::string& library, PeerAnswer answer) {
+  if (!answer.cam2_from_cam1.R.allFinite() || !answer.cam2_from_cam1.t.allFinite())
+    return Refusal(MotionStatus::kLibraryError, library + ": its motion is not finite");
+  std::ranges::sort(answer.inliers);
+  std::vector<Correspondence> fitted;
+  for (const int i : answer.inliers) fitted.push_back(problem.matches.at(static_cast<size_t>(i)));
+  const std::optional<Matrix5d> pose_cov = FirstOrderMotionCovariance(
+      answer.cam2_from_cam1, problem.camera1, problem.camera2, fitted, problem.sigma_px);
+  if (!pose_cov) {
+    return Refusal(MotionStatus::kDegenerateMatches,
+                   fmt::format("the {} inliers of {} do not determine a motion", fitted.size(), library));
+  }
+  MotionEstimate estimate;
+  estimate.status = MotionStatus::kOk;
+  estimate.message =
+      SuccessMessage(static_cast<int>(fitted.size()), static_cast<int>(problem.matches.size()));
+  estimate.cam2_from_cam1 = estimate.initial_pose = answer.cam2_from_cam1;
+  estimate.pose_cov = *pose_cov;
+  estimate.inliers = std::move(answer.inliers);
+  estimate.num_explained = CountExplained(problem, estimate.cam2_from_cam1);
+  return estimate;
+}
+
+}  // namespace
+
+MotionEstimate CallPeer(const MotionProblem& problem, int sample_size, const std::string& library,
+                        const std::function<std::optional<PeerAnswer>()>& ask) {
+  if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, sample_size)) return *refusal;
+  try {
+    std::optional<PeerAnswer> answer = ask();
+    if (!answer) return Refusal(MotionStatus::kNoCandidate, library + " found no motion");
+    return EstimateFrom(problem, library, std::move(*answer));
+  } catch (const std::exception& error) {
+    return Refusal(MotionStatus::kLibraryError, fmt::format("{}: {}", library, error.what()));
+  }
+}
+
+}  // namespace rcme

@@ -1,0 +1,204 @@
+// What the peers answer: right motions, the inliers that their threshold says, a covariance, the same bytes
+// from every thread, a status whatever comes in, and no thread of their own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+#include <thread>
+
+#include "estimator/uncertainty/motion_covariance.h"
+#include "experiments/contract/contract_problems.h"
+#include "experiments/contract/estimate_difference.h"
+#include "experiments/trial/answer_check.h"
+#include "stats/intervals.h"
+#include "tests/peers/peer_entries.h"
+#include "tests/test_support/two_camera_scene.h"
+
+namespace rcme {
+namespace {
+
+MotionEstimate Estimate(const EstimatorVariant& variant, const MotionProblem& problem, std::uint32_t trial) {
+  RandomStream rng({1, 0, trial, 4});
+  return variant.Make()->Estimate(problem, rng);
+}
+
+bool IsNear(const MotionEstimate& estimate, const RelativePose& pose_true, double max_rotation_rad,
+            double max_direction_rad) {
+  return estimate.status == MotionStatus::kOk &&
+         RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R) <= max_rotation_rad &&
+         AngleBetween(estimate.cam2_from_cam1.t, pose_true.t) <= max_direction_rad;
+}
+
+class Peers : public testing::TestWithParam<EstimatorVariant> {};
+
+// Two cameras that differ in everything. The matches are exact; OpenCV's USAC holds them in single precision.
+TEST_P(Peers, FindTheMotionOfExactMatches) {
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    RelativePose pose_true;
+    MotionProblem problem = TwoCameraProblem(100, 0.0, 0.0, trial, &pose_true);
+    problem.sigma_px = 0.01;
+    const MotionEstimate estimate = Estimate(GetParam(), problem, trial);
+    EXPECT_TRUE(IsNear(estimate, pose_true, 1e-4, 1e-3)) << estimate.message;
+    EXPECT_EQ(estimate.num_explained, 100);
+    EXPECT_GT(estimate.inliers.size(), 90u);
+    if (trial > 0) continue;
+    std::swap(problem.camera1, problem.camera2);
+    EXPECT_FALSE(IsNear(Estimate(GetParam(), problem, trial), pose_true, 1e-4, 1e-3));
+  }
+}
+
+// More than half, by an exact bound of false alarm rate .001, of trials with noise and a fifth of the matches
+// wrong.
+TEST_P(Peers, FindMostMotionsAmongWrongMatches) {
+  constexpr int kNumTrials = 100;
+  int num_near = 0;
+  for (std::uint32_t trial = 0; trial < kNumTrials; ++trial) {
+    RelativePose pose_true;
+    const MotionProblem problem = TwoCameraProblem(150, 0.5, 0.2, trial, &pose_true);
+    num_near += IsNear(Estimate(GetParam(), problem, trial), pose_true, 0.052, 0.26);
+  }
+  EXPECT_GT(ExactBinomialInterval(num_near, kNumTrials, 0.998).lower, 0.5) << num_near;
+}
+
+// The threshold is in standard deviations of the distance: of true matches, 68 % are within one and 95 %
+// within two. That is asked of 30 noisy matches among 570 exact ones, which leave hardly any doubt about the
+// motion. Standard errors over 1,200 of them are .013 and .006; where the normals of a match's two epipolar
+// lines differ in length by the ratio of the focal lengths, the deviation is up to 2 % wider. A distance that
+// is off by a factor of 1.2 would be seen.
+TEST_P(Peers, TakeTheirThresholdInStandardDeviations) {
+  const std::unique_ptr<EstimatorModel> model = FindEstimator(GetParam().estimator).make();
+  const std::vector<Parameter> options = model->Parameters();
+  if (std::ranges::count(options, "threshold_sigma", &Parameter::name) == 0) return;
+  for (const auto& [threshold, share] : {std::pair{"1", 0.683}, {"2", 0.954}}) {
+    EstimatorVariant variant = GetParam();
+    variant.options.emplace_back("threshold_sigma", threshold);
+    variant.options.emplace_back("confidence", "0.99999");
+    double num_inliers = 0.0, num_noisy = 0.0;
+    for (std::uint32_t trial = 0; trial < 40; ++trial) {
+      RelativePose pose_true;
+      MotionProblem problem = TwoCameraProblem(600, 0.0, 0.0, trial, &pose_true);
+      problem.sigma_px = 0.5;
+      RandomStream rng({.seed = 1, .trial = trial, .purpose = 2731});
+      for (size_t i = 570; i < 600; ++i) AddNoise(0.5, rng, &problem.matches[i]);
+      const MotionEstimate estimate = Estimate(variant, problem, trial);
+      if (!IsNear(estimate, pose_true, 2e-4, 2e-3)) continue;  // of other motions, more is in the distance
+      num_inliers +=
+          static_cast<double>(std::ranges::count_if(estimate.inliers, [](int i) { return i >= 570; }));
+      num_noisy += 30.0;
+    }
+    EXPECT_GE(num_noisy, 300.0) << threshold;
+    EXPECT_NEAR(num_inliers / num_noisy, share, 0.04) << threshold << " of " << num_noisy;
+  }
+}
+
+TEST_P(Peers, GiveTheCovarianceOfTheirInliers) {
+  const MotionProblem problem = TwoCameraProblem(100, 0.5, 0.2, 0);
+  const MotionEstimate estimate = Estimate(GetParam(), problem, 0);
+  ASSERT_EQ(estimate.status, MotionStatus::kOk) << estimate.message;
+  std::vector<Correspondence> inliers;
+  for (const int i : estimate.inliers) inliers.push_back(problem.matches[static_cast<size_t>(i)]);
+  EXPECT_EQ(estimate.pose_cov, FirstOrderMotionCovariance(estimate.cam2_from_cam1, problem.camera1,
+                                                          problem.camera2, inliers, problem.sigma_px));
+  EXPECT_GT(estimate.num_explained, 40);
+  EXPECT_LE(estimate.num_explained, 100);
+}
+
+TEST_P(Peers, GiveTheSameBytesOnEveryThread) {
+  const std::unique_ptr<MotionEstimator> estimator = GetParam().Make();
+  std::vector<MotionProblem> problems;
+  std::vector<MotionEstimate> alone;
+  for (std::uint32_t trial = 0; trial < 4; ++trial) {
+    problems.push_back(TwoCameraProblem(100, 0.5, 0.4, trial));
+    alone.push_back(Estimate(GetParam(), problems.back(), trial));
+  }
+  std::vector<std::string> differences(4);
+  {
+    std::vector<std::jthread> threads;
+    for (std::uint32_t thread = 0; thread < 4; ++thread) {
+      threads.emplace_back([&, thread] {
+        for (std::uint32_t k = 0; k < 8; ++k) {
+          const std::uint32_t trial = (thread + k) % 4;
+          RandomStream rng({1, 0, trial, 4});
+          const auto difference = FirstDifference(alone[trial], estimator->Estimate(problems[trial], rng));
+          if (difference) differences[thread] = *difference;
+        }
+      });
+    }
+  }
+  EXPECT_THAT(differences, testing::Each(""));
+}
+
+// Where the samples are few and most matches wrong, another stream draws others.
+TEST_P(Peers, DrawTheirSamplesFromTheStream) {
+  const MotionProblem problem = TwoCameraProblem(60, 0.5, 0.6, 0);
+  const MotionEstimate first = Estimate(GetParam(), problem, 0);
+  int num_others = 0;
+  for (std::uint32_t stream = 1; stream < 6; ++stream) {
+    num_others += FirstDifference(first, Estimate(GetParam(), problem, stream)).has_value();
+  }
+  EXPECT_GT(num_others, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Peers, testing::ValuesIn(PeerVariants()),
+                         [](const auto& c) { return c.param.name; });
+
+double CpuSeconds(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// No other thread of the process works while a peer does.
+TEST(PeerCalls, StayOnTheirThread) {
+  double in_thread = 0.0, in_process = 0.0;
+  for (const EstimatorVariant& variant : PeerVariants()) {
+    const std::unique_ptr<MotionEstimator> estimator = variant.Make();
+    const MotionProblem problem = TwoCameraProblem(500, 0.5, 0.4, 0);
+    const double thread_start = CpuSeconds(CLOCK_THREAD_CPUTIME_ID);
+    const double process_start = CpuSeconds(CLOCK_PROCESS_CPUTIME_ID);
+    RandomStream rng({1, 0, 0, 4});
+    estimator->Estimate(problem, rng);
+    in_thread += CpuSeconds(CLOCK_THREAD_CPUTIME_ID) - thread_start;
+    in_process += CpuSeconds(CLOCK_PROCESS_CPUTIME_ID) - process_start;
+  }
+  EXPECT_LT(in_process, 1.01 * in_thread + 0.001);
+}
+
+std::string FaultOn(const EstimatorVariant& variant, const MotionProblem& problem, bool has_no_motion) {
+  const MotionEstimate estimate = Estimate(variant, problem, 0);
+  if (const auto fault = FindFault(estimate, problem.matches.size())) return fault->message;
+  if (estimate.message.empty()) return "no message";
+  if (estimate.status == MotionStatus::kOk && has_no_motion) return "a motion";
+  return "";
+}
+
+// What no peer may crash, hang or throw at, with every combination of its choices.
+TEST(PeerCalls, EndInAStatusWhateverComesIn) {
+  for (EstimatorVariant variant : PeerCombinations()) {
+    variant.options.emplace_back("max_iterations", "100");
+    for (const ContractProblem& bad : BadProblems(1))
+      EXPECT_EQ(FaultOn(variant, bad.problem, bad.has_no_motion), "") << variant.name << ": " << bad.name;
+  }
+}
+
+// Images of all sizes and places: OpenCV sorts points into the cells of a grid.
+TEST(PeerCalls, EndInAStatusWhereverTheImageLies) {
+  for (EstimatorVariant variant : PeerCombinations()) {
+    variant.options.emplace_back("max_iterations", "100");
+    for (const double scale : {1e-6, 0.01, 1.0, 1000.0}) {
+      for (const double shift_px : {-9e5, -500.0, 0.0, 9e5}) {
+        MotionProblem problem = TwoCameraProblem(30, 0.5, 0.3, 0);
+        problem.sigma_px *= scale;
+        for (Correspondence& match : problem.matches) {
+          match.x1_px = (scale * match.x1_px).array() + shift_px;
+          match.x2_px = (scale * match.x2_px).array() + shift_px;
+        }
+        EXPECT_EQ(FaultOn(variant, problem, false), "") << variant.name << ": " << scale << ", " << shift_px;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,134 @@
+// What is asked of the options of every estimator in the registry: that each has an effect, that texts go
+// round, that defaults are allowed.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "estimator/estimator_registry.h"
+#include "parameters/input_error.h"
+#include "tests/test_support/estimator_variants.h"
+#include "tests/test_support/two_camera_scene.h"
+
+namespace rcme {
+
+// 30 % wrong matches; so many that samples without one are rare; nearly all wrong; a camera that only turns.
+inline std::vector<MotionProblem> Problems() {
+  const Scene turn = TwoCameraScene(60, 0, /*baseline_m=*/0.0);
+  const Observation observed = ObserveTwoCameraScene(turn, 0.5, 0.0, 0);
+  return {TwoCameraProblem(60, 0.5, 0.3, 0),
+          TwoCameraProblem(150, 0.5, 0.6, 0),
+          TwoCameraProblem(100, 0.5, 0.98, 0),
+          {observed.matches, turn.camera1, turn.camera2, 0.5}};
+}
+
+// All that an estimate says, as numbers; NaN is its own equal.
+inline std::vector<double> NumbersOf(const MotionEstimate& e) {
+  std::vector<double> numbers(e.inliers.begin(), e.inliers.end());
+  for (const auto& matrix : {Eigen::MatrixXd(e.cam2_from_cam1.R), Eigen::MatrixXd(e.cam2_from_cam1.t),
+                             Eigen::MatrixXd(e.pose_cov)}) {
+    numbers.insert(numbers.end(), matrix.data(), matrix.data() + matrix.size());
+  }
+  const LoopCounts& c = e.counts;
+  for (const double x : {1.0 * static_cast<int>(e.status), 1.0 * e.num_support, 1.0 * e.failed_by_kappa,
+                         1.0 * c.num_hypotheses, 1.0 * c.num_inconsistent_samples,
+                         1.0 * c.num_poor_inlier_sets, 1.0 * c.num_candidates}) {
+    numbers.push_back(x);
+  }
+  for (double& x : numbers) x = std::isnan(x) ? 1e300 : x;
+  return numbers;
+}
+
+// The answers to all problems; none where the options contradict each other.
+inline std::vector<std::vector<double>> Answers(const std::string& estimator, const Settings& options,
+                                                const std::vector<MotionProblem>& problems) {
+  std::vector<std::vector<double>> answers;
+  try {
+    const std::unique_ptr<MotionEstimator> made = MakeEstimator(estimator, options);
+    for (const MotionProblem& problem : problems) {
+      RandomStream rng({1, 0, 0, 4});
+      answers.push_back(NumbersOf(made->Estimate(problem, rng)));
+    }
+  } catch (const InputError&) {
+  }
+  return answers;
+}
+
+// Values of all kinds that an option may take.
+inline std::vector<std::string> ValuesFor(const Parameter& option) {
+  std::vector<std::string> values = WordsOf(option), allowed;
+  for (const char* value : {"off", "0", "1e-09", "0.001", "0.3", "0.9", "1", "5", "40", "-10", "100"}) {
+    values.push_back(value);
+  }
+  for (const std::string& value : values) {
+    try {
+      option.SetFromText(value);
+      allowed.push_back(value);
+    } catch (const InputError&) {
+    }
+  }
+  return allowed;
+}
+
+// Options in whose company others matter, of those that the estimator has.
+inline std::vector<Settings> Companies(const std::vector<Parameter>& options) {
+  std::vector<Settings> companies = {{}};
+  for (const auto& [name, value] : Settings{
+           {"reading", "rank_aware"}, {"inlier_ratio", "0.9"}, {"refinement", "none"}, {"lambda", "1"}}) {
+    if (std::ranges::count(options, name, &Parameter::name) > 0) companies.push_back({{name, value}});
+  }
+  return companies;
+}
+
+inline bool HasEffect(const std::string& estimator, const std::string& option) {
+  const std::unique_ptr<EstimatorModel> model = FindEstimator(estimator).make();
+  const std::vector<Parameter> options = model->Parameters();
+  const std::vector<MotionProblem> problems = Problems();
+  const std::vector<std::string> values = ValuesFor(FindOption(estimator, options, option));
+  for (Settings company : Companies(options)) {
+    const auto without = Answers(estimator, company, problems);
+    for (const std::string& value : values) {
+      company.emplace_back(option, value);
+      const auto with = Answers(estimator, company, problems);
+      company.pop_back();
+      if (!with.empty() && !without.empty() && with != without) return true;
+    }
+  }
+  return false;
+}
+
+// All but the implementation, which takes another time to the same answer.
+inline void ExpectEveryOptionHasAnEffect(const EstimatorEntry& entry) {
+  const std::unique_ptr<EstimatorModel> model = entry.make();
+  for (const Parameter& option : model->Parameters()) {
+    if (option.name() == "implementation") continue;
+    EXPECT_TRUE(HasEffect(entry.name, option.name())) << entry.name << ": " << option.name();
+  }
+}
+
+inline void ExpectTextsGoRound(const EstimatorEntry& entry) {
+  const std::unique_ptr<EstimatorModel> model = entry.make();
+  const Settings defaults = ValuesOf(model->Parameters());
+  for (const Parameter& option : model->Parameters()) {
+    EXPECT_FALSE(option.doc().empty()) << entry.name << ": " << option.name();
+    for (const std::string& value : ValuesFor(option)) {
+      option.SetFromText(value);
+      const std::string text = option.Value();
+      option.SetFromText(text);
+      EXPECT_EQ(option.Value(), text) << entry.name << ": " << option.name();
+    }
+  }
+  EXPECT_EQ(ValuesOf(ConfigureEstimator(entry.name, defaults)->Parameters()), defaults);
+}
+
+inline void ExpectAllowedWithoutLimits(const EstimatorEntry& entry) {
+  const std::unique_ptr<EstimatorModel> model = entry.make();
+  model->LiftLimits();
+  EXPECT_NO_THROW(MakeEstimator(entry.name, ValuesOf(model->Parameters()))) << entry.name;
+}
+
+}  // namespace rcme
