@@ -66,6 +66,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddShowCommand(app);
   AddTuneCommand(app);
   AddTransferCommand(app);
+  AddBudgetCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);
   AddCheckEstimatorCommand(app);

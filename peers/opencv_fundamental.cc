@@ -98,6 +98,7 @@ class FundamentalModel : public EstimatorModel {
     all.push_back(MaxDepthParameter(&o.max_depth));
     return all;
   }
+  std::optional<Effort> EffortOption() const override { return Effort{"max_iterations", true}; }
   std::unique_ptr<MotionEstimator> Make() const override {
     return std::make_unique<OpenCvFundamental>(options_);
   }

@@ -100,6 +100,7 @@ class UsacModel : public EstimatorModel {
         Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples"),
         MaxDepthParameter(&o.max_depth)};
   }
+  std::optional<Effort> EffortOption() const override { return Effort{"max_iterations", true}; }
   std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<OpenCvUsac>(options_); }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "estimator/estimator_model.h"
@@ -14,6 +15,9 @@ class RansacModel : public EstimatorModel {
     options_.mu = kNoQualityTest;
     options_.inlier_ratio = std::numeric_limits<double>::quiet_NaN();  // inferred: the largest set is enough
     options_.least_explained_share = 0.0;
+  }
+  std::optional<Effort> EffortOption() const final {
+    return Effort{"num_iterations", std::isfinite(options_.early_stop_entropy)};
   }
 
  protected:

@@ -250,7 +250,9 @@ std::string KindName(SummaryRow::Kind kind) {
 
 Summary Summarize(const ResultStore& store, bool with_times) {
   const RunDescription run = store.Description();
-  Summary summary{run.study, run.factors, {}, 0, run.NumTrials()};
+  Summary summary{run.study, run.factors, {}, {}, 0, run.NumTrials()};
+  for (const DescribedEstimator& estimator : run.estimators)
+    summary.efforts.emplace_back(estimator.label, estimator.effort);
   const size_t num_estimators = run.estimators.size();
   const Accumulator<TrialRecord> empty(TrialQuantities());
   std::vector<Cell> cells(run.conditions.size(), Cell{std::vector(num_estimators, empty)});

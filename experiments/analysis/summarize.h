@@ -43,6 +43,7 @@ inline constexpr const char* kSceneLabel = "scene";
 struct Summary {
   std::string study;
   std::vector<std::string> factor_names;
+  Settings efforts;  // of each estimator, by label: what limits the work of a call; empty: unknown
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
 };

@@ -107,6 +107,15 @@ std::string SeverityAsTable(const Summary& summary) {
                      FormatColumns(rows));
 }
 
+// One line per estimator whose effort is known.
+std::string EffortsInWords(const Summary& summary) {
+  std::string text;
+  for (const auto& [label, effort] : summary.efforts) {
+    if (!effort.empty()) text += fmt::format("  {}: {}\n", label, effort);
+  }
+  return text.empty() ? text : "Effort of a call:\n" + text;
+}
+
 }  // namespace
 
 std::string SummaryAsTable(const Summary& summary) {
@@ -147,7 +156,7 @@ std::string SummaryAsTable(const Summary& summary) {
       "nees_coverage: truth inside the reported 95 % region; covers: the whole interval within 95 +- 1 %, "
       "does\n"
       "not cover: wholly outside. nees_median: 4.35 expected. All quantities: --format csv or json.\n";
-  return text;
+  return text + EffortsInWords(summary);
 }
 
 std::string SummaryAsCsv(const Summary& summary) {
@@ -174,7 +183,9 @@ std::string SummaryAsJson(const Summary& summary) {
   nlohmann::ordered_json json = {{"study", summary.study},
                                  {"trials_done", summary.num_trials_done},
                                  {"trials_planned", summary.num_trials_planned},
+                                 {"efforts", nlohmann::ordered_json(nlohmann::ordered_json::value_t::object)},
                                  {"rows", nlohmann::ordered_json::array()}};
+  for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;
   for (const SummaryRow& row : summary.rows) {
     nlohmann::ordered_json entry = {{"condition", row.condition}};
     for (size_t f = 0; f < row.levels.size(); ++f) entry["levels"][summary.factor_names[f]] = row.levels[f];

@@ -1,10 +1,9 @@
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "estimator/refinement/reprojection_mle.h"
+#include "experiments/base/thread_time.h"
 #include "experiments/claims/case.h"
 #include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
@@ -27,16 +26,11 @@ double Exponent(const std::vector<double>& x, const std::vector<double>& y) {
 // Processor time of this thread, s; the lesser of two runs, so that what else the machine does counts
 // little.
 double SecondsOf(const std::function<void()>& work) {
-  const auto now = [] {
-    timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-  };
   double least = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 2; ++run) {
-    const double start = now();
+    const double start = ThreadSeconds();
     work();
-    least = std::min(least, now() - start);
+    least = std::min(least, ThreadSeconds() - start);
   }
   return least;
 }

@@ -23,6 +23,7 @@ void AddShowCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);
 void AddMatchCommand(CLI::App& app);
 void AddTuneCommand(CLI::App& app);
+void AddBudgetCommand(CLI::App& app);
 void AddTransferCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);

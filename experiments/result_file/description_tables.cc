@@ -180,8 +180,10 @@ RunDescription ReadDescription(SQLite::Database& database) {
     run.conditions.push_back({{}, IntegerIn(row.getColumn(1), "conditions")});
   });
   ForEachNumbered(database, "estimators", [&](SQLite::Statement& row) {
-    run.estimators.push_back(
-        {TextIn(row.getColumn(1), "estimators"), TextIn(row.getColumn(2), "estimators"), {}});
+    run.estimators.push_back({TextIn(row.getColumn(1), "estimators"),
+                              TextIn(row.getColumn(2), "estimators"),
+                              TextIn(row.getColumn(3), "estimators"),
+                              {}});
   });
   ReadLevels(database, &run);
   ReadOptions(database, &run);
@@ -200,7 +202,7 @@ void WriteDescription(SQLite::Database& database, const RunDescription& run) {
   }
   for (size_t e = 0; e < run.estimators.size(); ++e) {
     const DescribedEstimator& estimator = run.estimators[e];
-    Insert(database, "estimators", number(e), estimator.label, estimator.name);
+    Insert(database, "estimators", number(e), estimator.label, estimator.name, estimator.effort);
     for (const auto& [name, value] : estimator.options) Insert(database, "options", number(e), name, value);
   }
   Insert(database, "run", std::string(kChecksum), ChecksumOfRows(database));

@@ -19,16 +19,26 @@ void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec
   spec->options = ValuesOf(parameters);
 }
 
+Parameter BudgetParameter(double* budget_ms) {
+  return Parameter::Real("budget_ms", budget_ms, {1e-6, 1e9}, "ms",
+                         "time of a call that the effort was chosen for");
+}
+
 }  // namespace
 
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller) {
   EstimatorSpec spec;
-  std::set<std::string> known = {"name", "label", "options", "provenance"};
+  std::set<std::string> known = {"name", "label", "options", "budget_ms", "provenance"};
   known.insert(keys_of_caller.begin(), keys_of_caller.end());
   for (const auto& [key, value] : Entries(place, node, block, known)) {
     if (key == "name") spec.name = Name(place, value, key);
     if (key == "label") spec.label = Name(place, value, key);
+    if (key == "budget_ms") {
+      place.At(value, [&, value = value] {
+        BudgetParameter(&spec.budget_ms.emplace()).SetFromText(Scalar(place, value, "budget_ms"));
+      });
+    }
     if (key != "provenance") continue;
     for (const auto& [what, text] : Entries(place, value, key, {})) Scalar(place, text, what);
   }
@@ -47,6 +57,7 @@ void WriteEstimatorKeys(const EstimatorSpec& spec, YAML::Emitter* out) {
   *out << YAML::Key << "options" << YAML::Value << YAML::BeginMap;
   for (const auto& [option, value] : spec.options) *out << YAML::Key << option << YAML::Value << value;
   *out << YAML::EndMap;
+  if (spec.budget_ms) *out << YAML::Key << "budget_ms" << YAML::Value << fmt::format("{:g}", *spec.budget_ms);
 }
 
 }  // namespace rcme

@@ -1,11 +1,13 @@
 #include "experiments/study/estimator_spec.h"
 
+#include <fmt/format.h>
+
 #include "estimator/estimator_registry.h"
 
 namespace rcme {
 
 EstimatorSpec DefaultEstimator(const std::string& name) {
-  EstimatorSpec spec{name, name, {}};
+  EstimatorSpec spec{name, name, {}, {}};
   SetOptions(&spec, {});
   return spec;
 }
@@ -17,6 +19,17 @@ void SetOptions(EstimatorSpec* spec, const Settings& options) {
     FindOption(spec->name, parameters, option).SetFromText(value);
   }
   spec->options = ValuesOf(parameters);
+}
+
+std::string EffortInWords(const EstimatorSpec& spec) {
+  const std::unique_ptr<EstimatorModel> model = Configure(spec);
+  const std::optional<Effort> effort = model->EffortOption();
+  if (!effort) return {};
+  const std::vector<Parameter> parameters = model->Parameters();
+  const std::string limit =
+      fmt::format("{} {}", effort->option, FindParameter(parameters, effort->option).Value());
+  if (spec.budget_ms) return fmt::format("{:g} ms a call ({})", *spec.budget_ms, limit);
+  return effort->has_own_rule ? "own rule, " + limit : limit;
 }
 
 std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "estimator/estimator_model.h"
@@ -13,6 +14,7 @@ struct EstimatorSpec {
   std::string label;  // unique in the study; what tables and plots show
   std::string name;   // in the estimator registry
   Settings options;   // every option that the estimator has, with its value as the option itself writes it
+  std::optional<double> budget_ms;  // the time of a call that its effort was chosen for (rcme budget)
 };
 
 // An estimator with its default options, labelled by its name. Throws InputError that lists the known names.
@@ -20,6 +22,10 @@ EstimatorSpec DefaultEstimator(const std::string& name);
 
 // Gives options other values. Throws InputError that lists the options the estimator has, or what is allowed.
 void SetOptions(EstimatorSpec* spec, const Settings& options);
+
+// What limits the work of a call, in words: "num_iterations 200", "3.1 ms a call (num_iterations 1840)",
+// "own rule, max_iterations 5000"; empty: nobody knows.
+std::string EffortInWords(const EstimatorSpec& spec);
 
 // The estimator, configured or made. Throw InputError as ConfigureEstimator does.
 std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec);

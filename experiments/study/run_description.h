@@ -25,8 +25,8 @@ struct DescribedCondition {
 };
 
 struct DescribedEstimator {
-  std::string label, name;
-  Settings options;  // by name
+  std::string label, name, effort;  // the last in words (EffortInWords)
+  Settings options;                 // by name
 };
 
 struct RunDescription {

@@ -62,7 +62,7 @@ TEST_F(Description, ResultsOfUnknownEstimatorsAreRead) {
   run.study_yaml = "no: study: at all";
   run.identity = "of another program";
   run.factors = {"phase_of_the_moon"};
-  run.estimators[1] = {"theirs", "estimator_of_theirs", {{"option_of_theirs", "many"}}};
+  run.estimators[1] = {"theirs", "estimator_of_theirs", "", {{"option_of_theirs", "many"}}};
   {
     ResultStore store = ResultStore::Create(path_, run);
     std::vector<TrialRecord> records(2);

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "experiments/base/columns.h"
+#include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
+#include "experiments/base/progress.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/run/find_effort.h"
+#include "experiments/study/study_file.h"
+
+namespace rcme {
+namespace {
+
+struct BudgetArguments {
+  std::string study, out;
+  StudyChanges changes;
+  double time_ms = 0.0;
+  std::uint32_t calls = 5;
+};
+
+std::string EndInWords(const FoundEffort& found) {
+  switch (found.end) {
+    case EffortEnd::kReached:
+      return "";
+    case EffortEnd::kNoEffort:
+      return "has no option that sets its effort";
+    case EffortEnd::kTooSlow:
+      return "takes longer even so";
+    case EffortEnd::kOwnRule:
+      return "stops earlier by its own rule";
+    case EffortEnd::kAtTheLimit:
+      return "more is not allowed";
+  }
+  return "";
+}
+
+// What was found for an estimator, with its times on trials that took no part in the search.
+std::vector<std::string> Row(const FoundEffort& found, const std::vector<TimedProblem>& fresh) {
+  const Moments ms = TimeCalls(found.spec, fresh);
+  const Interval interval = StudentInterval(ms);
+  return {found.spec.label, EffortInWords(found.spec),
+          fmt::format("{:.3g} [{:.3g}, {:.3g}]", ms.mean(), interval.lower, interval.upper),
+          EndInWords(found)};
+}
+
+void RunBudget(const BudgetArguments& arguments) {
+  const StopOnSignals stop;
+  CheckIsNoInput(arguments.out, {arguments.study});
+  CheckCanBeWritten(arguments.out);
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
+  const StudyPlan plan = PlanOf(study, arguments.study);
+  const std::vector<TimedProblem> problems = TimedProblems(plan, 0, arguments.calls),
+                                  fresh = TimedProblems(plan, arguments.calls, arguments.calls);
+  std::vector<std::vector<std::string>> rows = {{"estimator", "effort", "ms a call, fresh trials", ""}};
+  Progress progress("estimators", std::ssize(study.estimators));
+  for (EstimatorSpec& spec : study.estimators) {
+    if (IsStopRequested()) throw Stopped("budget: stopped, nothing written");
+    const FoundEffort found = FindEffort(spec, problems, arguments.time_ms);
+    spec = found.spec;
+    rows.push_back(Row(found, fresh));
+    progress.Advance(1);
+  }
+  WriteFileWhole(arguments.out,
+                 fmt::format("# Efforts for {:g} ms a call, found by `rcme budget {} --time-ms {:g}`.\n{}",
+                             arguments.time_ms, arguments.study, arguments.time_ms, ToYaml(study)));
+  fmt::print(
+      "{}\nMeans of {} calls with Student's 95 % interval over the problems; processor time of one thread\n",
+      FormatColumns(rows), fresh.size());
+  PrintMessage("{}: the study with these efforts; next: rcme run {} --out run.sqlite\n", arguments.out,
+               arguments.out);
+}
+
+}  // namespace
+
+void AddBudgetCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "budget", "Give every estimator of a study the effort at which a call takes a stated time");
+  command->footer(
+      "How many hypotheses decides many a comparison. This searches for each estimator the value of the "
+      "option\n"
+      "that sets its work (num_iterations, max_iterations) at which the mean time of a call over all\n"
+      "conditions of the study is the stated one, on this machine with one thread, and writes the study "
+      "with\n"
+      "these values. The efforts are numbers in that file: whoever runs it compares the same thing, "
+      "whatever\n"
+      "the machine. An estimator that cannot reach the time keeps the nearest effort, and the table says "
+      "why;\n"
+      "`rcme summarize` names the effort of each.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme budget experiments/studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml\n"
+      "  rcme run peers_10ms.yaml --out run.sqlite");
+  auto arguments = std::make_shared<BudgetArguments>();
+  command->add_option("STUDY", arguments->study, "study file (YAML)")->required();
+  AddStudyOptions(command, &arguments->changes);
+  command->add_option("--time-ms", arguments->time_ms, "mean time of a call, ms")
+      ->required()
+      ->transform(NumberIn({1e-3, 1e6}));
+  command
+      ->add_option("--calls", arguments->calls,
+                   "calls per condition and step of the search, and as many fresh ones for the table "
+                   "(default: 5)")
+      ->transform(WholeNumberIn(1, 100'000));
+  command->add_option("-o,--out", arguments->out, "the study with the efforts (YAML)")->required();
+  command->callback([arguments] { RunBudget(*arguments); });
+}
+
+}  // namespace rcme
