@@ -1,5 +1,6 @@
 // OpenCV's RANSAC and its least median of squares, both for the fundamental matrix of seven points.
-#include <numbers>
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <opencv2/calib3d.hpp>
 
@@ -22,11 +23,15 @@ struct FundamentalOptions {
 
 // FM_RANSAC compares with the threshold the larger of the distances of a match's two points from their
 // epipolar lines, |e| / min(|l1|, |l2|), e the constraint and l1, l2 the normals of the lines. The variance
-// of e is sigma^2 (|l1|^2 + |l2|^2), so that where both have one length the distance has the standard
-// deviation sqrt(2) sigma. FM_LMEDS has no threshold: inliers are the matches within 2.5 robust standard
-// deviations, 1.4826 (1 + 5 / (n - 7)) times the median of the distances.
-double ThresholdPx(const FundamentalOptions& options, double sigma_px) {
-  return std::numbers::sqrt2 * options.threshold_sigma * sigma_px;
+// of e is sigma^2 (|l1|^2 + |l2|^2). In rays both normals have about one length, in pixels that over the
+// focal length: the standard deviation of the distance is sigma sqrt(1 + r^2), r the larger focal length over
+// the smaller (sqrt(2) sigma for equal ones). FM_LMEDS has no threshold: inliers are the matches within 2.5
+// robust standard deviations, 1.4826 (1 + 5 / (n - 7)) times the median of the distances.
+double ThresholdPx(const FundamentalOptions& options, const MotionProblem& problem) {
+  const double focal1 = std::hypot(problem.camera1.fx, problem.camera1.fy);
+  const double focal2 = std::hypot(problem.camera2.fx, problem.camera2.fy);
+  const double ratio = std::max(focal1, focal2) / std::min(focal1, focal2);
+  return std::hypot(1.0, ratio) * options.threshold_sigma * problem.sigma_px;
 }
 
 MotionProblem Reordered(const MotionProblem& problem, const std::vector<int>& order) {
@@ -47,9 +52,9 @@ std::optional<PeerAnswer> AskFindFundamentalMat(const MotionProblem& problem,
   const MotionProblem reordered = Reordered(problem, order);
   const CvPoints points = PixelsOf(reordered);
   cv::Mat mask;
-  const cv::Mat Fs = cv::findFundamentalMat(points.image1, points.image2, options.method,
-                                            ThresholdPx(options, problem.sigma_px), options.confidence,
-                                            options.max_iterations, mask);
+  const cv::Mat Fs =
+      cv::findFundamentalMat(points.image1, points.image2, options.method, ThresholdPx(options, problem),
+                             options.confidence, options.max_iterations, mask);
   const cv::Mat K1(CvMatrix(problem.camera1.K())), K2(CvMatrix(problem.camera2.K()));
   std::optional<PeerAnswer> best;
   for (int row = 0; row + 3 <= Fs.rows; row += 3) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 
 #include "estimator/geometry/essential_matrix.h"
@@ -35,13 +36,14 @@ int CountExplained(const MotionProblem& problem, const RelativePose& pose) {
 }
 
 MotionEstimate EstimateFrom(const MotionProblem& problem, const std::string& library, PeerAnswer answer) {
-  if (!answer.cam2_from_cam1.R.allFinite() || !answer.cam2_from_cam1.t.allFinite())
-    return Refusal(MotionStatus::kLibraryError, library + ": its motion is not finite");
+  const RelativePose& pose = answer.cam2_from_cam1;
+  if (!pose.R.allFinite() || !(std::abs(pose.t.norm() - 1.0) < 1e-6))
+    return Refusal(MotionStatus::kLibraryError, library + ": its motion is not finite, or has no direction");
   std::ranges::sort(answer.inliers);
   std::vector<Correspondence> fitted;
   for (const int i : answer.inliers) fitted.push_back(problem.matches.at(static_cast<size_t>(i)));
-  const std::optional<Matrix5d> pose_cov = FirstOrderMotionCovariance(
-      answer.cam2_from_cam1, problem.camera1, problem.camera2, fitted, problem.sigma_px);
+  const std::optional<Matrix5d> pose_cov =
+      FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, fitted, problem.sigma_px);
   if (!pose_cov) {
     return Refusal(MotionStatus::kDegenerateMatches,
                    fmt::format("the {} inliers of {} do not determine a motion", fitted.size(), library));
@@ -50,10 +52,10 @@ MotionEstimate EstimateFrom(const MotionProblem& problem, const std::string& lib
   estimate.status = MotionStatus::kOk;
   estimate.message =
       SuccessMessage(static_cast<int>(fitted.size()), static_cast<int>(problem.matches.size()));
-  estimate.cam2_from_cam1 = estimate.initial_pose = answer.cam2_from_cam1;
+  estimate.cam2_from_cam1 = estimate.initial_pose = pose;
   estimate.pose_cov = *pose_cov;
   estimate.inliers = std::move(answer.inliers);
-  estimate.num_explained = CountExplained(problem, estimate.cam2_from_cam1);
+  estimate.num_explained = CountExplained(problem, pose);
   return estimate;
 }
 

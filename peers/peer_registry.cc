@@ -24,6 +24,16 @@ void AddOpenCv() {
 
 }  // namespace
 
-void AddPeers() { AddOpenCv(); }
+void AddPeers() {
+  AddOpenCv();
+  AddEstimator({"opengv_ransac",
+                "OpenGV " RCME_OPENGV_VERSION
+                ": Ransac of CentralRelativePoseSacProblem, nonlinear refinement",
+                OpenGvRansacModel, /*is_peer=*/true});
+#ifdef RCME_POSELIB_VERSION
+  AddEstimator({"poselib", "PoseLib " RCME_POSELIB_VERSION ": estimate_relative_pose", PoseLibModel,
+                /*is_peer=*/true});
+#endif
+}
 
 }  // namespace rcme

@@ -14,5 +14,7 @@ namespace rcme {
 std::unique_ptr<EstimatorModel> OpenCvUsacModel();
 std::unique_ptr<EstimatorModel> OpenCvRansacModel();
 std::unique_ptr<EstimatorModel> OpenCvLmedsModel();
+std::unique_ptr<EstimatorModel> OpenGvRansacModel();
+std::unique_ptr<EstimatorModel> PoseLibModel();  // only where CMake finds PoseLib
 
 }  // namespace rcme

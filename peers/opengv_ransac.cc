@@ -1,0 +1,150 @@
+// OpenGV's RANSAC for the motion of two central cameras, with its nonlinear refinement.
+#include <memory>
+#include <opengv/relative_pose/CentralRelativeAdapter.hpp>
+#include <opengv/sac/Ransac.hpp>
+#include <opengv/sac_problems/relative_pose/CentralRelativePoseSacProblem.hpp>
+
+#include "peers/peer_call.h"
+#include "peers/peers.h"
+
+namespace rcme {
+namespace {
+
+using SacProblem = opengv::sac_problems::relative_pose::CentralRelativePoseSacProblem;
+
+enum class OpenGvRefinement { kNone, kNonlinear };
+
+// Defaults are those of opengv::sac::SampleConsensus and of its examples.
+struct OpenGvOptions {
+  SacProblem::Algorithm algorithm = SacProblem::NISTER;
+  OpenGvRefinement refinement = OpenGvRefinement::kNonlinear;
+  double threshold_sigma = 2.0;
+  double confidence = 0.99;
+  int max_iterations = 1000;
+};
+
+// The squared angle of a pixel (rad^2), mean of both axes and over the image. At the ray r = (x, y, 1) a
+// pixel moves it by (1 / fx, 0, 0) or (0, 1 / fy, 0), and of that the part normal to the ray, over |r|, is
+// the angle: (1 + y^2) / (fx^2 |r|^4) and (1 + x^2) / (fy^2 |r|^4), squared.
+double SquaredAngleOfPixel(const Camera& camera) {
+  constexpr int kCells = 8;
+  double sum = 0.0;
+  for (int row = 0; row < kCells; ++row) {
+    for (int col = 0; col < kCells; ++col) {
+      const Eigen::Vector3d ray =
+          camera.Ray({(col + 0.5) / kCells * camera.width - 0.5, (row + 0.5) / kCells * camera.height - 0.5});
+      const double x2 = ray.x() * ray.x(), y2 = ray.y() * ray.y(), length2 = ray.squaredNorm();
+      sum += ((1.0 + y2) / (camera.fx * camera.fx) + (1.0 + x2) / (camera.fy * camera.fy)) /
+             (2.0 * length2 * length2);
+    }
+  }
+  return sum / (kCells * kCells);
+}
+
+// OpenGV compares with the threshold (1 - cos a1) + (1 - cos a2) = (a1^2 + a2^2) / 2 for small angles, a1 and
+// a2 those between the rays of a match and of its triangulated point. The least a1^2 + a2^2 is that of moving
+// both rays along the normals of their epipolar planes, e^2 / (|n1|^2 + |n2|^2) in unit rays, e the
+// constraint, n1 and n2 its gradients. Noise of sigma px turns ray k by s_k rad, so that the variance of e is
+// s_1^2 |n1|^2
+// + s_2^2 |n2|^2; where both gradients have one length, the least angle sqrt(a1^2 + a2^2) has the standard
+// deviation s with s^2 = (s_1^2 + s_2^2) / 2, and k of them are at (k s)^2 / 2.
+double Threshold(const OpenGvOptions& options, const MotionProblem& problem) {
+  const double in_px = options.threshold_sigma * problem.sigma_px;
+  return 0.25 * in_px * in_px * (SquaredAngleOfPixel(problem.camera1) + SquaredAngleOfPixel(problem.camera2));
+}
+
+// Its samples from our stream: OpenGV seeds its own generator with the clock or always alike.
+class StreamSacProblem : public SacProblem {
+ public:
+  StreamSacProblem(adapter_t& adapter, Algorithm algorithm, RandomStream& rng)
+      : SacProblem(adapter, algorithm, /*randomSeed=*/false), rng_(rng) {}
+
+  void getSamples(int& /*iterations*/, std::vector<int>& sample) override {
+    std::vector<int>& pool = shuffled_indices_;
+    for (size_t i = 0; i < static_cast<size_t>(getSampleSize()); ++i) {
+      std::swap(pool[i], pool[i + rng_.IntegerBelow(static_cast<std::uint32_t>(pool.size() - i))]);
+    }
+    sample.assign(pool.begin(), pool.begin() + getSampleSize());
+  }
+
+ private:
+  RandomStream& rng_;
+};
+
+// Matches that a sample needs: those of the solver, and OpenGV's two or three to tell its models apart.
+int SampleSize(SacProblem::Algorithm algorithm) {
+  return algorithm == SacProblem::NISTER || algorithm == SacProblem::STEWENIUS ? 8 : 9;
+}
+
+// OpenGV's motion is camera 2 as seen from camera 1: X1 = R12 X2 + t12, |t12| as it comes.
+RelativePose PoseFrom(const opengv::transformation_t& cam1_from_cam2) {
+  const Eigen::Matrix3d R = cam1_from_cam2.leftCols<3>().transpose();
+  return {R, (-R * cam1_from_cam2.col(3)).normalized()};
+}
+
+class OpenGvRansac : public MotionEstimator {
+ public:
+  explicit OpenGvRansac(const OpenGvOptions& options) : options_(options) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return CallPeer(problem, SampleSize(options_.algorithm), "OpenGV", [&] { return Ask(problem, rng); });
+  }
+
+ private:
+  std::optional<PeerAnswer> Ask(const MotionProblem& problem, RandomStream& rng) const {
+    opengv::bearingVectors_t rays1, rays2;
+    for (const Correspondence& match : problem.matches) {
+      rays1.push_back(problem.camera1.Ray(match.x1_px).normalized());
+      rays2.push_back(problem.camera2.Ray(match.x2_px).normalized());
+    }
+    opengv::relative_pose::CentralRelativeAdapter adapter(rays1, rays2);
+    const auto sac = std::make_shared<StreamSacProblem>(adapter, options_.algorithm, rng);
+    const double threshold = Threshold(options_, problem);
+    opengv::sac::Ransac<SacProblem> ransac(options_.max_iterations, threshold, options_.confidence);
+    ransac.sac_model_ = sac;
+    if (!ransac.computeModel()) return std::nullopt;
+    opengv::transformation_t motion = ransac.model_coefficients_;
+    std::vector<int> inliers = ransac.inliers_;
+    if (options_.refinement == OpenGvRefinement::kNonlinear && !inliers.empty()) {
+      sac->optimizeModelCoefficients(inliers, ransac.model_coefficients_, motion);
+      sac->selectWithinDistance(motion, threshold, inliers);
+    }
+    if (inliers.empty()) return std::nullopt;
+    return PeerAnswer{PoseFrom(motion), inliers};
+  }
+
+  OpenGvOptions options_;
+};
+
+class OpenGvModel : public EstimatorModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    OpenGvOptions& o = options_;
+    return {
+        Parameter::Choice("algorithm", &o.algorithm,
+                          {{"five_point_nister", SacProblem::NISTER},
+                           {"five_point_stewenius", SacProblem::STEWENIUS},
+                           {"seven_point", SacProblem::SEVENPT},
+                           {"eight_point", SacProblem::EIGHTPT}},
+                          "what makes a hypothesis of a sample, which holds one to three matches more to "
+                          "tell models apart"),
+        Parameter::Choice("refinement", &o.refinement,
+                          {{"none", OpenGvRefinement::kNone}, {"nonlinear", OpenGvRefinement::kNonlinear}},
+                          "of the best hypothesis over its inliers, which are then chosen again"),
+        Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
+                        "a match is an inlier up to so many standard deviations of its distance"),
+        Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
+                        "that a sample without a wrong match was drawn, when the loop ends early"),
+        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples")};
+  }
+  std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<OpenGvRansac>(options_); }
+
+ private:
+  OpenGvOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<EstimatorModel> OpenGvRansacModel() { return std::make_unique<OpenGvModel>(); }
+
+}  // namespace rcme

@@ -1,0 +1,115 @@
+// PoseLib's relative pose: LO-RANSAC over five-point samples, then refinement over the inliers. Not a Debian
+// package: built where CMake finds it.
+#include <PoseLib/poselib.h>
+
+#include "peers/peer_call.h"
+#include "peers/peers.h"
+
+namespace rcme {
+namespace {
+
+// Defaults are PoseLib's.
+struct PoseLibOptions {
+  double threshold_sigma = 2.0;
+  double confidence = 0.9999;
+  int min_iterations = 1000;
+  int max_iterations = 100000;
+};
+
+poselib::Camera CameraOf(const Camera& camera) {
+  return {"PINHOLE", {camera.fx, camera.fy, camera.cx, camera.cy}, camera.width, camera.height};
+}
+
+// The type of the options of estimate_relative_pose: RansacOptions (and BundleOptions after it) up to 2.0.5,
+// later RelativePoseOptions, which hold both.
+template <typename Points, typename PoseLibCamera, typename Options, typename... Rest>
+Options OptionsOf(poselib::RansacStats (*)(const Points&, const Points&, const PoseLibCamera&,
+                                           const PoseLibCamera&, const Options&, Rest...));
+using CallOptions = decltype(OptionsOf(&poselib::estimate_relative_pose));
+
+// PoseLib compares with the threshold the Sampson distance in pixels of the mean focal length, whose standard
+// deviation is sigma.
+template <typename Options>
+Options OptionsFor(const PoseLibOptions& options, double sigma_px, std::uint32_t seed) {
+  Options call;
+  const double threshold_px = options.threshold_sigma * sigma_px;
+  const auto set = [&](auto& ransac) {
+    ransac.min_iterations = static_cast<size_t>(options.min_iterations);
+    ransac.max_iterations = static_cast<size_t>(options.max_iterations);
+    ransac.success_prob = options.confidence;
+    ransac.seed = seed;
+  };
+  if constexpr (requires { call.max_epipolar_error; }) {
+    call.max_epipolar_error = threshold_px;
+    set(call);
+  } else {
+    call.max_error = threshold_px;
+    set(call.ransac);
+  }
+  return call;
+}
+
+template <typename Options, typename... Arguments>
+auto Call(const Options& options, poselib::CameraPose* pose, std::vector<char>* inliers,
+          const Arguments&... points_and_cameras) {
+  if constexpr (requires { options.max_epipolar_error; }) {
+    return poselib::estimate_relative_pose(points_and_cameras..., options, {}, pose, inliers);
+  } else {
+    return poselib::estimate_relative_pose(points_and_cameras..., options, pose, inliers);
+  }
+}
+
+class PoseLib : public MotionEstimator {
+ public:
+  explicit PoseLib(const PoseLibOptions& options) : options_(options) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return CallPeer(problem, 5, "PoseLib", [&] { return Ask(problem, rng); });
+  }
+
+ private:
+  std::optional<PeerAnswer> Ask(const MotionProblem& problem, RandomStream& rng) const {
+    std::vector<poselib::Point2D> points1, points2;
+    for (const Correspondence& match : problem.matches) {
+      points1.push_back(match.x1_px);
+      points2.push_back(match.x2_px);
+    }
+    poselib::CameraPose pose;
+    std::vector<char> is_inlier;
+    const auto options = OptionsFor<CallOptions>(options_, problem.sigma_px, rng.Next32());
+    const auto stats = Call(options, &pose, &is_inlier, points1, points2, CameraOf(problem.camera1),
+                            CameraOf(problem.camera2));
+    if (stats.num_inliers == 0) return std::nullopt;
+    PeerAnswer answer{{pose.R(), pose.t.normalized()}, {}};
+    for (size_t i = 0; i < is_inlier.size(); ++i) {
+      if (is_inlier[i]) answer.inliers.push_back(static_cast<int>(i));
+    }
+    return answer;
+  }
+
+  PoseLibOptions options_;
+};
+
+class PoseLibEstimatorModel : public EstimatorModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    PoseLibOptions& o = options_;
+    return {Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
+                            "a match is an inlier up to so many standard deviations of its distance"),
+            Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
+                            "that a sample without a wrong match was drawn, when the loop ends early"),
+            Parameter::Integer("min_iterations", &o.min_iterations, {0, 1e6},
+                               "at least so many samples, if max_iterations lets it"),
+            Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples")};
+  }
+  std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<PoseLib>(options_); }
+
+ private:
+  PoseLibOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<EstimatorModel> PoseLibModel() { return std::make_unique<PoseLibEstimatorModel>(); }
+
+}  // namespace rcme
