@@ -4,6 +4,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
+#include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -40,6 +41,11 @@ double McNemarExactPValue(const PairedCounts& counts) {
   if (discordant == 0) return 1.0;
   const boost::math::binomial law(static_cast<double>(discordant), 0.5);
   return std::min(1.0, 2.0 * cdf(law, static_cast<double>(std::min(counts.first_only, counts.second_only))));
+}
+
+double AnytimeMcNemarPValue(const PairedCounts& counts) {
+  const std::int64_t discordant = counts.first_only + counts.second_only;
+  return std::min(1.0, std::exp(-LogMixtureLikelihoodRatio(counts.first_only, discordant, 0.5)));
 }
 
 Interval RiskDifferenceInterval(const PairedCounts& counts, double confidence) {

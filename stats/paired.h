@@ -25,6 +25,12 @@ struct PairedCounts {
 // most 1.
 double McNemarExactPValue(const PairedCounts& counts);
 
+// The same for a study that looks and stops when it likes: the discordant trials are tosses of a coin, fair
+// if the rates are equal, and M, the likelihood ratio of the mixture of all coins to the fair one
+// (stats/confidence_sequence.h), exceeds 1 / a at any time with probability at most a, whatever the stopping
+// depends on. 1 / M, at most 1.
+double AnytimeMcNemarPValue(const PairedCounts& counts);
+
 // Tango's (1998) score interval of the risk difference d: the d with |z(d)| <= z_(1 - alpha / 2),
 //   z(d) = (first_only - second_only - n d) / sqrt(n (2 q + d (1 - d))),
 // q the maximum-likelihood probability of `second_only` at d. Works where no event was seen at all; [-1, 1]

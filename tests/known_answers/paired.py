@@ -1,5 +1,5 @@
 """Known answers of tests/stats/paired_test.cc: Tango's interval with the restricted maximum likelihood by ternary search of
-the likelihood itself instead of its closed form; McNemar's p-value in exact fractions.
+the likelihood itself instead of its closed form; McNemar's p-value, and the one that is valid at every look, in exact fractions.
 
     python3 tests/known_answers/paired.py
 """
@@ -52,9 +52,16 @@ def mcnemar(b, c):
     return min(Fraction(1), 2 * sum(Fraction(comb(b + c, k), 2 ** (b + c)) for k in range(min(b, c) + 1)))
 
 
+def anytime_mcnemar(b, c):
+    """The mean over coins of the likelihood, B(b + 1/2, c + 1/2) / pi for Jeffreys' prior, against that of a fair coin."""
+    mixture = Fraction(comb(2 * b, b) * comb(2 * c, c), 4 ** (b + c) * comb(b + c, b))
+    return min(Fraction(1), Fraction(1, 2 ** (b + c)) / mixture)
+
+
 if __name__ == "__main__":
     for both, b, c, neither, confidence in ((1, 1, 7, 12, 0.95), (43, 0, 1, 0, 0.95), (0, 25, 28, 565, 0.9),
                                             (0, 1, 5, 4732, 0.95), (100, 0, 0, 100, 0.95), (794, 150, 86, 570, 0.95)):
         n = both + b + c + neither
         print("{{%d, %d, %d, %d}, %g," % (both, b, c, neither, confidence),
-              "%.9f, %.9f, %.12g}," % (*interval(b, c, n, confidence), float(mcnemar(b, c))))
+              "%.9f, %.9f, %.12g, %.12g}," % (*interval(b, c, n, confidence), float(mcnemar(b, c)),
+                                                float(anytime_mcnemar(b, c))))

@@ -1,0 +1,85 @@
+#include "stats/score_mean.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace rcme {
+namespace {
+
+// Of the grid: a score moves by at most half a step, which adds at most a quarter of its square to a
+// variance.
+constexpr int kNumSteps = 100;
+
+// Stakes, as shares of what is lost at the least score if the mean is staked on. For n scores of mean m and
+// standard deviation s the best is about 3 m / (s sqrt(n)); where the scores are mostly near the top, the
+// bound below them hangs on the great ones, so these stand closer.
+constexpr std::array<double, 14> kShares = {0.95, 0.85, 0.7,  0.55, 0.4,   0.28,   0.2,
+                                            0.14, 0.1,  0.07, 0.05, 0.025, 0.0125, 0.00625};
+
+// log K_n(m); infinite at 0, the mean of no scores but zeros.
+double LogCapitalAbove(const std::vector<CountedNumber>& numbers, double m) {
+  return m > 0.0 ? LogCapital(numbers, m, kShares, 1.0 / m) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+void ScoreMean::Add(double score, std::int64_t count) {
+  if (!(score >= range_.lower && score <= range_.upper))
+    throw std::invalid_argument("mean of scores: a score outside of its range");
+  if (count == 0) return;
+  if (counts_.empty()) counts_.assign(kNumSteps + 1, 0.0);
+  const double at = kNumSteps * (score - range_.lower) / (range_.upper - range_.lower);
+  const int below = std::min(static_cast<int>(at), kNumSteps - 1);
+  const double times = static_cast<double>(count);
+  counts_[static_cast<size_t>(below)] += times * (1.0 - (at - below));
+  counts_[static_cast<size_t>(below) + 1] += times * (at - below);
+  sum_ += times * score;
+  n_ += count;
+}
+
+double ScoreMean::mean() const { return sum_ / static_cast<double>(n_); }
+
+ScoreMean::UnitScores ScoreMean::InUnitRange(bool is_mirrored) const {
+  UnitScores scores;
+  double sum = 0.0, squares = 0.0;
+  for (size_t i = 0; i < counts_.size(); ++i) {
+    if (counts_[i] == 0.0) continue;
+    const double at = static_cast<double>(i) / kNumSteps, x = is_mirrored ? 1.0 - at : at;
+    scores.numbers.push_back({x, counts_[i]});
+    sum += counts_[i] * x;
+    squares += counts_[i] * x * x;
+  }
+  const double n = static_cast<double>(n_);
+  scores.mean = sum / n;
+  const double standard_deviation = std::sqrt(std::max(0.0, squares / n - scores.mean * scores.mean));
+  scores.distance = std::max((standard_deviation + 1.0 / kNumSteps) / std::sqrt(n), 1e-6);
+  return scores;
+}
+
+Interval ScoreMean::Sequence(double confidence) const {
+  if (n_ == 0) return range_;
+  const double needed = -std::log(0.5 * (1.0 - confidence));
+  const auto lower_bound = [&](bool is_mirrored) {
+    const UnitScores scores = InUnitRange(is_mirrored);
+    if (!(scores.mean > 0.0)) return 0.0;
+    return GreatestExcluded(scores.mean, scores.distance,
+                            [&](double m) { return LogCapitalAbove(scores.numbers, m) >= needed; });
+  };
+  const double size = range_.upper - range_.lower;
+  return {range_.lower + size * lower_bound(false), range_.upper - size * lower_bound(true)};
+}
+
+double ScoreMean::PValue(double mean) const {
+  if (!(mean > range_.lower && mean < range_.upper))
+    throw std::invalid_argument("mean of scores: a mean at the end of its range or outside");
+  if (n_ == 0) return 1.0;
+  const double m = (mean - range_.lower) / (range_.upper - range_.lower);
+  const double log_capital = std::max(LogCapitalAbove(InUnitRange(false).numbers, m),
+                                      LogCapitalAbove(InUnitRange(true).numbers, 1.0 - m));
+  return std::min(1.0, 2.0 * std::exp(-log_capital));
+}
+
+}  // namespace rcme
