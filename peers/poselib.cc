@@ -102,6 +102,7 @@ class PoseLibEstimatorModel : public EstimatorModel {
                                "at least so many samples, if max_iterations lets it"),
             Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples")};
   }
+  std::optional<Effort> EffortOption() const override { return Effort{"max_iterations", true}; }
   std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<PoseLib>(options_); }
 
  private:
