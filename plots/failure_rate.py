@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws rates against one factor: a panel per quantity, a line and an exact interval band per estimator; where levels
+"""Draws rates and scores against one factor: a panel per quantity, a line with its interval band per estimator; where levels
 are words, marks and bars side by side.
 
 It draws what the file says and computes nothing: values and interval bounds are those of `rcme summarize`.
@@ -32,7 +32,7 @@ def parse(arguments):
     parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor on the x axis; words stand side by side")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--quantities", default="failure,no_candidate", metavar="A,B",
-                        help="rates to draw, one panel each (default: %(default)s)")
+                        help="rates and scores to draw, one panel each (default: %(default)s)")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
     parser.add_argument("--log-y", action="store_true", help="logarithmic y axis")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws rates over two factors: a small heat map per estimator and quantity, each cell with its rate and interval.
+"""Draws rates and scores over two factors: a small heat map per estimator and quantity, each cell with its rate and interval.
 
 It draws what the file says and computes nothing: values and interval bounds are those of `rcme summarize`. Colour only
 helps the eye, and is the same for equal rates of a quantity in all panels; the number is printed in every cell.
@@ -32,7 +32,7 @@ def parse(arguments):
     parser.add_argument("--y", required=True, metavar="FACTOR", help="the factor from bottom to top")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--quantities", default="failure,no_candidate", metavar="A,B",
-                        help="rates to draw, one row of panels each (default: %(default)s)")
+                        help="rates and scores to draw, one row of panels each (default: %(default)s)")
     parser.add_argument("--estimators", metavar="A,B", help="labels of the estimators to draw (default: all)")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Draws how much more often each estimator fails than the reference on the same trials, against one factor.
+"""Draws how much more often each estimator fails than the reference on the same trials, or how much higher it scores,
+against one factor.
 
-It draws what the file says and computes nothing: risk differences, Tango's intervals and Holm's p-values are those of
-`rcme compare`. A mark is filled where the Holm-adjusted McNemar p-value is below 0.05.
+It draws what the file says and computes nothing: differences, their intervals and Holm's p-values are those of `rcme
+compare`. A mark is filled where the Holm-adjusted p-value is below 0.05.
 """
 
 import argparse
@@ -21,6 +22,10 @@ draws difference.png and difference.pdf: the failure rate of each estimator minu
   rcme plot paired_difference comparison.csv --x outlier_ratio --out difference --event failure,failure_or_refusal \\
       --where sigma_px=1 --where estimator=rcme
 draws two events, one estimator, at one noise level.
+
+  rcme compare run.sqlite --of scores --format csv > scores.csv
+  rcme plot paired_difference scores.csv --x outlier_ratio --out difference --event auc_5_deg,auc_10_deg
+draws scores.
 """
 
 
@@ -31,7 +36,7 @@ def parse(arguments):
     parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor on the x axis; words stand side by side")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--event", default="failure", metavar="A,B",
-                        help="failure, refusal or failure_or_refusal, one panel each (default: %(default)s)")
+                        help="events or scores of the table, one panel each (default: %(default)s)")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
     options = parser.parse_args(arguments)

@@ -10,6 +10,7 @@
 #include "experiments/analysis/summary_output.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/json_output.h"
+#include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

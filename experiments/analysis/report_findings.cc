@@ -56,7 +56,7 @@ Tally CountDifferences(const Comparison& comparison, const std::string& label, c
   for (const ComparisonRow& row : comparison.rows) {
     const bool is_told =
         row.estimator == label && row.event == event && row.holm_p_value < kSignificanceLevel;
-    if (is_told) ++(row.risk_difference > 0.0 ? tally.more : tally.less);
+    if (is_told) ++(row.difference > 0.0 ? tally.more : tally.less);
   }
   return tally;
 }
@@ -74,8 +74,10 @@ std::string PairedDifferences(const Summary& summary, const Comparison& comparis
   }
   const size_t num_conditions = summary.rows.empty() ? 0 : summary.rows.back().condition + size_t{1};
   return fmt::format(
-      "Of the {} conditions, against {} on the same trials (McNemar's test, Holm-adjusted p < {}): {}.",
-      num_conditions, comparison.reference, kSignificanceLevel, fmt::join(parts, "; "));
+      "Of the {} conditions, against {} on the same trials ({}, Holm-adjusted p < {}): {}.", num_conditions,
+      comparison.reference,
+      comparison.rows.front().is_anytime_valid ? "a test that is valid at every look" : "McNemar's test",
+      kSignificanceLevel, fmt::join(parts, "; "));
 }
 
 }  // namespace

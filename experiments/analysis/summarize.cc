@@ -6,9 +6,11 @@
 #include <limits>
 #include <optional>
 
+#include "experiments/trial/trial_measure.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
+#include "stats/score_mean.h"
 #include "stats/stream_median.h"
 #include "stats/weighted_rate.h"
 
@@ -40,7 +42,12 @@ TrialQuantity StatusRate(MotionStatus status, const std::string& doc) {
           [status](const TrialRecord& r, const FailureBounds&) { return Yes(r.status == status); }};
 }
 
-const std::vector<TrialQuantity>& TrialQuantities() {
+TrialQuantity QuantityOf(const TrialMeasure& measure, SummaryRow::Kind kind) {
+  return {measure.name, kind, measure.doc,
+          [measure](const TrialRecord& r, const FailureBounds&) { return measure.Of(r); }};
+}
+
+const std::vector<TrialQuantity>& OwnQuantities() {
   constexpr auto kRate = SummaryRow::Kind::kRate;
   constexpr auto kMean = SummaryRow::Kind::kMean;
   constexpr auto kMedian = SummaryRow::Kind::kMedian;
@@ -100,6 +107,18 @@ const std::vector<TrialQuantity>& TrialQuantities() {
   return all;
 }
 
+const std::vector<TrialQuantity>& TrialQuantities() {
+  static const std::vector<TrialQuantity> all = [] {
+    std::vector<TrialQuantity> quantities = OwnQuantities();
+    for (const TrialMeasure& score : TrialScores())
+      quantities.push_back(QuantityOf(score, SummaryRow::Kind::kScore));
+    for (const TrialMeasure& error : TrialErrors())
+      quantities.push_back(QuantityOf(error, SummaryRow::Kind::kMedian));
+    return quantities;
+  }();
+  return all;
+}
+
 // No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
 // problem and not the estimator is to blame.
 bool IsImpossible(const ProblemRecord& problem, const FailureBounds& bounds) {
@@ -149,6 +168,7 @@ class Accumulator {
       moments_[q].Add(*value);
       if (quantities_[q].kind == SummaryRow::Kind::kRate) weighted_[q].Add(weight, *value != 0.0);
       if (quantities_[q].kind == SummaryRow::Kind::kMedian) medians_[q].Add(*value);
+      if (quantities_[q].kind == SummaryRow::Kind::kScore) scores_[q].Add(*value);
     }
   }
 
@@ -167,6 +187,9 @@ class Accumulator {
         FillWeighted(q, &row);
       } else if (row.kind == SummaryRow::Kind::kRate) {
         FillRate(&row);
+      } else if (row.kind == SummaryRow::Kind::kScore) {
+        row.interval_kind = IntervalKind::kBetting;
+        row.interval = scores_[q].Sequence();
       } else {
         row.standard_error = moments_[q].standard_error();
       }
@@ -207,6 +230,7 @@ class Accumulator {
   std::vector<Moments> moments_;
   std::vector<WeightedEvents> weighted_{quantities_.size()};
   std::vector<StreamMedian> medians_{quantities_.size()};
+  std::vector<ScoreMean> scores_{quantities_.size()};
   std::int64_t num_trials_ = 0;
   bool is_weighted_ = false;
 };
@@ -244,6 +268,8 @@ std::string KindName(SummaryRow::Kind kind) {
       return "mean";
     case SummaryRow::Kind::kMedian:
       return "median";
+    case SummaryRow::Kind::kScore:
+      return "score";
   }
   return "";
 }

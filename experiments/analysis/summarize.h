@@ -11,16 +11,22 @@
 
 namespace rcme {
 
-// Which intervals the rates have.
+// Which intervals rates and scores have.
 enum class IntervalKind {
   kExact,         // Clopper-Pearson
   kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
   kWeighted,      // of weighted trials, with the cautious upper end (stats/weighted_rate.h)
+  kBetting,       // of scores: a confidence sequence, whatever the number of trials depended on
 };
 
 // One number of one estimator in one condition, never without what says how far to trust it.
 struct SummaryRow {
-  enum class Kind { kRate, kMean, kMedian };
+  enum class Kind {
+    kRate,
+    kMean,
+    kMedian,
+    kScore  // mean of numbers in [0, 1]
+  };
 
   std::uint32_t condition = 0;
   std::vector<std::string> levels;  // one per factor
@@ -29,13 +35,13 @@ struct SummaryRow {
   Kind kind = Kind::kRate;
   double value = 0.0;  // NaN where n is 0
   IntervalKind interval_kind = IntervalKind::kExact;
-  Interval interval;            // rates and medians: 95 %; NaN where a median's would not hold
+  Interval interval;            // all but means: 95 %; NaN where a median's would not hold
   double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of
   std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
 };
 
-std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median"
+std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median", "score"
 
 // Stands in the place of an estimator in rows about the problems themselves.
 inline constexpr const char* kSceneLabel = "scene";

@@ -14,6 +14,10 @@
 namespace rcme {
 namespace {
 
+bool HasKindOfInterval(const SummaryRow& row) {
+  return row.kind == SummaryRow::Kind::kRate || row.kind == SummaryRow::Kind::kScore;
+}
+
 // "12.34 % [10.10, 14.80]", "1.23 +- 0.04" or "1.23 [1.20, 1.31]"; with its n where that is not all of the
 // trials, and a coverage with its verdict.
 std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
@@ -23,7 +27,7 @@ std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
     return fmt::format("{:.3g} % +- {:.2g} [{:.2g}, {:.2g}]{}", 100.0 * row.value, 100.0 * row.standard_error,
                        100.0 * row.interval.lower, 100.0 * row.interval.upper, of);
   }
-  if (row.kind == SummaryRow::Kind::kRate) {
+  if (HasKindOfInterval(row)) {
     const std::string verdict =
         row.coverage_verdict ? ": " + CoverageVerdictInWords(*row.coverage_verdict) : "";
     return fmt::format("{:.2f} % [{:.2f}, {:.2f}]{}{}", 100.0 * row.value, 100.0 * row.interval.lower,
@@ -49,6 +53,8 @@ std::string IntervalKindName(IntervalKind kind) {
       return "anytime_valid";
     case IntervalKind::kWeighted:
       return "weighted";
+    case IntervalKind::kBetting:
+      return "betting";
   }
   return "";
 }
@@ -62,6 +68,8 @@ std::string IntervalKindInWords(IntervalKind kind) {
       return "anytime-valid 95 % (confidence sequence)";
     case IntervalKind::kWeighted:
       return "weighted 95 % (Fay-Feuer, cautious upper end)";
+    case IntervalKind::kBetting:
+      return "anytime-valid 95 % (betting)";
   }
   return "";
 }
@@ -74,9 +82,6 @@ std::string IntervalKindsIn(const Summary& summary) {
   }
   return fmt::format("{}", fmt::join(kinds, " and "));
 }
-
-// Empty where the end is unknown or infinite.
-std::string CsvFinite(double x) { return std::isfinite(x) ? CsvNumber(x) : ""; }
 
 // The last two columns: the verdict of a coverage, and how many trials would decide it.
 std::string VerdictFields(const SummaryRow& row) {
@@ -116,12 +121,8 @@ std::string EffortsInWords(const Summary& summary) {
   return text.empty() ? text : "Effort of a call:\n" + text;
 }
 
-}  // namespace
-
-std::string SummaryAsTable(const Summary& summary) {
-  const std::vector<std::string> shown = {
-      "failure",     "no_candidate",       "other_refusal",       "kappa_flag", "nees_coverage",
-      "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"};
+// One row per condition and estimator with the shown quantities that there are.
+std::string EstimatorsAsTable(const Summary& summary, const std::vector<std::string>& shown) {
   std::vector<std::vector<std::string>> rows = {summary.factor_names};
   rows[0].insert(rows[0].end(), {"estimator", "n"});
   const auto is_present = [&](const std::string& quantity) {
@@ -141,13 +142,32 @@ std::string SummaryAsTable(const Summary& summary) {
     if (std::count(shown.begin(), shown.end(), row.quantity) > 0 && row.estimator != kSceneLabel)
       rows.back().push_back(Cell(row, num_trials));
   }
-  std::string text = fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study,
-                                 summary.num_trials_done, summary.num_trials_planned, FormatColumns(rows));
+  return FormatColumns(rows);
+}
+
+// The field's measures.
+std::string AccuracyAsTable(const Summary& summary) {
+  return fmt::format(
+      "Accuracy (error: the greater of rotation and direction; a refusal is as wrong as can be)\n\n{}\n",
+      EstimatorsAsTable(summary,
+                        {"auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg", "rotation_error_median_deg",
+                         "direction_error_median_deg", "max_error_median_deg"}));
+}
+
+}  // namespace
+
+std::string SummaryAsTable(const Summary& summary) {
+  std::string text = fmt::format(
+      "Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
+      summary.num_trials_planned,
+      EstimatorsAsTable(summary, {"failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage",
+                                  "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"}));
+  text += AccuracyAsTable(summary);
   text += SeverityAsTable(summary);
   text += fmt::format(
       "Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n"
-      "medians with distribution-free 95 % intervals\n",
-      IntervalKindsIn(summary));
+      "medians with distribution-free 95 % intervals; auc and maa with {} intervals\n",
+      IntervalKindsIn(summary), IntervalKindInWords(IntervalKind::kBetting));
   text +=
       "(n ...) where a number is not of all trials: without a known truth a motion neither fails nor "
       "succeeds.\n"
@@ -155,7 +175,9 @@ std::string SummaryAsTable(const Summary& summary) {
       "flag.\n"
       "nees_coverage: truth inside the reported 95 % region; covers: the whole interval within 95 +- 1 %, "
       "does\n"
-      "not cover: wholly outside. nees_median: 4.35 expected. All quantities: --format csv or json.\n";
+      "not cover: wholly outside. nees_median: 4.35 expected. auc_T_deg: mean of max(0, 1 - error / T).\n"
+      "maa_10_deg: mean share of errors up to 1, 2, ..., 10 deg. All quantities, those with refusals left\n"
+      "out among them: --format csv or json.\n";
   return text + EffortsInWords(summary);
 }
 
@@ -169,12 +191,12 @@ std::string SummaryAsCsv(const Summary& summary) {
     const bool is_rate = row.kind == SummaryRow::Kind::kRate;
     const bool has_interval = row.kind != SummaryRow::Kind::kMean;
     const bool has_standard_error = is_rate ? row.interval_kind == IntervalKind::kWeighted : !has_interval;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity,
-                        KindName(row.kind), CsvNumber(row.value),
-                        has_interval ? CsvFinite(row.interval.lower) : "",
-                        has_interval ? CsvFinite(row.interval.upper) : "",
-                        has_standard_error ? CsvNumber(row.standard_error) : "", row.n,
-                        is_rate ? IntervalKindName(row.interval_kind) : "", VerdictFields(row));
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator), row.quantity, KindName(row.kind),
+        CsvNumber(row.value), has_interval ? CsvFinite(row.interval.lower) : "",
+        has_interval ? CsvFinite(row.interval.upper) : "",
+        has_standard_error ? CsvNumber(row.standard_error) : "", row.n,
+        HasKindOfInterval(row) ? IntervalKindName(row.interval_kind) : "", VerdictFields(row));
   }
   return text;
 }
@@ -198,7 +220,7 @@ std::string SummaryAsJson(const Summary& summary) {
     } else {
       entry["interval"] = {JsonNumber(row.interval.lower), JsonNumber(row.interval.upper)};
     }
-    if (row.kind == SummaryRow::Kind::kRate) entry["interval_kind"] = IntervalKindName(row.interval_kind);
+    if (HasKindOfInterval(row)) entry["interval_kind"] = IntervalKindName(row.interval_kind);
     entry["n"] = row.n;
     if (row.coverage_verdict) {
       entry["verdict"] = CoverageVerdictName(row.coverage_verdict->verdict);

@@ -15,6 +15,8 @@ std::string CsvField(const std::string& text) {
 
 std::string CsvNumber(double x) { return std::isnan(x) ? std::string() : fmt::format("{:.8g}", x); }
 
+std::string CsvFinite(double x) { return std::isfinite(x) ? CsvNumber(x) : ""; }
+
 nlohmann::ordered_json JsonNumber(double x) {
   return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
 }

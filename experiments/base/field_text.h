@@ -11,6 +11,8 @@ namespace rcme {
 std::string CsvField(const std::string& text);
 // Eight digits; empty for NaN.
 std::string CsvNumber(double x);
+// The same, empty for infinite ones too.
+std::string CsvFinite(double x);
 // All digits; null for what is not finite.
 nlohmann::ordered_json JsonNumber(double x);
 

@@ -12,11 +12,12 @@ namespace {
 
 struct CompareArguments {
   std::string run, against, format = "table", out;
+  CompareOptions options;
 };
 
 void RunCompare(const CompareArguments& arguments) {
   const ResultStore store = ResultStore::OpenForReading(arguments.run);
-  const Comparison comparison = Compare(store, arguments.against);
+  const Comparison comparison = Compare(store, arguments.against, arguments.options);
   if (comparison.rows.empty() && store.Description().estimators.size() == 1) {
     throw InputError(fmt::format("{}: study '{}' has one estimator, '{}'; a comparison needs two",
                                  arguments.run, comparison.study, comparison.reference));
@@ -39,18 +40,36 @@ void AddCompareCommand(CLI::App& app) {
       "the\n"
       "intervals of the two rates suggest, because hard trials are hard for both; and McNemar's exact\n"
       "p-value. Where nothing differs, up to one in twenty of these is still below 0.05: claim a difference\n"
-      "by Holm's p-value, which is adjusted for all tests of the comparison: every event, estimator and\n"
-      "condition that has trials.\n"
+      "by Holm's p-value, which is adjusted for all tests of the comparison: everything compared, every\n"
+      "estimator and condition that has trials.\n"
+      "\n"
+      "--of scores compares means (auc_5_deg, ..., maa_10_deg: `rcme list quantities`), --of errors the\n"
+      "error of each trial (the median of the differences, and the sign test); names, or several of all\n"
+      "these with commas, choose. What is not asked for costs the others nothing.\n"
+      "\n"
+      "Scores have intervals and p-values that hold for any law of the scores and at every look. A run of\n"
+      "--until stopped by what it saw: its events have such ones too (a confidence sequence of the\n"
+      "discordant trials), and its errors the sign test in this way. --anytime asks for the same where\n"
+      "trials were added by hand until something was seen.\n"
       "\n"
       "Examples:\n"
       "  rcme compare run.sqlite                                    against the study's first estimator\n"
       "  rcme compare run.sqlite --against rcme_rank_aware          against another\n"
+      "  rcme compare run.sqlite --of auc_10_deg,failure            one score and one event\n"
       "  rcme compare run.sqlite --format csv --out comparison.csv\n"
       "  rcme plot paired_difference comparison.csv --x outlier_ratio --out difference");
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("--against", arguments->against,
                       "label of the reference estimator; default: the first of the study");
+  command
+      ->add_option("--of", arguments->options.compared,
+                   "events, scores, errors, or names of some, with commas between them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
+  command->add_flag("--anytime", arguments->options.is_anytime_valid,
+                    "intervals and p-values that hold however often somebody has looked");
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();

@@ -20,12 +20,22 @@ void WriteTrials(const ResultStore& store, bool with_times, const std::string& o
 
 void AddSummarizeCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "summarize", "Rates with exact 95 % intervals and means with standard errors, from a result file");
+      "summarize",
+      "Rates, scores and medians with 95 % intervals, means with standard errors, from a result file");
   struct Arguments {
     std::string run, format = "table", raw, out;
     bool with_times = false;
   };
   command->footer(
+      "Beside rates and means: AUC at 5, 10 and 20 degrees, the mean over trials of max(0, 1 - e / T), e "
+      "the\n"
+      "greater of rotation and direction error: the area under the recall curve up to T, exactly; mAA(10),\n"
+      "the mean over the thresholds 1, 2, ..., 10 degrees of the share of trials with an error up to that\n"
+      "(as in the image-matching benchmark; elsewhere a mean of AUCs is called so); and median errors. "
+      "There\n"
+      "a refusal and an answer that is not valid are as wrong as can be; quantities called _answered leave\n"
+      "refusals out. A direction that is opposite to the true one is wrong.\n"
+      "\n"
       "--raw gives the trials themselves: one row per trial and estimator with the study, the condition, "
       "the\n"
       "level of each factor, the outcome as a word (success, failure, not_scored, or the status of an "

@@ -12,8 +12,8 @@ from matplotlib.ticker import FuncFormatter
 from common import style
 from common.command_line import PlotError
 from common.factor_axis import FactorAxis
-from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, n_in_words,
-                             select_rates, title_of)
+from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
+                             n_in_words, select_rates, title_of)
 
 COLORS = colormaps["cividis_r"]  # even steps to the eye, with every colour vision and in grey; dark is much
 LEAST_TOP = 0.05  # a scale that ended lower would paint rates that hardly differ from zero as dark as a failure
@@ -103,10 +103,10 @@ def draw_panel(axes, rows, x_axis, y_axis, scale):
         spine.set_visible(False)
 
 
-def draw_color_bars(figure, bars, scale):
+def draw_color_bars(figure, bars, scale, label):
     for bar in bars:
         figure.colorbar(ScalarMappable(scale, COLORS), cax=bar, format=FuncFormatter(lambda f, _: f"{100 * f:g}"))
-        bar.set_ylabel("Rate (%)", fontsize=7)
+        bar.set_ylabel(label, fontsize=7)
         bar.tick_params(labelsize=7)
         bar.grid(False)
         bar.spines[:].set_visible(False)
@@ -128,16 +128,17 @@ def draw(summary, x, y, quantities, estimators=()):
     looks, letters = style.looks_of(names), style.letters(len(names) * len(quantities))
     figure, panels, bars = grid_of(len(names), len(quantities), len(x_axis.levels), len(y_axis.levels))
     for quantity, of_quantity, bars_of_quantity in zip(quantities, panels, bars):
-        scale = scale_of(rows[rows.quantity == quantity])
+        drawn = rows[rows.quantity == quantity]
+        scale = scale_of(drawn)
         for axes, name in zip(of_quantity, names):
-            draw_panel(axes, rows[(rows.quantity == quantity) & (rows.estimator == name)], x_axis, y_axis, scale)
+            draw_panel(axes, drawn[drawn.estimator == name], x_axis, y_axis, scale)
             axes.set_title(f"{next(letters)}{title_of(quantity)}, {looks[name].label}", fontsize=7.5)
-        draw_color_bars(figure, bars_of_quantity, scale)
+        draw_color_bars(figure, bars_of_quantity, scale, f"{kind_in_words(drawn)} (%)")
         name_axes(of_quantity, len(of_quantity) // len(bars_of_quantity), x, y)
     others = [factor for factor in summary.factors if factor not in (x, y)]
     style.add_legend_and_caption(figure, [], "; ".join(
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, others), n_in_words(rows, "cell"),
-         f"in each cell the rate in %, below it its {interval_in_words(rows)} interval"]) + ".")
+         f"in each cell the {kind_in_words(rows).lower()} in %, below it its {interval_in_words(rows)} interval"]) + ".")
     return figure
 
 

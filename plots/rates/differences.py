@@ -1,4 +1,4 @@
-"""How much more often each estimator fails than the reference, with intervals, against one factor."""
+"""How much more often each estimator fails than the reference, or how much higher it scores, with intervals, against one factor."""
 
 import itertools
 import math
@@ -10,7 +10,8 @@ from common import style
 from common.command_line import PlotError
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
 from common.summary_csv import numbers
-from rates.selection import check_factor, check_no_repetition, check_one_study, fixed_levels, n_in_words
+from rates.selection import (check_factor, check_no_repetition, check_one_study, difference_interval_in_words,
+                             fixed_levels, n_in_words, test_in_words, title_of)
 
 SIGNIFICANCE_LEVEL = 0.05
 TITLES = {  # other events: their name in words
@@ -18,12 +19,19 @@ TITLES = {  # other events: their name in words
 }
 
 
+def compared_in_words(rows):
+    """'rate', 'score', or both; a table from before there were scores has rates."""
+    return " or ".join(dict.fromkeys("score" if kind == "score" else "rate" for kind in rows.get("kind", ["event"])))
+
+
 def select(comparison, events):
     """The rows of the asked events, with numbers in place of text; NaN where n is 0."""
-    path, present = comparison.path, list(dict.fromkeys(comparison.rows.event))
+    kinds = comparison.rows.get("kind")  # errors are in degrees: no part of this figure
+    path = comparison.path
+    present = list(dict.fromkeys(comparison.rows.event if kinds is None else comparison.rows.event[kinds != "error"]))
     for event in events:
         if event not in present:
-            raise PlotError(f"{path}: has no event called '{event}'; allowed: {', '.join(present)}.")
+            raise PlotError(f"{path}: has no event or score called '{event}'; allowed: {', '.join(present)}.")
     check_one_study(comparison)
     comparison = comparison.with_rows(comparison.rows[comparison.rows.event.isin(events)])
     if comparison.rows.reference.nunique() > 1:
@@ -67,13 +75,13 @@ def draw_panel(axes, points, looks, is_numeric, room):
     axes.yaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:+g}" if fraction else "0"))
 
 
-def legend_of(looks):
+def legend_of(looks, test):
     """The estimators, then what filled and open marks mean."""
     def mark(label, color, marker, is_filled):
         return Line2D([], [], linestyle="none", marker=marker, markersize=5, markeredgecolor=color,
                       markerfacecolor=color if is_filled else "white", markeredgewidth=0.9, label=label)
     return [mark(look.label, look.color, look.marker, True) for look in looks.values()] + [
-        mark(f"filled: Holm-adjusted McNemar p < {SIGNIFICANCE_LEVEL:g}", "0.35", "o", True),
+        mark(f"filled: Holm-adjusted {test} p < {SIGNIFICANCE_LEVEL:g}", "0.35", "o", True),
         mark(f"open: p \u2265 {SIGNIFICANCE_LEVEL:g}", "0.35", "o", False)]
 
 
@@ -93,13 +101,13 @@ def draw(comparison, x, events):
     for (r, (levels, part)), (c, event) in itertools.product(enumerate(parts), enumerate(events)):
         draw_panel(panels[r, c], part[part.event == event], looks, axis.is_numeric,
                    axis.room(len(events)))
-        panels[r, c].set_title(next(letters) + TITLES.get(event, style.in_words(event)) + (f", {levels}" if levels else ""))
+        panels[r, c].set_title(next(letters) + TITLES.get(event, title_of(event)) + (f", {levels}" if levels else ""))
         axis.prepare(panels[r, c], len(events))
         panels[r, c].set_xlabel(style.in_words(x) if r == len(parts) - 1 else "")
     for axes in panels[:, 0]:
         axes.set_ylabel("Difference (% points)")
-    style.add_legend_and_caption(figure, legend_of(looks), "; ".join(
+    style.add_legend_and_caption(figure, legend_of(looks, test_in_words(rows)), "; ".join(
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors),
-         f"rate of each estimator minus that of {reference}, on the same trials", n_in_words(rows, "point"),
-         "bars: Tango's 95 % intervals; p-values adjusted by Holm for all tests of the comparison"]) + ".")
+         f"{compared_in_words(rows)} of each estimator minus that of {reference}, on the same trials",
+         n_in_words(rows, "point"), f"bars: {difference_interval_in_words(rows)} intervals; p-values adjusted by Holm for all tests of the comparison"]) + ".")
     return figure

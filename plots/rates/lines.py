@@ -1,4 +1,4 @@
-"""Rates against one factor: a line with an interval band per estimator, or marks with bars where levels are words."""
+"""Rates and scores against one factor: a line with an interval band per estimator, or marks with bars where levels are words."""
 
 import itertools
 import math
@@ -8,8 +8,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from common import style
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
 from common.text_size import wrap
-from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, n_in_words,
-                             select_rates, title_of)
+from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
+                             n_in_words, select_rates, title_of)
 
 TITLE_SIZE, TITLE_MARGIN = 8.5, 0.5  # the titles of style.py; inches beside a panel
 
@@ -101,7 +101,7 @@ def draw(summary, x, quantities, log_y=False):
         set_y_limits(panels[:, c], rows[rows.quantity == quantity], log_y)
         axis.prepare(panels[-1, c], len(quantities))  # the x axis is shared by all panels
     for axes in panels[:, 0]:
-        axes.set_ylabel("Rate (%)")
+        axes.set_ylabel(f"{kind_in_words(rows)} (%)")
     style.add_legend_and_caption(figure, panels[0, 0].get_legend_handles_labels()[0],
                                  caption_of(rows, other_factors, axis.is_numeric, log_y))
     return figure

@@ -11,11 +11,21 @@ TITLES = {  # other quantities: their name in words
     "no_candidate": "Detect-fail rate",  # the paper's word
     "other_refusal": "Other refusals",
     "kappa_flag": "Kappa-flag rate", "nees_coverage": "NEES coverage",
+    "auc_5_deg": "AUC@5\u00b0", "auc_10_deg": "AUC@10\u00b0", "auc_20_deg": "AUC@20\u00b0", "maa_10_deg": "mAA(10\u00b0)",
 }
+ANSWERED = "_answered"  # the suffix of measures that leave refusals out
+DRAWN_KINDS = ("rate", "score")  # numbers between 0 and 1 with an interval
 
 
 def title_of(quantity):
+    if quantity.removesuffix(ANSWERED) in TITLES and quantity.endswith(ANSWERED):
+        return TITLES[quantity.removesuffix(ANSWERED)] + ", refusals left out"
     return TITLES.get(quantity, style.in_words(quantity))
+
+
+def kind_in_words(rows):
+    """'Rate', 'Score', or both."""
+    return " or ".join(dict.fromkeys(rows.kind)).capitalize()
 
 
 def check_factor(summary, option, factor):
@@ -33,20 +43,21 @@ def check_one_study(summary):
 
 
 def select_rates(summary, quantities):
-    """The rows of the asked rates, with `value`, `lower`, `upper` and `n` as numbers; NaN where n is 0."""
+    """The rows of the asked rates or scores, with `value`, `lower`, `upper` and `n` as numbers; NaN where n is 0."""
     path = summary.path
-    rates = list(dict.fromkeys(summary.rows.quantity[summary.rows.kind == "rate"]))
+    is_drawn = summary.rows.kind.isin(DRAWN_KINDS)
+    rates = list(dict.fromkeys(summary.rows.quantity[is_drawn]))
     for quantity in quantities:
         if quantity not in rates:
-            raise PlotError(f"{path}: has no rate called '{quantity}'; allowed: {', '.join(rates) or 'none'}.")
+            raise PlotError(f"{path}: has no rate or score called '{quantity}'; allowed: {', '.join(rates) or 'none'}.")
     check_one_study(summary)
-    summary = summary.with_rows(summary.rows[(summary.rows.kind == "rate") & summary.rows.quantity.isin(quantities)])
+    summary = summary.with_rows(summary.rows[is_drawn & summary.rows.quantity.isin(quantities)])
     selected = summary.rows.assign(
         n=numbers(summary, "n"),
         **{column: numbers(summary, column, may_be_empty=True) for column in ("value", "lower", "upper")})
     for row in selected.itertuples():
         if not (0 <= row.lower <= row.value <= row.upper <= 1 or (row.n == 0 and math.isnan(row.value))):
-            raise PlotError(f"{path}: line {row.line}: a rate must lie in its interval and both in 0..1, "
+            raise PlotError(f"{path}: line {row.line}: a {row.kind} must lie in its interval and both in 0..1, "
                             "and may be empty only where n is 0.")
     selected.loc[selected.value.isna(), ["lower", "upper"]] = math.nan  # the interval 0..1 of no trials says nothing
     return selected
@@ -61,12 +72,26 @@ def check_no_repetition(path, part, keys, at):
                         "choose one condition with --where condition=NAME.")
 
 
+# Of paired comparisons: what a file calls a test and an interval, in words.
+TESTS = {"mcnemar": "McNemar", "discordant_sequence": "anytime-valid", "betting": "betting"}
+DIFFERENCE_INTERVALS = {"tango": "Tango's 95 %", "betting": "anytime-valid 95 % (betting)"}
+
+
+def test_in_words(rows):
+    """A table from before there were several tests has McNemar's."""
+    return " or ".join(TESTS.get(test, test) for test in dict.fromkeys(rows.get("test", ["mcnemar"])))
+
+
+def difference_interval_in_words(rows):
+    return " or ".join(DIFFERENCE_INTERVALS.get(kind, kind) for kind in dict.fromkeys(rows.get("interval", ["tango"])))
+
+
 INTERVALS = {"exact": "exact 95 % (Clopper-Pearson)", "anytime_valid": "anytime-valid 95 % (confidence sequence)",
-             "weighted": "weighted 95 % (Fay-Feuer, cautious upper end)"}
+             "weighted": "weighted 95 % (Fay-Feuer, cautious upper end)", "betting": "anytime-valid 95 % (betting)"}
 
 
 def interval_in_words(rows):
-    """The kind of the rates' intervals; a table from before there were several has exact ones."""
+    """The kind of the intervals of rates and scores; a table from before there were several has exact ones."""
     kinds = list(dict.fromkeys(kind for kind in rows.get("interval", ["exact"]) if kind))
     return " or ".join(INTERVALS.get(kind, kind) for kind in kinds)
 

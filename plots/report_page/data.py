@@ -56,7 +56,7 @@ def check(table, columns, facts):
     counts, known = numbers(table, "n"), {str(condition["index"]) for condition in facts["conditions"]}
     for column in columns:
         for value, n, line in zip(numbers(table, column, may_be_empty=True), counts, table.rows["line"]):
-            if value != value and n > 0 and column in ("value", "risk_difference", "p_mcnemar", "p_holm"):
+            if value != value and n > 0 and column in ("value", "risk_difference", "p_value", "p_mcnemar", "p_holm"):
                 raise PlotError(f"{table.path}: line {line}: column {column} is empty although n is not 0.")
     for condition, line in zip(table.rows["condition"], table.rows["line"]):
         if condition not in known:
@@ -69,7 +69,8 @@ def read_run(number, folder):
     check(summary, ("value", "lower", "upper", "standard_error"), facts)
     if (folder / "comparison.csv").exists():
         comparison = read_comparison(str(folder / "comparison.csv"))
-        check(comparison, ("risk_difference", "lower", "upper", "p_mcnemar", "p_holm"), facts)
+        p_value = "p_value" if "p_value" in comparison.rows else "p_mcnemar"
+        check(comparison, ("risk_difference", "lower", "upper", p_value, "p_holm"), facts)
         comparison.path = "comparison.csv"  # from here on a message is part of the page
     summary.path = "summary.csv"
     return Run(number, facts, summary, comparison)

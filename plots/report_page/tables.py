@@ -4,11 +4,12 @@ import itertools
 import shlex
 
 from common import style
-from rates.selection import interval_in_words, title_of
+from rates.selection import difference_interval_in_words, interval_in_words, test_in_words, title_of
 from report_page.html import Html, code, definitions, details, element, joined, table
 
 SHOWN = ("failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
-         "rotation_error_deg", "direction_error_deg")  # of the results; all others stand in the table of every number
+         "rotation_error_deg", "direction_error_deg", "auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg",
+         "max_error_median_deg")  # of the results; all others stand in the table of every number
 SIGNIFICANCE_LEVEL = 0.05
 DASH = "\u2013"
 
@@ -46,7 +47,7 @@ def cell(row, num_trials):
     """One number with its interval or standard error, and its n where that is not the row's."""
     if row is None or row["n"] == "0":
         return DASH
-    whole = {"rate": rate_cell, "mean": mean_cell, "median": median_cell}[row["kind"]](row)
+    whole = {"rate": rate_cell, "score": rate_cell, "mean": mean_cell, "median": median_cell}[row["kind"]](row)
     return whole if row["n"] == num_trials else joined([whole, Html("<br>"), small(f"n = {row['n']}")])
 
 
@@ -104,7 +105,9 @@ def results(run):
                             trial_to_replay(run, int(row["condition"]), row["estimator"])]))
     return table(
         "Rates of each estimator in each condition, in per cent of its n trials with "
-        f"{interval_in_words(run.summary.rows)} intervals, and means with their Monte-Carlo standard errors; n stands with a number that is not of all trials. "
+        f"{interval_in_words(run.summary.rows[run.summary.rows.kind == 'rate'])} intervals, scores with anytime-valid "
+        "ones, medians with distribution-free ones, and means with their Monte-Carlo standard errors; n stands with a "
+        "number that is not of all trials. "
         "T is a trial worth a look: the command beside the condition runs it again.",
         ["estimator", "n", *map(heading, shown), "T"],
         by_condition(lines, lambda row: condition_heading(run, row, run.summary.factors, with_replay=True)),
@@ -142,7 +145,7 @@ def comparison_cells(row):
         return [row["n"], *counts, DASH, DASH, DASH]
     is_sure = float(row["p_holm"]) < SIGNIFICANCE_LEVEL
     holm = element("strong", p_value(row["p_holm"]), " *") if is_sure else p_value(row["p_holm"])
-    return [row["n"], *counts, difference_cell(row), p_value(row["p_mcnemar"]), holm]
+    return [row["n"], *counts, difference_cell(row), p_value(row.get("p_value") or row["p_mcnemar"]), holm]
 
 
 def comparison(run, event):
@@ -152,11 +155,11 @@ def comparison(run, event):
     lines = [(row, [style.label_of(row["estimator"]), *comparison_cells(row)]) for row in rows.to_dict("records")]
     caption = joined([
         code(event["name"]), f" ({event['doc']}): in how many of n trials it happened to the estimator and to {reference}; "
-        f"rate of the estimator minus rate of {reference}, in percentage points, with Tango's 95 % interval; McNemar's "
-        f"exact p, and that adjusted by Holm for all tests of the comparison, of every event (* and bold: below "
-        f"{SIGNIFICANCE_LEVEL:g})."])
+        f"rate of the estimator minus rate of {reference}, in percentage points, with its "
+        f"{difference_interval_in_words(rows)} interval; {test_in_words(rows)} p, and that adjusted by Holm for all tests "
+        f"of the comparison, of every event (* and bold: below {SIGNIFICANCE_LEVEL:g})."])
     return table(caption, ["estimator", "n", "both", "estimator only", f"{reference} only", "neither", "difference",
-                           "p (McNemar)", "p (Holm)"],
+                           f"p ({test_in_words(rows)})", "p (Holm)"],
                  by_condition(lines, lambda row: condition_heading(run, row, run.comparison.factors)))
 
 

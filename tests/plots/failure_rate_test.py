@@ -2,6 +2,7 @@
 """Tests of plots/failure_rate.py; run as: /usr/bin/python3 tests/plots/failure_rate_test.py"""
 
 import contextlib
+import csv
 import io
 import os
 import pathlib
@@ -124,6 +125,36 @@ class WrittenFiles(FailureRateTest):
         self.assertEqual({path.name: path.read_bytes() for path in self.folder.iterdir()}, old)
 
 
+SCORES = TABLE + """demo,"a, first",0.4,1,standard,auc_5_deg,score,0.61,0.55,0.70,,400
+demo,b,0.0,1,standard,auc_5_deg,score,0.9,0.8,0.95,,390
+demo,b,0.0,1,standard,auc_5_deg_answered,score,0.9,0.8,0.95,,390
+demo,b,0.0,1,standard,max_error_median_deg,median,inf,2,,,390
+"""
+
+
+class Scores(FailureRateTest):
+    def test_scores_are_drawn_as_rates_are_and_the_axis_says_what_they_are(self):
+        area, = self.draw(SCORES, quantities=["auc_5_deg"]).axes
+        self.assertEqual(line_of(area, "Standard"), [(0.0, 0.9), (0.4, 0.61)])
+        self.assertLessEqual({(0.4, 0.55), (0.4, 0.70)}, band_of(area, 0))
+        self.assertEqual((area.get_title("left"), area.get_ylabel()), ("AUC@5\u00b0", "Score (%)"))
+        both = self.draw(SCORES, quantities=["failure", "auc_5_deg_answered"]).axes
+        self.assertEqual(both[0].get_ylabel(), "Rate or score (%)")
+        self.assertIn("AUC@5\u00b0, refusals left out", both[1].get_title("left").replace("\n", " "))
+
+    def test_the_caption_names_their_intervals(self):
+        header, *rows = SCORES.strip().split("\n")
+        kind_of = {"rate": "exact", "score": "betting"}
+        kinds = [kind_of.get(next(csv.reader([row]))[6], "") for row in rows]
+        text = "\n".join([f"{header},interval", *(f"{row},{kind}" for row, kind in zip(rows, kinds)), ""])
+        caption = self.draw(text, quantities=["auc_5_deg"]).texts[0].get_text().replace("\n", " ")
+        self.assertIn("anytime-valid 95 % (betting) intervals", caption)
+
+    def test_a_median_is_no_score(self):
+        self.assert_refused(self.run_main("--quantities", "max_error_median_deg", text=SCORES), "'max_error_median_deg'",
+                            "auc_5_deg")
+
+
 class DrawnValues(FailureRateTest):
     def test_lines_and_bands_are_those_of_the_file_in_order_of_x(self):
         failure, no_candidate = self.draw().axes
@@ -218,7 +249,7 @@ class Refusals(FailureRateTest):
     def test_names_that_are_not_in_the_file(self):
         self.assert_refused(self.run_main(x="parallax"), "--x parallax", "allowed: outlier_ratio, sigma_px")
         self.assert_refused(self.run_main("--quantities", "fail"), "'fail'", "allowed: failure, no_candidate")
-        self.assert_refused(self.run_main("--quantities", "nees"), "no rate called 'nees'")
+        self.assert_refused(self.run_main("--quantities", "nees"), "no rate or score called 'nees'")
         self.assert_refused(self.run_main("--quantities", ","), "--quantities")
         self.assert_refused(self.run_main("--where", "sigma=1"), "--where sigma=1", "sigma_px")
         self.assert_refused(self.run_main("--where", "sigma_px=3"), "--where sigma_px=3", "it has 1")

@@ -145,7 +145,7 @@ class Refusals(HeatMapTest):
         self.assert_refused(self.run_main(x="parallax"), "--x parallax", "allowed: noise, sigma_px")
         self.assert_refused(self.run_main(y="noise"), "--y noise", "two factors")
         self.assert_refused(self.run_main("--quantities", "fail"), "'fail'", "allowed: failure, no_candidate")
-        self.assert_refused(self.run_main("--quantities", "parallax_deg"), "no rate called 'parallax_deg'")
+        self.assert_refused(self.run_main("--quantities", "parallax_deg"), "no rate or score called 'parallax_deg'")
         self.assert_refused(self.run_main("--estimators", "rcme"), "--estimators rcme", "allowed: standard, mine")
         self.assert_refused(self.run_main("--estimators", ","), "--estimators")
         self.assert_refused(self.run_main("--where", "noise=uniform"), "noise=uniform", "student_t")

@@ -108,6 +108,25 @@ class Drawn(PairedDifferenceTest):
         self.assertEqual(handles["open: p \u2265 0.05"].get_markerfacecolor(), "white")
         self.assertNotEqual(handles["filled: Holm-adjusted McNemar p < 0.05"].get_markerfacecolor(), "white")
 
+    def test_scores_with_their_own_tests_and_intervals(self):
+        text = HEADER + """,kind,p_value,test,interval
+demo,0,0.0,mine,standard,auc_5_deg,390,,,,,0.1,0.05,0.2,,0.01,score,0.005,betting,betting
+demo,1,0.4,mine,standard,auc_5_deg,390,,,,,-0.1,-0.3,0.2,,0.3,score,0.2,betting,betting
+demo,0,0.0,mine,standard,max_error_median_deg,390,,,,,-9,-inf,2,,0.01,error,0.005,sign,order_statistics
+demo,0,0.0,mine,standard,failure,390,1,2,3,4,-0.1,-0.3,0.2,,0.3,event,0.2,discordant_sequence,betting
+"""
+        figure = self.draw(text, events=["auc_5_deg"])
+        self.assertEqual(marks_of(figure.axes[0], "mine"), {0.0: (0.1, True), 0.4: (-0.1, False)})
+        self.assertEqual(figure.axes[0].get_title("left"), "AUC@5\u00b0")
+        caption = figure.texts[0].get_text().replace("\n", " ")
+        for part in ("score of each estimator minus that of Standard", "bars: anytime-valid 95 % (betting) intervals"):
+            self.assertIn(part, caption)
+        self.assertIn("filled: Holm-adjusted betting p < 0.05", [t.get_text() for t in figure.legends[0].get_texts()])
+        event = self.draw(text, events=["failure"])
+        self.assertIn("filled: Holm-adjusted anytime-valid p < 0.05", [t.get_text() for t in event.legends[0].get_texts()])
+        self.assert_refused(self.run_main("--event", "max_error_median_deg", text=text), "no event or score called",
+                            "allowed: auc_5_deg, failure")
+
     def test_events_side_by_side_and_words_on_the_axis(self):
         words = TABLE.replace("1,0.4,", "1,student_t,").replace("0,0.0,", "0,gaussian,").replace("2,0.8,", "2,laplace,")
         failure, refusal = self.draw(words, events=["failure", "refusal"]).axes

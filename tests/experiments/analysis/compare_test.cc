@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,8 @@
 
 #include "experiments/analysis/comparison_output.h"
 #include "experiments/analysis/summarize.h"
+#include "experiments/trial/trial_measure.h"
+#include "stats/score_mean.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
@@ -49,8 +52,9 @@ class CompareTest : public testing::Test {
       for (int i = 0; i < count; ++i) AddRecords(store, Trial(0, trial++, letters));
     }
   }
-  Comparison ComparisonOf(const std::string& name, const std::string& reference = "") {
-    return Compare(ResultStore::OpenForReading(folder_.Path(name)), reference);
+  Comparison ComparisonOf(const std::string& name, const std::string& reference = "",
+                          const CompareOptions& options = {}) {
+    return Compare(ResultStore::OpenForReading(folder_.Path(name)), reference, options);
   }
   static ComparisonRow Row(const Comparison& comparison, const std::string& event,
                            const std::string& estimator = "ours", std::uint32_t condition = 0) {
@@ -81,7 +85,7 @@ TEST_F(CompareTest, CountsByHand) {
   ExpectCounts(Row(comparison, "failure").counts, {2, 1, 5, 11});
   ExpectCounts(Row(comparison, "refusal").counts, {1, 3, 4, 11});
   ExpectCounts(Row(comparison, "failure_or_refusal").counts, {5, 2, 7, 5});
-  EXPECT_DOUBLE_EQ(Row(comparison, "failure").risk_difference, -4.0 / 19.0);
+  EXPECT_DOUBLE_EQ(Row(comparison, "failure").difference, -4.0 / 19.0);
 }
 
 TEST_F(CompareTest, ATrialThatOneMotionIsNotScoredInTellsNothingOfFailures) {
@@ -109,7 +113,7 @@ TEST_F(CompareTest, AnotherReferenceMirrorsTheComparison) {
   const ComparisonRow row = Row(comparison, "failure", "standard");
   EXPECT_EQ(comparison.reference, "ours");
   ExpectCounts(row.counts, {1, 7, 1, 12});
-  EXPECT_DOUBLE_EQ(row.risk_difference, 6.0 / 21.0);
+  EXPECT_DOUBLE_EQ(row.difference, 6.0 / 21.0);
   EXPECT_NEAR(row.interval.lower, 0.026003034, 2e-9);
 }
 
@@ -140,8 +144,8 @@ TEST_F(CompareTest, HolmGoesOverAllEventsEstimatorsAndConditions) {
 TEST_F(CompareTest, NoTrialsNoNumbers) {
   Write("run", {{"sf", 1}});
   const ComparisonRow row = Row(ComparisonOf("run"), "failure", "ours", 1);
-  EXPECT_EQ(row.counts.n(), 0);
-  EXPECT_TRUE(std::isnan(row.risk_difference) && std::isnan(row.p_value) && std::isnan(row.holm_p_value));
+  EXPECT_EQ(row.n, 0);
+  EXPECT_TRUE(std::isnan(row.difference) && std::isnan(row.p_value) && std::isnan(row.holm_p_value));
   EXPECT_EQ(row.interval.lower, -1.0);
   EXPECT_EQ(row.interval.upper, 1.0);
 }
@@ -158,9 +162,9 @@ TEST_F(CompareTest, RatesAreThoseOfTheSummary) {
   const Comparison comparison = ComparisonOf("run");
   const double failure = rate("ours", "failure") - rate("standard", "failure");
   const double refusal = rate("ours", "no_candidate") - rate("standard", "no_candidate");
-  EXPECT_NEAR(Row(comparison, "failure").risk_difference, failure, 1e-12);
-  EXPECT_NEAR(Row(comparison, "refusal").risk_difference, refusal, 1e-12);
-  EXPECT_NEAR(Row(comparison, "failure_or_refusal").risk_difference, failure + refusal, 1e-12);
+  EXPECT_NEAR(Row(comparison, "failure").difference, failure, 1e-12);
+  EXPECT_NEAR(Row(comparison, "refusal").difference, refusal, 1e-12);
+  EXPECT_NEAR(Row(comparison, "failure_or_refusal").difference, failure + refusal, 1e-12);
 }
 
 TEST_F(CompareTest, OneEstimatorHasNothingToCompare) {
@@ -185,11 +189,11 @@ TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   ASSERT_EQ(lines.size(), 7u);
   EXPECT_EQ(lines[0],
             "study,condition,outlier_ratio,estimator,reference,event,n,both,estimator_only,reference_only,"
-            "neither,risk_difference,lower,upper,p_mcnemar,p_holm");
+            "neither,risk_difference,lower,upper,p_mcnemar,p_holm,kind,p_value,test,interval");
   EXPECT_EQ(lines[1], fmt::format("small,0,0,ours,standard,failure,21,1,1,7,12,-0.28571429,{:.8g},{:.8g},"
-                                  "0.0703125,0.2109375",
+                                  "0.0703125,0.2109375,event,0.0703125,mcnemar,tango",
                                   comparison.rows[0].interval.lower, comparison.rows[0].interval.upper));
-  EXPECT_EQ(lines[4], "small,1,0.3,ours,standard,failure,0,0,0,0,0,,-1,1,,");
+  EXPECT_EQ(lines[4], "small,1,0.3,ours,standard,failure,0,0,0,0,0,,-1,1,,,event,,mcnemar,tango");
   const nlohmann::json json = nlohmann::json::parse(ComparisonAsJson(comparison));
   EXPECT_EQ(json["reference"], "standard");
   ASSERT_EQ(json["rows"].size(), 6u);
@@ -198,6 +202,121 @@ TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   EXPECT_EQ(json["rows"][0]["reference_only"], 7);
   EXPECT_EQ(json["rows"][0]["p_mcnemar"], comparison.rows[0].p_value);
   EXPECT_TRUE(json["rows"][3]["risk_difference"].is_null());
+}
+
+// Rotation errors (deg) of standard and ours in one trial; below zero: it refuses.
+using Errors = std::pair<double, double>;
+
+std::vector<TrialRecord> Trial(std::uint32_t trial, const Errors& errors_deg) {
+  std::vector<TrialRecord> records = Trial(0, trial, "ss");
+  for (auto& [record, error_deg] :
+       {std::pair<TrialRecord&, double>{records[0], errors_deg.first}, {records[1], errors_deg.second}}) {
+    if (error_deg < 0.0) record.status = MotionStatus::kNoCandidate;
+    record.rotation_error_deg = error_deg < 0.0 ? std::numeric_limits<double>::quiet_NaN() : error_deg;
+  }
+  return records;
+}
+
+class CompareMeasuresTest : public CompareTest {
+ protected:
+  void Write(const std::string& name, const std::vector<Errors>& trials) {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path(name), MakePlan(study_));
+    for (std::uint32_t trial = 0; trial < trials.size(); ++trial)
+      AddRecords(store, Trial(trial, trials[trial]));
+  }
+};
+
+TEST_F(CompareMeasuresTest, ScoresByHand) {
+  // AUC@10 of standard: 0.9, 0.5, 0, 0.8 and a refusal; of ours: 1, 0.8, 0.2, a refusal, a refusal.
+  Write("run", {{1.0, 0.0}, {5.0, 2.0}, {20.0, 8.0}, {2.0, -1.0}, {-1.0, -1.0}});
+  const Comparison comparison = ComparisonOf("run", "", {.compared = {"scores"}});
+  EXPECT_EQ(comparison.rows.size(), 2 * TrialScores().size());
+  const ComparisonRow row = Row(comparison, "auc_10_deg");
+  ScoreMean expected({-1.0, 1.0});
+  for (const double difference : {0.1, 0.3, 0.2, -0.8, 0.0}) expected.Add(difference);
+  EXPECT_EQ(row.kind, ComparedKind::kScore);
+  EXPECT_EQ(row.n, 5);
+  EXPECT_NEAR(row.difference, -0.04, 1e-12);
+  EXPECT_NEAR(row.p_value, expected.PValue(0.0), 1e-12);
+  EXPECT_NEAR(row.interval.lower, expected.Sequence().lower, 1e-9);
+  EXPECT_NEAR(row.interval.upper, expected.Sequence().upper, 1e-9);
+  EXPECT_TRUE(row.is_anytime_valid);
+  const ComparisonRow answered = Row(comparison, "auc_10_deg_answered");
+  EXPECT_EQ(answered.n, 3) << "trials in which both answered";
+  EXPECT_NEAR(answered.difference, 0.2, 1e-12);
+  // The other way round it is the same with the sign changed.
+  const ComparisonRow mirrored =
+      Row(ComparisonOf("run", "ours", {.compared = {"scores"}}), "auc_10_deg", "standard");
+  EXPECT_NEAR(mirrored.difference, 0.04, 1e-12);
+  EXPECT_NEAR(mirrored.p_value, row.p_value, 1e-9);
+  EXPECT_NEAR(mirrored.interval.lower, -row.interval.upper, 1e-9);
+}
+
+TEST_F(CompareMeasuresTest, ErrorsByHand) {
+  // Ours minus standard: -1 (6 times), -3, +2, refused by ours alone: infinitely greater, and by both: equal.
+  Write("run", {{2, 1}, {2, 1}, {2, 1}, {2, 1}, {2, 1}, {2, 1}, {5, 2}, {1, 3}, {1, -1}, {-1, -1}});
+  const ComparisonRow row = Row(ComparisonOf("run", "", {.compared = {"errors"}}), "max_error_median_deg");
+  ExpectCounts(row.counts, {0, 2, 7, 1});  // greater, less, equal
+  EXPECT_EQ(row.n, 10);
+  EXPECT_EQ(row.difference, -1.0);
+  EXPECT_EQ(row.interval.lower, -1.0);  // the second and the ninth of ten
+  EXPECT_EQ(row.interval.upper, 2.0);
+  EXPECT_NEAR(row.p_value, 2.0 * (1 + 9 + 36) / 512.0, 1e-12) << "sign test: 2 of 9";
+}
+
+// A run that stopped by what it saw, or one of which somebody says so.
+TEST_F(CompareMeasuresTest, WhatLooksAgainAndAgainGetsTestsThatAreValidAtEveryLook) {
+  CompareTest::Write("run", {{"sf", 2}, {"fs", 12}, {"ss", 30}, {"ff", 6}});
+  const CompareOptions all{.compared = {"failure", "max_error_median_deg"}};
+  CompareOptions asked_for = all;
+  asked_for.is_anytime_valid = true;
+  const ComparisonRow once = Row(ComparisonOf("run", "", all), "failure");
+  EXPECT_EQ(once.p_value, McNemarExactPValue(once.counts));
+  EXPECT_FALSE(once.is_anytime_valid);
+  const Comparison by_hand = ComparisonOf("run", "", asked_for);
+  ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_)).NoteStoppingRule("a reason");
+  const Comparison stopped = ComparisonOf("run", "", all);
+  EXPECT_TRUE(stopped.caution.empty());
+  for (const Comparison& comparison : {by_hand, stopped}) {
+    const ComparisonRow failure = Row(comparison, "failure"), error = Row(comparison, "max_error_median_deg");
+    EXPECT_TRUE(failure.is_anytime_valid && error.is_anytime_valid);
+    ExpectCounts(failure.counts, once.counts);
+    EXPECT_EQ(failure.p_value, AnytimeMcNemarPValue(once.counts));
+    EXPECT_GT(failure.p_value, once.p_value);
+    EXPECT_LT(failure.interval.lower, once.interval.lower);
+    EXPECT_GT(failure.interval.upper, once.interval.upper);
+    EXPECT_EQ(failure.holm_p_value, std::min(1.0, 2.0 * failure.p_value));
+    EXPECT_EQ(error.p_value, AnytimeMcNemarPValue(error.counts));
+    EXPECT_TRUE(std::isnan(error.interval.lower) && std::isnan(error.interval.upper));
+  }
+  const std::string csv = ComparisonAsCsv(stopped);
+  EXPECT_NE(csv.find(",event,0.0"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",discordant_sequence,betting\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",discordant_sequence,\n"), std::string::npos) << csv;
+  EXPECT_TRUE(nlohmann::json::parse(ComparisonAsJson(stopped))["rows"][0]["p_mcnemar"].is_null());
+  const std::string table = ComparisonAsTable(stopped);
+  EXPECT_NE(table.find("valid at every look"), std::string::npos) << table;
+  EXPECT_EQ(table.find("McNemar"), std::string::npos) << table;
+}
+
+TEST_F(CompareMeasuresTest, OnlyWhatIsAskedForIsComparedAndCostsTheOthersAnything) {
+  Write("run", {{1.0, 0.0}, {5.0, 2.0}, {20.0, 8.0}});
+  const auto names_of = [&](const std::vector<std::string>& compared) {
+    std::vector<std::string> names;
+    for (const Compared& each : ComparisonOf("run", "", {.compared = compared}).compared)
+      names.push_back(each.name);
+    return names;
+  };
+  EXPECT_EQ(names_of({"events"}), (std::vector<std::string>{"failure", "refusal", "failure_or_refusal"}));
+  EXPECT_EQ(names_of({"auc_5_deg", "failure", "auc_5_deg"}),
+            (std::vector<std::string>{"failure", "auc_5_deg"}));
+  EXPECT_EQ(names_of({"events", "scores", "errors"}).size(), AllCompared().size());
+  const Comparison two = ComparisonOf("run", "", {.compared = {"auc_5_deg", "max_error_median_deg"}});
+  EXPECT_DOUBLE_EQ(Row(two, "max_error_median_deg").p_value, 0.25);
+  EXPECT_DOUBLE_EQ(Row(two, "max_error_median_deg").holm_p_value, 0.5);
+  EXPECT_TRUE(
+      ThrowsInputError([&] { names_of({"auc"}); }, {"--of", "'auc'", "allowed: events, scores, errors"}));
+  EXPECT_TRUE(ThrowsInputError([&] { names_of({}); }, {"--of", "nothing is named"}));
 }
 
 TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {

@@ -26,7 +26,7 @@ ComparisonRow Difference(std::uint32_t condition, const std::string& event, doub
   row.condition = condition;
   row.estimator = "ours";
   row.event = event;
-  row.risk_difference = difference;
+  row.difference = difference;
   row.holm_p_value = p;
   return row;
 }

@@ -14,6 +14,7 @@
 
 #include "experiments/analysis/summary_output.h"
 #include "stats/confidence_sequence.h"
+#include "stats/score_mean.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -159,6 +160,75 @@ TEST_F(SummarizeTest, MediansByHand) {
   EXPECT_EQ(time.value, 2.0);
   EXPECT_EQ(time.interval.lower, 2.0);  // the second and the ninth of ten: 0.979
   EXPECT_EQ(time.interval.upper, 4.0);
+}
+
+// Of ten trials: errors (the greater one) 2, 4, 15, 3, 3.5 and 40 deg, and four refusals.
+TEST_F(SummarizeTest, ScoresByHand) {
+  const auto expect = [&](const std::string& quantity, const std::vector<double>& scores) {
+    double sum = 0.0;
+    ScoreMean mean;
+    for (const double score : scores) sum += score, mean.Add(score);
+    const SummaryRow row = Row(quantity);
+    EXPECT_EQ(row.kind, SummaryRow::Kind::kScore) << quantity;
+    EXPECT_EQ(row.n, static_cast<std::int64_t>(scores.size())) << quantity;
+    EXPECT_NEAR(row.value, sum / static_cast<double>(scores.size()), 1e-12) << quantity;
+    EXPECT_EQ(row.interval.lower, mean.Sequence().lower) << quantity;
+    EXPECT_EQ(row.interval.upper, mean.Sequence().upper) << quantity;
+    EXPECT_EQ(row.interval_kind, IntervalKind::kBetting) << quantity;
+  };
+  expect("auc_5_deg", {0.6, 0.2, 0.0, 0.4, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0});
+  expect("auc_5_deg_answered", {0.6, 0.2, 0.0, 0.4, 0.3, 0.0});
+  expect("auc_10_deg_answered", {0.8, 0.6, 0.0, 0.7, 0.65, 0.0});
+  expect("auc_20_deg", {0.9, 0.8, 0.25, 0.85, 0.825, 0.0, 0.0, 0.0, 0.0, 0.0});
+  expect("maa_10_deg", {0.9, 0.7, 0.0, 0.8, 0.7, 0.0, 0.0, 0.0, 0.0, 0.0});
+}
+
+TEST_F(SummarizeTest, MedianErrorsByHand) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  // Rotation errors 1, 2, 3, 2, 3.5, 1, four times infinity: the fifth of ten, from the second to the ninth.
+  EXPECT_EQ(Row("rotation_error_median_deg").value, 3.0);
+  EXPECT_EQ(Row("rotation_error_median_deg").n, 10);
+  EXPECT_EQ(Row("rotation_error_median_deg").interval.lower, 1.0);
+  EXPECT_EQ(Row("rotation_error_median_deg").interval.upper, infinity);
+  EXPECT_EQ(Row("rotation_error_median_deg_answered").value, 2.0);
+  EXPECT_EQ(Row("rotation_error_median_deg_answered").n, 6);
+  EXPECT_EQ(Row("direction_error_median_deg_answered").value, 3.0);  // 2, 4, 15, 3, 1, 40
+  EXPECT_EQ(Row("max_error_median_deg_answered").value, 3.5);        // 2, 4, 15, 3, 3.5, 40
+  EXPECT_EQ(Row("max_error_median_deg").value, 15.0);
+}
+
+// What was there before stands before what was added: files of old and new programs can be compared line by
+// line.
+TEST_F(SummarizeTest, ScoresAndMedianErrorsComeLast) {
+  const std::vector<SummaryRow> rows = SummaryOf("run", true).rows;
+  const auto time = std::ranges::find(rows, "time_ms", &SummaryRow::quantity);
+  ASSERT_NE(time, rows.end());
+  EXPECT_EQ((time + 1)->quantity, "auc_5_deg");
+  EXPECT_EQ((time + 8)->quantity, "maa_10_deg_answered");
+  EXPECT_EQ((time + 14)->quantity, "max_error_median_deg_answered");
+  EXPECT_EQ((time + 15)->estimator, kSceneLabel);
+}
+
+TEST_F(SummarizeTest, ScoresInEveryFormat) {
+  const Summary summary = SummaryOf("run");
+  const SummaryRow row = Row("auc_20_deg");
+  EXPECT_NE(SummaryAsCsv(summary).find(fmt::format(",auc_20_deg,score,0.3625,{:.8g},{:.8g},,10,betting,,\n",
+                                                   row.interval.lower, row.interval.upper)),
+            std::string::npos);
+  EXPECT_NE(SummaryAsCsv(summary).find(",auc_20_deg,score,,0,1,,0,betting,,\n"), std::string::npos)
+      << "no trials";
+  EXPECT_NE(SummaryAsCsv(summary).find(",max_error_median_deg,median,15,3,,,10,,,\n"), std::string::npos)
+      << "an infinite end is empty";
+  const std::string table = SummaryAsTable(summary);
+  for (const std::string part : {"auc_5_deg", "maa_10_deg", "max_error_median_deg", "36.25 % ["})
+    EXPECT_NE(table.find(part), std::string::npos) << part << table;
+  for (const auto& entry : nlohmann::json::parse(SummaryAsJson(summary))["rows"]) {
+    if (entry["quantity"] != "auc_20_deg" || entry["condition"] != 0) continue;
+    EXPECT_EQ(entry["kind"], "score");
+    EXPECT_NEAR(entry["value"], 0.3625, 1e-12);
+    EXPECT_EQ(entry["interval"][0], row.interval.lower);
+    EXPECT_EQ(entry["interval_kind"], "betting");
+  }
 }
 
 // A covariance that is not positive definite has an infinite NEES, which a median survives and a mean does
@@ -463,6 +533,9 @@ TEST_F(SummarizeTest, TrialsThatStoppedByTheirOutcomesHaveAnytimeValidIntervals)
   EXPECT_EQ(row.interval.lower, ConfidenceSequence(2, 10).lower);
   EXPECT_EQ(row.interval.upper, ConfidenceSequence(2, 10).upper);
   EXPECT_LT(row.interval.lower, ExactBinomialInterval(2, 10).lower);
+  // Scores have such intervals anyway, medians none.
+  EXPECT_EQ(Row("auc_10_deg").interval_kind, IntervalKind::kBetting);
+  EXPECT_TRUE(std::isnan(Row("max_error_median_deg_answered").interval.lower));
 }
 
 // Failures of weight 0.5 and 0.25 in four trials: (0.5 + 0.25) / 4.
@@ -486,8 +559,8 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
       EXPECT_GT(row.standard_error, 0.0);
       EXPECT_LT(row.interval.lower, 0.1875);
       EXPECT_EQ(row.interval.upper, 1.0);  // four trials bound nothing
-    } else if (row.quantity == "kappa_flag" || row.quantity == "rotation_error_deg") {
-      EXPECT_EQ(row.n, 0);  // of a part of the trials
+    } else if (row.kind != SummaryRow::Kind::kRate || row.quantity == "kappa_flag") {
+      EXPECT_EQ(row.n, 0) << row.quantity;  // a mean, or of a part of the trials
     }
   }
 }
