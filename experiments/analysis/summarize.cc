@@ -275,9 +275,15 @@ std::string KindName(SummaryRow::Kind kind) {
   return "";
 }
 
-Summary Summarize(const ResultStore& store, bool with_times) {
-  const RunDescription run = store.Description();
-  Summary summary{run.study, run.factors, {}, {}, 0, run.NumTrials()};
+Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
+  RunDescription run = store.Description();
+  const std::int64_t num_planned = run.NumTrials();
+  const bool is_pooled = pooling == Pooling::kPooled;
+  if (is_pooled) {
+    run.factors.clear();
+    run.conditions = {{}};
+  }
+  Summary summary{run.study, run.factors, {}, {}, 0, num_planned};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
   const size_t num_estimators = run.estimators.size();
@@ -285,7 +291,7 @@ Summary Summarize(const ResultStore& store, bool with_times) {
   std::vector<Cell> cells(run.conditions.size(), Cell{std::vector(num_estimators, empty)});
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     ++summary.num_trials_done;
-    Cell& cell = cells[problem.condition];
+    Cell& cell = cells[is_pooled ? 0 : problem.condition];
     cell.problems.Add(problem, problem.weight, run.failure);
     for (size_t e = 0; e < num_estimators; ++e)
       cell.estimators[e].Add(records[e], problem.weight, run.failure);

@@ -65,6 +65,9 @@ const std::vector<QuantityHelp>& SummaryQuantities();
 //
 // Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
 // one pass, in memory that does not grow with the trials. Times (which no two runs share) only if asked for.
-Summary Summarize(const ResultStore& store, bool with_times);
+//
+// Pooled: all trials of all conditions as if they were of one, which has no levels.
+enum class Pooling { kPerCondition, kPooled };
+Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling = Pooling::kPerCondition);
 
 }  // namespace rcme

@@ -19,6 +19,8 @@ const std::vector<Kind>& Kinds() {
       {"failure_rate", "SUMMARY.csv", "rates against one factor, of `rcme summarize --format csv`"},
       {"heat_map", "SUMMARY.csv", "rates over two factors, of `rcme summarize --format csv`"},
       {"paired_difference", "COMPARISON.csv", "differences to a reference, of `rcme compare --format csv`"},
+      {"time_against_success", "SUMMARY.csv ...",
+       "success against the time of a call, of `rcme summarize --pooled --times`"},
       {"tune", "TUNE.json", "what `rcme tune --figures` draws, again"},
       {"transfer", "TRANSFER.json", "what `rcme transfer` draws, again"},
       {"audit", "FOLDER", "what `rcme audit` draws, again"},

@@ -24,7 +24,7 @@ void AddSummarizeCommand(CLI::App& app) {
       "Rates, scores and medians with 95 % intervals, means with standard errors, from a result file");
   struct Arguments {
     std::string run, format = "table", raw, out;
-    bool with_times = false;
+    bool with_times = false, is_pooled = false;
   };
   command->footer(
       "Beside rates and means: AUC at 5, 10 and 20 degrees, the mean over trials of max(0, 1 - e / T), e "
@@ -59,10 +59,15 @@ void AddSummarizeCommand(CLI::App& app) {
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->add_flag("--times", arguments->with_times,
                     "add the time per call; without it, equal studies give equal bytes");
+  command
+      ->add_flag("--pooled", arguments->is_pooled,
+                 "all conditions as one: rates over the whole study, every trial with the same weight")
+      ->excludes("--raw");
   command->callback([arguments] {
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
-    const Summary summary = Summarize(store, arguments->with_times);
+    const Summary summary = Summarize(store, arguments->with_times,
+                                      arguments->is_pooled ? Pooling::kPooled : Pooling::kPerCondition);
     const std::string text = arguments->format == "csv"    ? SummaryAsCsv(summary)
                              : arguments->format == "json" ? SummaryAsJson(summary)
                                                            : SummaryAsTable(summary);

@@ -136,6 +136,28 @@ TEST_F(SummarizeTest, AKnownInterval) {
   EXPECT_NEAR(Row("success").interval.upper, 0.7376219, 1e-7);
 }
 
+// The ten trials in one condition, and six of them in another.
+TEST_F(SummarizeTest, PooledConditionsAreOne) {
+  std::vector<TrialRecord> records = HandMadeRecords();
+  for (size_t i = 0; i < 6; ++i) {
+    records.push_back(records[i]);
+    records.back().condition = 1;
+  }
+  Write("both", records);
+  const Summary pooled =
+      Summarize(ResultStore::OpenForReading(folder_.Path("both")), true, Pooling::kPooled);
+  EXPECT_TRUE(pooled.factor_names.empty());
+  int num_checked = 0;
+  for (const SummaryRow& row : pooled.rows) {
+    EXPECT_TRUE(row.levels.empty() && row.condition == 0);
+    if (row.quantity != "success") continue;
+    ++num_checked;
+    EXPECT_EQ(row.n, 16);
+    EXPECT_DOUBLE_EQ(row.value, 8.0 / 16.0);
+  }
+  EXPECT_EQ(num_checked, 1);
+}
+
 TEST_F(SummarizeTest, MeansByHand) {
   ExpectMean("nees", {4, 6, 20, 2});
   ExpectMean("rotation_error_deg", {1, 2, 3, 2});

@@ -1,0 +1,57 @@
+"""Tests of plots/time_against_success.py: what it draws from, what it refuses."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "plots"))
+
+import time_against_success  # noqa: E402
+from common.command_line import PlotError  # noqa: E402
+from common.summary_csv import read_summary  # noqa: E402
+from rates.time_points import draw, front_of, points_of  # noqa: E402
+
+HEAD = "study,condition,estimator,quantity,kind,value,lower,upper,standard_error,n,interval,verdict,trials_to_decide"
+ROWS = ["peers,0,fast,success,rate,0.5,0.4,0.6,,100,exact,,", "peers,0,fast,time_ms,median,0.1,0.09,0.12,,100,,,",
+        "peers,0,slow,success,rate,0.9,0.8,0.95,,100,exact,,", "peers,0,slow,time_ms,median,10,9,11,,100,,,"]
+
+
+class TimeAgainstSuccess(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def summary(self, rows):
+        path = self.folder / "summary.csv"
+        path.write_text("\n".join([HEAD, *rows]) + "\n")
+        return path
+
+    def test_a_point_has_the_numbers_of_the_file(self):
+        points = points_of(read_summary(self.summary(ROWS)))
+        self.assertEqual(points["fast"], ((0.1, 0.09, 0.12), (0.5, 0.4, 0.6)))
+        self.assertEqual(points["slow"][1], (0.9, 0.8, 0.95))
+
+    def test_the_front_leaves_out_what_is_slower_and_no_better(self):
+        self.assertEqual(front_of([(3, 0.7), (1, 0.5), (2, 0.4), (2, 0.7), (9, 0.9)]), [(1, 0.5), (2, 0.7), (9, 0.9)])
+
+    def test_draws_every_point(self):
+        axes = draw([read_summary(self.summary(ROWS))]).axes[0]
+        drawn = {tuple(line.get_xydata()[0]) for line in axes.lines if len(line.get_xydata()) == 1}
+        self.assertLessEqual({(0.1, 0.5), (10.0, 0.9)}, drawn)
+
+    def test_refuses_what_is_not_pooled_or_has_no_times(self):
+        for rows, words in ((ROWS[::2], "--times"), (ROWS + ROWS, "several conditions")):
+            with self.assertRaisesRegex(PlotError, words):
+                draw([read_summary(self.summary(rows))])
+
+    def test_writes_both_files(self):
+        out = self.folder / "figure"
+        self.assertEqual(time_against_success.main([str(self.summary(ROWS)), "--out", str(out)]), 0)
+        for suffix in (".png", ".pdf"):
+            self.assertGreater(out.with_suffix(suffix).stat().st_size, 1000)
+
+
+if __name__ == "__main__":
+    unittest.main()
