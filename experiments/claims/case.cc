@@ -50,9 +50,9 @@ Check MakeCheck(const Settings& settings, const Statistic& statistic, const std:
   return check;
 }
 
-std::vector<Check> SigmaLadder(const std::vector<double>& sigmas_px, const Settings& settings,
-                               const Statistic& statistic, const std::vector<Target>& targets,
-                               const TrialLimits& limits) {
+std::vector<Check> ChecksAtNoiseLevels(const std::vector<double>& sigmas_px, const Settings& settings,
+                                       const Statistic& statistic, const std::vector<Target>& targets,
+                                       const TrialLimits& limits) {
   std::vector<Check> checks;
   for (const double sigma_px : sigmas_px) {
     Settings at_sigma = settings;

@@ -37,12 +37,12 @@ Check MakeCheck(const Settings& settings, const Statistic& statistic, const std:
                 const TrialLimits& limits);
 
 // Noise levels for claims about minimal samples: from where first order holds to beyond the paper's 0.5 px.
-inline const std::vector<double> kNoiseLadderPx = {1e-6, 1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0};
+inline const std::vector<double> kNoiseLevelsPx = {1e-6, 1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0};
 
 // The same check at several noise levels.
-std::vector<Check> SigmaLadder(const std::vector<double>& sigmas_px, const Settings& settings,
-                               const Statistic& statistic, const std::vector<Target>& targets,
-                               const TrialLimits& limits);
+std::vector<Check> ChecksAtNoiseLevels(const std::vector<double>& sigmas_px, const Settings& settings,
+                                       const Statistic& statistic, const std::vector<Target>& targets,
+                                       const TrialLimits& limits);
 
 // Coverage of the 1 - alpha regions of a chi-square law at alpha = .5, .2, .1, .05, .01, alpha = .05 first,
 // and the mean of its probability integral transform. What counts as nominal: what sigmas wrong by the

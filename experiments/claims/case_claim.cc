@@ -13,7 +13,7 @@ Claim OnBuiltInScene(const CaseClaim& claim, const std::vector<Settings>& settin
 
 Claim AtNoiseLevels(const CaseClaim& claim, const std::vector<double>& sigmas_px, const Settings& settings) {
   Claim on_scene = claim.words;
-  on_scene.checks = SigmaLadder(sigmas_px, settings, claim.statistic, claim.targets, claim.limits);
+  on_scene.checks = ChecksAtNoiseLevels(sigmas_px, settings, claim.statistic, claim.targets, claim.limits);
   return on_scene;
 }
 

@@ -51,6 +51,8 @@ inline constexpr CheckDesign kEarlyStopCost{0.01,
 inline constexpr CheckDesign kEarlyStopSaving{0.9, {2'000, 2'000, 10'000}, 1, 0.2};
 inline constexpr CheckDesign kLoopExponent{0.15, {20, 20, 100}, 1, 0.05};
 inline constexpr CheckDesign kRefinementExponent{0.3, {20, 20, 100}, 1, 0.15};
+inline constexpr CheckDesign kPeerInliers{0.02, {500, 2'000, 20'000}, 1, 0.05};  // a mean over inliers
+inline constexpr CheckDesign kAnswersToNothing{0.05, {300, 500, 5'000}};         // share of random problems
 
 // Targets with the design's margin and expectations.
 Target PlannedRate(const std::string& quantity, double nominal, const CheckDesign& design,

@@ -22,5 +22,7 @@ std::vector<Claim> FailureClaims(const std::vector<EstimatorEntry>& estimators);
 std::vector<Claim> EarlyStopClaims();
 std::vector<Claim> EstimatorClaims(
     const std::vector<EstimatorEntry>& estimators);  // any estimator, as a black box
+// What OpenCV's estimators suppose; none where they are not among the peers.
+std::vector<Claim> PeerClaims(const std::vector<EstimatorEntry>& peers);
 
 }  // namespace rcme

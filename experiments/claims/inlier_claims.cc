@@ -97,10 +97,10 @@ std::vector<Claim> InlierClaims() {
     if (reading.distance == RankAwareDistance) claims.back().checks.push_back(UntunedCheck(reading));
   }
   for (const PointReading& reading : Readings()) {
-    claims.push_back(AtNoiseLevels(FreshPointClaim(reading), kNoiseLadderPx, {{"num_matches", "9"}}));
+    claims.push_back(AtNoiseLevels(FreshPointClaim(reading), kNoiseLevelsPx, {{"num_matches", "9"}}));
   }
   for (const PointReading& reading : Readings()) {
-    claims.push_back(AtNoiseLevels(OwnPointClaim(reading), kNoiseLadderPx, {{"num_matches", "8"}}));
+    claims.push_back(AtNoiseLevels(OwnPointClaim(reading), kNoiseLevelsPx, {{"num_matches", "8"}}));
   }
   return claims;
 }

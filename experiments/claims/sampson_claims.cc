@@ -105,13 +105,13 @@ std::vector<Claim> SampsonClaims() {
       {"sampson.dof_3", "Sec. p_comp_tests", "as printed, 3 dof",
        "The Sampson vector has 4 - 1 = 3 degrees of freedom",
        "|delta|^2 / sigma^2 under the true motion, chi2_3", "sigma_px",
-       SigmaLadder(sigmas_px, {{"num_matches", "1"}}, SquaredLengthStatistic, CoverageTargets(3),
-                   kSampleCoverage.limits)},
+       ChecksAtNoiseLevels(sigmas_px, {{"num_matches", "1"}}, SquaredLengthStatistic, CoverageTargets(3),
+                           kSampleCoverage.limits)},
       {"sampson.dof_1", "Sec. p_comp_tests", "rank-aware, 1 dof",
        "The Sampson vector has 1 degree of freedom", "|delta|^2 / sigma^2 under the true motion, chi2_1",
        "sigma_px",
-       SigmaLadder(sigmas_px, {{"num_matches", "1"}}, SquaredLengthStatistic, CoverageTargets(1),
-                   kSampleCoverage.limits)},
+       ChecksAtNoiseLevels(sigmas_px, {{"num_matches", "1"}}, SquaredLengthStatistic, CoverageTargets(1),
+                           kSampleCoverage.limits)},
   };
 }
 

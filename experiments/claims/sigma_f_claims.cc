@@ -98,7 +98,7 @@ std::vector<CaseClaim> SigmaFCalibration() {
 std::vector<Claim> SigmaFClaims() {
   const std::vector<CaseClaim> calibration = SigmaFCalibration();
   return {
-      AtNoiseLevels(calibration[0], kNoiseLadderPx, kSample),
+      AtNoiseLevels(calibration[0], kNoiseLevelsPx, kSample),
       {"sigma_f.formula",
        kLabel,
        "overdetermined, 8-point",
@@ -123,7 +123,7 @@ std::vector<Claim> SigmaFClaims() {
        "",
        {MakeCheck(kSample, NormalBasisStatistic(8), {IdentityTarget("share within 1e-12", 1e-12)},
                   kIdentity.limits)}},
-      AtNoiseLevels(calibration[1], kNoiseLadderPx, {{"num_matches", "5"}}),
+      AtNoiseLevels(calibration[1], kNoiseLevelsPx, {{"num_matches", "5"}}),
       {"sigma_f.exact_inverse",
        kLabel,
        "exact, 5-point, in f as printed",

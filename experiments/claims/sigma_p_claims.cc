@@ -65,8 +65,8 @@ std::vector<CaseClaim> SigmaPCalibration() {
 std::vector<Claim> SigmaPClaims() {
   const std::vector<CaseClaim> calibration = SigmaPCalibration();
   return {
-      AtNoiseLevels(calibration[0], kNoiseLadderPx, kSample),
-      AtNoiseLevels(calibration[1], kNoiseLadderPx, kSample),
+      AtNoiseLevels(calibration[0], kNoiseLevelsPx, kSample),
+      AtNoiseLevels(calibration[1], kNoiseLevelsPx, kSample),
       {"sigma_p.rank",
        "eq::cov_p",
        "7x7, p = (q, t)",

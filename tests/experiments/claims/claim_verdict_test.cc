@@ -52,7 +52,7 @@ TEST(JudgeClaim, FailsIfItFailsInTheLimit) {
   EXPECT_FALSE(Judge({{0.5, kNo}}).holds_up_to_sigma_px);
 }
 
-TEST(JudgeClaim, WithoutALadderHoldsIfItHoldsInEveryCondition) {
+TEST(JudgeClaim, WithOneNoiseLevelHoldsIfItHoldsInEveryCondition) {
   const auto judge = [](const std::vector<std::optional<Verdict>>& verdicts) {
     Claim claim;
     ClaimResult result;
