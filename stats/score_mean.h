@@ -10,6 +10,10 @@
 // a non-negative martingale of mean 1 where m is the mean: P(K_n(m) >= 1 / a for any n) <= a (Ville). The
 // interval reaches about 3.3 standard errors to either side, and farther towards the end from which a law of
 // scores may hide rare ones; that pays for all n at once, and so for a study that stops by what it sees.
+//
+// Scores of different laws, independent of each other and n fixed beforehand (conditions that are pooled):
+// the same bounds hold for the mean of their means mu_i, as prod_i (1 + f (mu_i / m - 1)) is at most 1 where
+// m is that mean (arithmetic and geometric mean).
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "experiments/analysis/scenes_of_run.h"
 #include "parameters/input_error.h"
 #include "stats/multiple_testing.h"
 #include "stats/score_mean.h"
@@ -28,32 +29,45 @@ size_t IndexOf(const std::string& label, const RunDescription& run) {
 // The pairs of one condition, estimator and thing compared, growing trial by trial.
 class Pairs {
  public:
-  explicit Pairs(ComparedKind kind) : kind_(kind) {}
+  Pairs(ComparedKind kind, bool has_repeats) : kind_(kind), has_repeats_(has_repeats) {}
 
-  void Add(double first, double second) {
-    if (kind_ == ComparedKind::kEvent) {
-      counts_.Add(first != 0.0, second != 0.0);
-    } else if (kind_ == ComparedKind::kScore) {
-      score_difference_.Add(first - second);
-    } else {
+  void Add(double first, double second, bool is_first_of_scene) {
+    if (kind_ == ComparedKind::kEvent) counts_.Add(first != 0.0, second != 0.0);
+    if (kind_ != ComparedKind::kError) {
+      scene_.Add(first - second);
+    } else if (is_first_of_scene) {
       counts_.Add(first > second, second > first);
       error_difference_.Add(first == second ? 0.0 : first - second);  // two infinite errors are equal
     }
   }
 
+  void EndScene() {
+    const std::optional<double> mean = scene_.Take();
+    if (mean && IsByMeans()) mean_difference_.Add(*mean);
+  }
+
   // What a row says of them.
   void Fill(bool is_anytime_valid, ComparisonRow* row) const {
     row->kind = kind_;
-    row->is_anytime_valid = is_anytime_valid || kind_ == ComparedKind::kScore;
+    row->is_anytime_valid = is_anytime_valid || IsByMeans();
+    row->is_of_scenes = has_repeats_;
     row->counts = counts_;
-    if (kind_ == ComparedKind::kEvent) FillEvent(row);
-    if (kind_ == ComparedKind::kScore) FillScore(row);
-    if (kind_ == ComparedKind::kError) FillError(row);
+    if (IsByMeans()) {
+      FillMeans(row);
+    } else if (kind_ == ComparedKind::kEvent) {
+      FillEvent(row);
+    } else {
+      FillError(row);
+    }
     if (row->n == 0) row->p_value = kNaN;
     row->holm_p_value = row->p_value;
   }
 
  private:
+  bool IsByMeans() const {
+    return kind_ == ComparedKind::kScore || (kind_ == ComparedKind::kEvent && has_repeats_);
+  }
+
   double PValueOfCounts(bool is_anytime_valid) const {
     return is_anytime_valid ? AnytimeMcNemarPValue(counts_) : McNemarExactPValue(counts_);
   }
@@ -64,11 +78,11 @@ class Pairs {
     row->p_value = PValueOfCounts(row->is_anytime_valid);
     row->interval = row->is_anytime_valid ? AnytimeRiskDifferenceInterval() : RiskDifferenceInterval(counts_);
   }
-  void FillScore(ComparisonRow* row) const {
-    row->n = score_difference_.n();
-    row->difference = score_difference_.mean();
-    row->p_value = score_difference_.PValue(0.0);
-    row->interval = score_difference_.Sequence();
+  void FillMeans(ComparisonRow* row) const {
+    row->n = mean_difference_.n();
+    row->difference = mean_difference_.mean();
+    row->p_value = mean_difference_.PValue(0.0);
+    row->interval = mean_difference_.Sequence();
   }
   // The sign test: McNemar's of "greater than the other". Its median's interval is of a fixed number of
   // trials.
@@ -89,8 +103,10 @@ class Pairs {
   }
 
   ComparedKind kind_;
+  bool has_repeats_;
   PairedCounts counts_;
-  ScoreMean score_difference_{{-1.0, 1.0}};
+  SceneMean scene_;                         // so far
+  ScoreMean mean_difference_{{-1.0, 1.0}};  // of the means of scenes
   StreamMedian error_difference_;
 };
 
@@ -104,11 +120,11 @@ class AllPairs {
         num_estimators_(run.estimators.size()),
         compared_(compared) {
     for (size_t cell = 0; cell < run.conditions.size() * num_estimators_; ++cell) {
-      for (const Compared& each : compared_) cells_.emplace_back(each.kind);
+      for (const Compared& each : compared_) cells_.emplace_back(each.kind, run.repeats_per_scene > 1);
     }
   }
 
-  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first_of_scene) {
     ++num_trials_;
     is_weighted_ = is_weighted_ || problem.weight != 1.0;
     for (size_t v = 0; v < compared_.size(); ++v) {
@@ -116,9 +132,15 @@ class AllPairs {
       if (!of_reference) continue;
       for (size_t e = 0; e < num_estimators_; ++e) {
         const std::optional<double> of_estimator = compared_[v].of(records[e], bounds_);
-        if (of_estimator) cells_[IndexOfCell(problem.condition, e, v)].Add(*of_estimator, *of_reference);
+        if (!of_estimator) continue;
+        cells_[IndexOfCell(problem.condition, e, v)].Add(*of_estimator, *of_reference, is_first_of_scene);
       }
     }
+  }
+
+  void EndScene(std::uint32_t condition) {
+    for (size_t i = IndexOfCell(condition, 0, 0); i < IndexOfCell(condition + 1, 0, 0); ++i)
+      cells_[i].EndScene();
   }
 
   const Pairs& Of(size_t condition, size_t estimator, size_t compared) const {
@@ -163,9 +185,12 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
   const size_t reference_index = IndexOf(reference, run);
   const std::vector<Compared> compared = ComparedByName(options.compared);
   AllPairs pairs(run, reference_index, compared);
-  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
-    pairs.Add(problem, records);
-  });
+  ForEachTrialByScene(
+      store, run.repeats_per_scene,
+      [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
+        pairs.Add(problem, records, is_first);
+      },
+      [&](std::uint32_t condition) { pairs.EndScene(condition); });
   Comparison comparison{run.study,
                         estimators[reference_index].label,
                         run.factors,

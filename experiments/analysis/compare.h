@@ -7,6 +7,10 @@
 // decides if the estimators are alike, are tested by the likelihood ratio of a mixture to the fair coin
 // (stats/confidence_sequence.h), and differences have the intervals of betting (stats/score_mean.h), which
 // hold at every look. Scores have these always.
+//
+// Where scenes are repeated (Study::repeats_per_scene), the trials of one are not independent: events and
+// scores are compared by the means over a scene's pairs, with the tests and intervals of scores, errors by
+// the first trial of each scene.
 #pragma once
 
 #include <cstdint>
@@ -33,6 +37,7 @@ struct ComparisonRow {
   ComparedKind kind = ComparedKind::kEvent;
   std::string event;  // name of the event, score or error
   bool is_anytime_valid = false;
+  bool is_of_scenes = false;  // of repeated scenes: n counts them, `counts` their trials
   std::int64_t n = 0;         // trials in which both count
   PairedCounts counts;        // first: the estimator, second: the reference; of events
   double difference = 0.0;    // estimator minus reference; NaN where n is 0

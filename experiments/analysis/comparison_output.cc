@@ -34,7 +34,10 @@ Method MethodOf(ComparedKind kind, bool is_anytime_valid) {
   if (is_error) return {"sign", "order_statistics", "exact sign test", "distribution-free 95 % interval"};
   return {"mcnemar", "tango", "McNemar's exact test of equal rates", "Tango's 95 % interval"};
 }
-Method MethodOf(const ComparisonRow& row) { return MethodOf(row.kind, row.is_anytime_valid); }
+Method MethodOf(const ComparisonRow& row) {
+  const bool is_by_means = row.is_of_scenes && row.kind == ComparedKind::kEvent;
+  return MethodOf(is_by_means ? ComparedKind::kScore : row.kind, row.is_anytime_valid);
+}
 
 // Of a person's table: "+1.20 [-0.30, +2.70]", in percentage points or degrees.
 std::string DifferenceInWords(const ComparisonRow& row) {
@@ -139,6 +142,12 @@ std::string ComparisonAsTable(const Comparison& comparison) {
   text += "\n";
   for (const ComparedKind kind : {ComparedKind::kEvent, ComparedKind::kScore, ComparedKind::kError})
     text += Legend(kind, comparison);
+  if (!comparison.rows.empty() && comparison.rows.front().is_of_scenes) {
+    text +=
+        "Scenes are repeated: n counts them; differences are of the means over a scene's trials, of errors "
+        "in "
+        "its first.\n";
+  }
   text += fmt::format(
       "Holm p: adjusted for all {} tests of this comparison (what is compared, estimators, conditions); * "
       "below 0.05.\n",

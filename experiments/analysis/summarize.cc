@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 
+#include "experiments/analysis/scene_split.h"
+#include "experiments/analysis/scenes_of_run.h"
 #include "experiments/trial/trial_measure.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
@@ -157,19 +159,30 @@ const std::vector<ProblemQuantity>& ProblemQuantities() {
 template <typename Record>
 class Accumulator {
  public:
-  explicit Accumulator(const std::vector<Quantity<Record>>& quantities)
-      : quantities_(quantities), moments_(quantities.size()) {}
+  Accumulator(const std::vector<Quantity<Record>>& quantities, bool has_repeats)
+      : quantities_(quantities), has_repeats_(has_repeats) {}
 
-  void Add(const Record& record, double weight, const FailureBounds& bounds) {
-    ++num_trials_;
+  void Add(const Record& record, double weight, bool is_first_of_scene, const FailureBounds& bounds) {
     is_weighted_ = is_weighted_ || weight != 1.0;
-    for (size_t q = 0; q < moments_.size(); ++q) {
+    for (size_t q = 0; q < quantities_.size(); ++q) {
       const std::optional<double> value = quantities_[q].contribution(record, bounds);
       if (!value) continue;
-      moments_[q].Add(*value);
+      scene_[q].Add(*value);
+      if (!is_first_of_scene) continue;
       if (quantities_[q].kind == SummaryRow::Kind::kRate) weighted_[q].Add(weight, *value != 0.0);
       if (quantities_[q].kind == SummaryRow::Kind::kMedian) medians_[q].Add(*value);
-      if (quantities_[q].kind == SummaryRow::Kind::kScore) scores_[q].Add(*value);
+    }
+  }
+
+  void EndScene() {
+    ++num_scenes_;
+    for (size_t q = 0; q < quantities_.size(); ++q) {
+      const std::optional<double> mean = scene_[q].Take();
+      if (!mean) continue;
+      moments_[q].Add(*mean);
+      const SummaryRow::Kind kind = quantities_[q].kind;
+      if (kind == SummaryRow::Kind::kScore || (kind == SummaryRow::Kind::kRate && has_repeats_))
+        scores_[q].Add(*mean);
     }
   }
 
@@ -186,9 +199,9 @@ class Accumulator {
         FillMedian(is_weighted_ ? StreamMedian() : medians_[q], &row);
       } else if (is_weighted_) {
         FillWeighted(q, &row);
-      } else if (row.kind == SummaryRow::Kind::kRate) {
+      } else if (row.kind == SummaryRow::Kind::kRate && !has_repeats_) {
         FillRate(&row);
-      } else if (row.kind == SummaryRow::Kind::kScore) {
+      } else if (row.kind == SummaryRow::Kind::kScore || row.kind == SummaryRow::Kind::kRate) {
         row.interval_kind = IntervalKind::kBetting;
         row.interval = scores_[q].Sequence();
       } else {
@@ -207,7 +220,7 @@ class Accumulator {
     row->value = static_cast<double>(successes) / static_cast<double>(row->n);
     if (row->quantity != "nees_coverage") return;
     const bool is_of_fixed_n = row->interval_kind == IntervalKind::kExact;
-    row->coverage_verdict = JudgeCoverage(row->value, row->interval, row->n, num_trials_, is_of_fixed_n);
+    row->coverage_verdict = JudgeCoverage(row->value, row->interval, row->n, num_scenes_, is_of_fixed_n);
   }
 
   // Its interval is of a number of trials that was fixed beforehand.
@@ -219,7 +232,7 @@ class Accumulator {
   }
 
   void FillWeighted(size_t q, SummaryRow* row) const {
-    const bool is_of_all = row->kind == SummaryRow::Kind::kRate && row->n == num_trials_;
+    const bool is_of_all = weighted_[q].num_trials == num_scenes_;
     const WeightedRate rate = EstimateWeightedRate(is_of_all ? weighted_[q] : WeightedEvents());
     row->n = is_of_all ? row->n : 0;
     row->value = is_of_all ? std::min(rate.estimate, 1.0) : std::numeric_limits<double>::quiet_NaN();
@@ -228,18 +241,55 @@ class Accumulator {
   }
 
   const std::vector<Quantity<Record>>& quantities_;
-  std::vector<Moments> moments_;
+  bool has_repeats_;
+  std::vector<SceneMean> scene_{quantities_.size()};  // so far
+  std::vector<Moments> moments_{quantities_.size()};  // of the means of scenes
   std::vector<WeightedEvents> weighted_{quantities_.size()};
   std::vector<StreamMedian> medians_{quantities_.size()};
   std::vector<ScoreMean> scores_{quantities_.size()};
-  std::int64_t num_trials_ = 0;
+  std::int64_t num_scenes_ = 0;
   bool is_weighted_ = false;
 };
 
-// The accumulators of one condition.
-struct Cell {
-  std::vector<Accumulator<TrialRecord>> estimators;
-  Accumulator<ProblemRecord> problems{ProblemQuantities()};
+// One condition. All trials of a scene have one problem: it is counted once, as if nothing were repeated.
+class Cell {
+ public:
+  Cell(size_t num_estimators, int repeats_per_scene)
+      : estimators_(num_estimators,
+                    Accumulator<TrialRecord>(TrialQuantities(), /*has_repeats=*/repeats_per_scene > 1)) {
+    if (repeats_per_scene > 1) splits_.assign(num_estimators, SceneSplit(repeats_per_scene));
+  }
+
+  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first_of_scene,
+           const FailureBounds& bounds) {
+    if (is_first_of_scene) {
+      problems_.Add(problem, problem.weight, true, bounds);
+      problems_.EndScene();
+    }
+    for (size_t e = 0; e < estimators_.size(); ++e)
+      estimators_[e].Add(records[e], problem.weight, is_first_of_scene, bounds);
+    for (size_t e = 0; e < splits_.size(); ++e) splits_[e].Add(records[e], bounds);
+  }
+  void EndScene() {
+    for (Accumulator<TrialRecord>& estimator : estimators_) estimator.EndScene();
+    for (SceneSplit& split : splits_) split.EndScene();
+  }
+
+  // `cell` holds what the rows share but for the estimator.
+  void AppendRows(const RunDescription& run, SummaryRow cell, std::vector<SummaryRow>* rows) const {
+    for (size_t e = 0; e < estimators_.size(); ++e) {
+      cell.estimator = run.estimators[e].label;
+      estimators_[e].AppendRows(cell, rows);
+      if (!splits_.empty()) splits_[e].AppendRows(cell, rows);
+    }
+    cell.estimator = kSceneLabel;
+    problems_.AppendRows(cell, rows);
+  }
+
+ private:
+  std::vector<Accumulator<TrialRecord>> estimators_;
+  std::vector<SceneSplit> splits_;  // one per estimator; none without repeats
+  Accumulator<ProblemRecord> problems_{ProblemQuantities(), /*has_repeats=*/false};
 };
 
 template <typename Record>
@@ -255,6 +305,7 @@ const std::vector<QuantityHelp>& SummaryQuantities() {
   static const std::vector<QuantityHelp> help = [] {
     std::vector<QuantityHelp> rows;
     AppendHelp(TrialQuantities(), &rows);
+    for (const QuantityHelp& split : SceneSplitQuantities()) rows.push_back(split);
     AppendHelp(ProblemQuantities(), &rows);
     return rows;
   }();
@@ -271,6 +322,8 @@ std::string KindName(SummaryRow::Kind kind) {
       return "median";
     case SummaryRow::Kind::kScore:
       return "score";
+    case SummaryRow::Kind::kShare:
+      return "share";
   }
   return "";
 }
@@ -283,31 +336,24 @@ Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
     run.factors.clear();
     run.conditions = {{}};
   }
-  Summary summary{run.study, run.factors, {}, {}, 0, num_planned};
+  Summary summary{run.study, run.factors, {}, {}, 0, num_planned, run.repeats_per_scene};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
-  const size_t num_estimators = run.estimators.size();
-  const Accumulator<TrialRecord> empty(TrialQuantities());
-  std::vector<Cell> cells(run.conditions.size(), Cell{std::vector(num_estimators, empty)});
-  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
-    ++summary.num_trials_done;
-    Cell& cell = cells[is_pooled ? 0 : problem.condition];
-    cell.problems.Add(problem, problem.weight, run.failure);
-    for (size_t e = 0; e < num_estimators; ++e)
-      cell.estimators[e].Add(records[e], problem.weight, run.failure);
-  });
+  std::vector<Cell> cells(run.conditions.size(), Cell(run.estimators.size(), run.repeats_per_scene));
+  const auto cell_of = [&](std::uint32_t condition) -> Cell& { return cells[is_pooled ? 0 : condition]; };
+  ForEachTrialByScene(
+      store, run.repeats_per_scene,
+      [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
+        ++summary.num_trials_done;
+        cell_of(problem.condition).Add(problem, records, is_first, run.failure);
+      },
+      [&](std::uint32_t condition) { cell_of(condition).EndScene(); });
   for (std::uint32_t c = 0; c < run.conditions.size(); ++c) {
-    const Cell& cell = cells[c];
     SummaryRow row;
     row.condition = c;
     row.levels = run.conditions[c].levels;
     if (!run.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
-    for (size_t e = 0; e < num_estimators; ++e) {
-      row.estimator = run.estimators[e].label;
-      cell.estimators[e].AppendRows(row, &summary.rows);
-    }
-    row.estimator = kSceneLabel;
-    cell.problems.AppendRows(row, &summary.rows);
+    cells[c].AppendRows(run, row, &summary.rows);
   }
   if (!with_times)
     std::erase_if(summary.rows, [](const SummaryRow& row) { return row.quantity == "time_ms"; });

@@ -15,7 +15,7 @@ namespace rcme {
 namespace {
 
 bool HasKindOfInterval(const SummaryRow& row) {
-  return row.kind == SummaryRow::Kind::kRate || row.kind == SummaryRow::Kind::kScore;
+  return row.kind != SummaryRow::Kind::kMean && row.kind != SummaryRow::Kind::kMedian;
 }
 
 // "12.34 % [10.10, 14.80]", "1.23 +- 0.04" or "1.23 [1.20, 1.31]"; with its n where that is not all of the
@@ -55,6 +55,8 @@ std::string IntervalKindName(IntervalKind kind) {
       return "weighted";
     case IntervalKind::kBetting:
       return "betting";
+    case IntervalKind::kLogStudent:
+      return "log_student";
   }
   return "";
 }
@@ -70,6 +72,8 @@ std::string IntervalKindInWords(IntervalKind kind) {
       return "weighted 95 % (Fay-Feuer, cautious upper end)";
     case IntervalKind::kBetting:
       return "anytime-valid 95 % (betting)";
+    case IntervalKind::kLogStudent:
+      return "approximate 95 % (Student on the logarithm)";
   }
   return "";
 }
@@ -78,7 +82,9 @@ std::string IntervalKindInWords(IntervalKind kind) {
 std::string IntervalKindsIn(const Summary& summary) {
   std::set<std::string> kinds;
   for (const SummaryRow& row : summary.rows) {
-    if (row.kind == SummaryRow::Kind::kRate) kinds.insert(IntervalKindInWords(row.interval_kind));
+    if (row.kind == SummaryRow::Kind::kRate && row.estimator != kSceneLabel &&
+        !row.quantity.ends_with("_flips"))
+      kinds.insert(IntervalKindInWords(row.interval_kind));
   }
   return fmt::format("{}", fmt::join(kinds, " and "));
 }
@@ -154,6 +160,43 @@ std::string AccuracyAsTable(const Summary& summary) {
                          "direction_error_median_deg", "max_error_median_deg"}));
 }
 
+// The estimators of which a verdict depends on the sampler's seed, each with the condition where it does most
+// often, and those of which none did.
+std::string FlipsInWords(const Summary& summary) {
+  std::vector<const SummaryRow*> most;  // one per estimator
+  for (const SummaryRow& row : summary.rows) {
+    if (row.quantity != "failure_flips" || row.n == 0) continue;
+    const auto known = std::ranges::find(most, row.estimator, &SummaryRow::estimator);
+    if (known == most.end()) {
+      most.push_back(&row);
+    } else if (row.value > (*known)->value) {
+      *known = &row;
+    }
+  }
+  std::string text;
+  for (const SummaryRow* row : most) {
+    std::vector<std::string> place;
+    for (size_t f = 0; f < row->levels.size(); ++f)
+      place.push_back(summary.factor_names[f] + " " + row->levels[f]);
+    text +=
+        fmt::format("  {}: {}{}\n", row->estimator,
+                    row->value == 0.0 ? "no scene" : Cell(*row, row->n) + " of the scenes",
+                    row->value == 0.0 || place.empty() ? "" : fmt::format(" at {}", fmt::join(place, ", ")));
+  }
+  return "Whether a motion fails depends on the sampler's seed, at most:\n" + text;
+}
+
+// What the scene and what the sampler decides; empty without repeats.
+std::string SplitAsTable(const Summary& summary) {
+  if (summary.repeats_per_scene == 1) return "";
+  return fmt::format(
+      "Scene and sampler: shares of the variance of a failure, and scenes with both outcomes ({} trials per "
+      "scene)\n\n{}\n{}\n",
+      summary.repeats_per_scene,
+      EstimatorsAsTable(summary, {"failure_between_scenes", "failure_within_scenes", "failure_flips"}),
+      FlipsInWords(summary));
+}
+
 }  // namespace
 
 std::string SummaryAsTable(const Summary& summary) {
@@ -162,12 +205,19 @@ std::string SummaryAsTable(const Summary& summary) {
       summary.num_trials_planned,
       EstimatorsAsTable(summary, {"failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage",
                                   "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"}));
-  text += AccuracyAsTable(summary);
+  text += AccuracyAsTable(summary) + SplitAsTable(summary);
   text += SeverityAsTable(summary);
   text += fmt::format(
       "Rates with {} intervals; means of successes +- Monte-Carlo standard error;\n"
       "medians with distribution-free 95 % intervals; auc and maa with {} intervals\n",
       IntervalKindsIn(summary), IntervalKindInWords(IntervalKind::kBetting));
+  if (summary.repeats_per_scene > 1) {
+    text += fmt::format(
+        "n is of scenes: rates, scores and means are of the means over a scene's {} trials, medians of its "
+        "first.\nShares have {} intervals, scenes with both outcomes {}.\n",
+        summary.repeats_per_scene, IntervalKindInWords(IntervalKind::kLogStudent),
+        IntervalKindInWords(IntervalKind::kExact));
+  }
   text +=
       "(n ...) where a number is not of all trials: without a known truth a motion neither fails nor "
       "succeeds.\n"
@@ -205,6 +255,7 @@ std::string SummaryAsJson(const Summary& summary) {
   nlohmann::ordered_json json = {{"study", summary.study},
                                  {"trials_done", summary.num_trials_done},
                                  {"trials_planned", summary.num_trials_planned},
+                                 {"repeats_per_scene", summary.repeats_per_scene},
                                  {"efforts", nlohmann::ordered_json(nlohmann::ordered_json::value_t::object)},
                                  {"rows", nlohmann::ordered_json::array()}};
   for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;

@@ -62,7 +62,7 @@ struct TrueSetting {
   TrueSetting(const StudyPlan& plan, const TrialResult& result)
       : camera1(result.data.problem.camera1), camera2(result.data.problem.camera2) {
     const Condition& condition = ConditionOf(plan, result);
-    scene = condition.source->SceneOf(NameOfTrial(plan, condition, result.problem.trial));
+    scene = condition.source->SceneOf(NameOfScene(plan, condition, result.problem.trial));
     if (!scene) return;
     camera1 = scene->camera1;
     camera2 = scene->camera2;

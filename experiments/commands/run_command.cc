@@ -19,7 +19,7 @@ namespace {
 struct RunArguments {
   std::string study, out;
   StudyChanges changes;
-  std::int64_t trials = 0;
+  std::int64_t trials = 0, repeats_per_scene = 0;  // 0: the study's own
   int threads = 0;
   std::string until, until_event = "failure";
   std::int64_t max_trials = UntilOptions{}.max_trials;
@@ -34,6 +34,8 @@ std::vector<std::string> EventNames() {
 Study StudyFrom(const RunArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
+  if (arguments.repeats_per_scene > 0)
+    study.repeats_per_scene = static_cast<int>(arguments.repeats_per_scene);
   return study;
 }
 
@@ -102,6 +104,13 @@ void AddRunCommand(CLI::App& app) {
       command
           ->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
           ->transform(WholeNumberIn(1, 2'000'000'000));
+  CLI::Option* repeats =
+      command
+          ->add_option(
+              "--repeats-per-scene", arguments->repeats_per_scene,
+              "so many trials, one after the other, are of one scene with its noise and outliers: "
+              "`rcme summarize` then says how much of a failure rate is the scene, how much the sampler")
+          ->transform(WholeNumberIn(1, kMaxRepeatsPerScene));
   CLI::Option* until =
       command
           ->add_option("--until", arguments->until,
@@ -112,7 +121,8 @@ void AddRunCommand(CLI::App& app) {
             PrecisionTarget::Parse(text);  // throws
             return std::string();
           })
-          ->excludes(trials);
+          ->excludes(trials)
+          ->excludes(repeats);
   command
       ->add_option("--until-event", arguments->until_event,
                    "whose rate: failure, refusal or failure_or_refusal")

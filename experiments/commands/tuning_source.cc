@@ -33,6 +33,11 @@ StudyPlan TuningPlanOf(const TuningArguments& arguments) {
                     "experiments/studies/tune_mu_lambda.yaml",
                     arguments.study));
   }
+  if (study.repeats_per_scene > 1) {
+    throw InputError(
+        fmt::format("{}: repeats_per_scene: tuning needs a scene of its own for every trial; leave it out",
+                    arguments.study));
+  }
   for (const std::string& text : arguments.overrides) {
     const size_t equals = std::min(text.find('='), text.size());
     const std::string value = equals < text.size() ? text.substr(equals + 1) : "";

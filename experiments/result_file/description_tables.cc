@@ -53,6 +53,7 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
                                                {"description", run.description},
                                                {"seed", std::to_string(run.seed)},
                                                {"trials", std::to_string(run.trials)},
+                                               {"repeats_per_scene", std::to_string(run.repeats_per_scene)},
                                                {"stopping_rule", run.stopping_rule},
                                                {"until_options", run.until_options},
                                                {"until_trials", std::to_string(run.until_trials)},
@@ -117,6 +118,8 @@ RunDescription ReadRun(SQLite::Database& database) {
   constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
   run.seed = static_cast<std::uint64_t>(values.WholeNumber("seed", kMax));
   run.trials = static_cast<int>(values.WholeNumber("trials", std::numeric_limits<int>::max()));
+  run.repeats_per_scene = static_cast<int>(values.WholeNumber("repeats_per_scene", kMaxRepeatsPerScene));
+  if (run.repeats_per_scene == 0) throw Damage("'repeats_per_scene' of table run is not possible");
   run.failure = values.Failure();
   run.study_yaml = values.Text("study");
   run.identity = values.Text("identity");

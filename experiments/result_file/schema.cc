@@ -118,6 +118,8 @@ const std::vector<RunKey>& RunKeys() {
       {"seed", "the seed of all random streams"},
       {"trials",
        "trials per condition that were asked for; for a folder of real pairs, passes over each pair"},
+      {"repeats_per_scene",
+       "trials of each scene, one after the other: trial k is of scene k / repeats_per_scene"},
       {"max_rotation_error_deg", "failure bound: a motion with a greater rotation error has failed"},
       {"max_direction_error_deg", "failure bound: a motion with a greater error of the direction has failed"},
       {"stopping_rule", "not empty: the number of trials depended on their outcomes, in these words"},

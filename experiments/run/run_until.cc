@@ -82,6 +82,12 @@ PrecisionTarget PrecisionTarget::Parse(const std::string& text) {
 }
 
 std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& options, ResultStore* store) {
+  if (plan.study.repeats_per_scene > 1) {
+    throw InputError(
+        "--until: the repeats of a scene (repeats_per_scene) are not independent, which the intervals it "
+        "looks "
+        "at ask for; give --trials instead");
+  }
   store->NoteStoppingRule("a rate's interval is narrow enough");
   std::vector<CellPrecision> cells(plan.conditions.size());
   std::vector<std::uint32_t> open;

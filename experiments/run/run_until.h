@@ -42,7 +42,8 @@ struct UntilOptions {
 };
 
 // Every estimator of a condition has to reach the target. Notes in the store that the number of trials
-// depends on the outcomes. Throws InputError if trials are weighted: their intervals hold for one look only.
+// depends on the outcomes. Throws InputError if trials are weighted: their intervals hold for one look only;
+// and if scenes are repeated.
 std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& options, ResultStore* store);
 
 }  // namespace rcme

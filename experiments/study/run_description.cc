@@ -35,6 +35,7 @@ RunDescription Describe(const StudyPlan& plan) {
   run.ademp = AdempOf(plan.study);
   run.seed = plan.study.seed;
   run.trials = plan.study.trials;
+  run.repeats_per_scene = plan.study.repeats_per_scene;
   run.failure = plan.study.failure;
   run.factors = plan.factor_names;
   for (const Condition& condition : plan.conditions)

@@ -34,6 +34,7 @@ struct RunDescription {
   Settings ademp;                  // the parts of its ADEMP block that are not empty
   std::uint64_t seed = 1;
   int trials = 0;  // asked for per condition; for a folder of pairs, passes over each pair
+  int repeats_per_scene = 1;
   FailureBounds failure;
   std::vector<std::string> factors;
   std::vector<DescribedCondition> conditions;

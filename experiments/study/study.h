@@ -20,6 +20,7 @@ struct FailureBounds {
 std::vector<Parameter> Parameters(FailureBounds& bounds);
 
 inline constexpr size_t kMaxConditions = 100'000;  // of a study
+inline constexpr int kMaxRepeatsPerScene = 10'000;
 
 // One data setting and the values it takes.
 struct Factor {
@@ -49,6 +50,9 @@ struct Study {
   // One set of scenes, noise and outliers for all conditions whose scene is shaped alike, so that differences
   // between levels of the outlier ratio or the noise level are paired.
   bool common_scenes = false;
+  // Each scene, with its noise and outliers, is met by so many trials, one after the other, that differ in
+  // the samples the estimators draw: trial k is of scene k / repeats_per_scene.
+  int repeats_per_scene = 1;
   Design design = Design::kFullFactorial;
   std::vector<Factor> factors;
   std::vector<EstimatorSpec> estimators;

@@ -234,9 +234,10 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
   Study study;
   study.name = std::filesystem::path(path).stem().string();
-  for (const auto& [key, node] : Entries(place, root, "study",
-                                         {"name", "description", "ademp", "seed", "trials", "common_scenes",
-                                          "data", "design", "factors", "estimators", "failure", "tune"})) {
+  for (const auto& [key, node] :
+       Entries(place, root, "study",
+               {"name", "description", "ademp", "seed", "trials", "repeats_per_scene", "common_scenes",
+                "data", "design", "factors", "estimators", "failure", "tune"})) {
     if (key == "name") study.name = Name(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
@@ -244,6 +245,8 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
           static_cast<std::uint64_t>(WholeNumber(place, node, key, 0, std::numeric_limits<long long>::max()));
     }
     if (key == "trials") study.trials = static_cast<int>(WholeNumber(place, node, key, 1, kMaxTrials));
+    if (key == "repeats_per_scene")
+      study.repeats_per_scene = static_cast<int>(WholeNumber(place, node, key, 1, kMaxRepeatsPerScene));
     if (key == "data") {
       for (const auto& [setting, value] : Entries(place, node, "data", {})) {
         study.data.emplace_back(setting, Scalar(place, value, setting));
@@ -309,6 +312,8 @@ std::string ToYaml(const Study& study) {
   }
   out << YAML::Key << "seed" << YAML::Value << study.seed;
   out << YAML::Key << "trials" << YAML::Value << study.trials;
+  if (study.repeats_per_scene > 1)
+    out << YAML::Key << "repeats_per_scene" << YAML::Value << study.repeats_per_scene;
   if (study.common_scenes) out << YAML::Key << "common_scenes" << YAML::Value << true;
   out << YAML::Key << "data" << YAML::Value << YAML::BeginMap;
   for (const auto& [key, value] : WrittenData(study)) out << YAML::Key << key << YAML::Value << value;

@@ -5,6 +5,7 @@
 //   ademp: {aims: ..., data: ..., estimands: ..., methods: ..., performance: ...}
 //   seed: 1
 //   trials: 400                       # per condition
+//   repeats_per_scene: 10             # 1 by default; see study.h
 //   data: {scene: uniform_volume, num_matches: 500, sigma_px: 0.5}
 //   design: full_factorial            # or one_at_a_time; see study.h
 //   factors:

@@ -73,6 +73,10 @@ StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::u
   return {plan.study.seed, condition.stream_key, trial, 0};
 }
 
+StreamName NameOfScene(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
+  return NameOfTrial(plan, condition, trial / static_cast<std::uint32_t>(plan.study.repeats_per_scene));
+}
+
 StudyPlan MakePlan(const Study& given) {
   Study study = given;
   study.data = WithCalibration(given.data);

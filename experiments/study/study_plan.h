@@ -33,6 +33,9 @@ struct StudyPlan {
 // Names the random streams of a trial, but for their purpose (data_source.h).
 StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
 
+// The same of its scene, noise and outliers, which the repeats of a scene share (Study::repeats_per_scene).
+StreamName NameOfScene(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
+
 // Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions.
 StudyPlan MakePlan(const Study& study);
 // The same for the study of a file, which the message then names.

@@ -121,7 +121,7 @@ TrialRecord Score(const MotionEstimate& estimate, const TrialData& data, double 
 TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
   const StreamName name = NameOfTrial(plan, condition, trial);
   TrialResult result;
-  result.data = condition.source->Make(name);
+  result.data = condition.source->Make(NameOfScene(plan, condition, trial));
   result.problem = Describe(result.data, condition, trial);
   result.estimates.reserve(plan.estimators.size());
   result.records.reserve(plan.estimators.size());

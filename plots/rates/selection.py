@@ -14,7 +14,7 @@ TITLES = {  # other quantities: their name in words
     "auc_5_deg": "AUC@5\u00b0", "auc_10_deg": "AUC@10\u00b0", "auc_20_deg": "AUC@20\u00b0", "maa_10_deg": "mAA(10\u00b0)",
 }
 ANSWERED = "_answered"  # the suffix of measures that leave refusals out
-DRAWN_KINDS = ("rate", "score")  # numbers between 0 and 1 with an interval
+DRAWN_KINDS = ("rate", "score", "share")  # numbers between 0 and 1 with an interval
 
 
 def title_of(quantity):
@@ -87,7 +87,8 @@ def difference_interval_in_words(rows):
 
 
 INTERVALS = {"exact": "exact 95 % (Clopper-Pearson)", "anytime_valid": "anytime-valid 95 % (confidence sequence)",
-             "weighted": "weighted 95 % (Fay-Feuer, cautious upper end)", "betting": "anytime-valid 95 % (betting)"}
+             "weighted": "weighted 95 % (Fay-Feuer, cautious upper end)", "betting": "anytime-valid 95 % (betting)",
+             "log_student": "approximate 95 % (Student on the logarithm)"}
 
 
 def interval_in_words(rows):

@@ -47,7 +47,7 @@ def cell(row, num_trials):
     """One number with its interval or standard error, and its n where that is not the row's."""
     if row is None or row["n"] == "0":
         return DASH
-    whole = {"rate": rate_cell, "score": rate_cell, "mean": mean_cell, "median": median_cell}[row["kind"]](row)
+    whole = {"rate": rate_cell, "score": rate_cell, "share": rate_cell, "mean": mean_cell, "median": median_cell}[row["kind"]](row)
     return whole if row["n"] == num_trials else joined([whole, Html("<br>"), small(f"n = {row['n']}")])
 
 

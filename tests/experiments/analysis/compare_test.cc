@@ -319,6 +319,32 @@ TEST_F(CompareMeasuresTest, OnlyWhatIsAskedForIsComparedAndCostsTheOthersAnythin
   EXPECT_TRUE(ThrowsInputError([&] { names_of({}); }, {"--of", "nothing is named"}));
 }
 
+// Two scenes of two trials, and one cut off: the repeats of a scene are one number.
+TEST_F(CompareMeasuresTest, RepeatedScenesAreComparedByTheirMeans) {
+  study_.repeats_per_scene = 2;
+  // Failures (beyond 3 deg) of standard and ours, trial by trial: 10, 00 | 11, 10 | 00.
+  Write("run", {{10.0, 1.0}, {1.0, 1.0}, {10.0, 10.0}, {10.0, 2.0}, {1.0, 1.0}});
+  const Comparison comparison =
+      ComparisonOf("run", "", {.compared = {"failure", "auc_20_deg", "max_error_median_deg"}});
+  ScoreMean failure({-1.0, 1.0}), area({-1.0, 1.0});
+  failure.Add(-0.5, 2), failure.Add(0.0);
+  area.Add((0.45 + 0.0) / 2.0), area.Add((0.0 + 0.4) / 2.0), area.Add(0.0);
+  const ComparisonRow row = Row(comparison, "failure");
+  ExpectCounts(row.counts, {1, 0, 2, 2});
+  EXPECT_EQ(row.n, 3);
+  EXPECT_TRUE(row.is_of_scenes);
+  EXPECT_NEAR(row.difference, -1.0 / 3.0, 1e-12);
+  EXPECT_NEAR(row.p_value, failure.PValue(0.0), 1e-12);
+  EXPECT_NEAR(row.interval.lower, failure.Sequence().lower, 1e-12);
+  EXPECT_NEAR(Row(comparison, "auc_20_deg").difference, area.mean(), 1e-12);
+  EXPECT_NEAR(Row(comparison, "auc_20_deg").p_value, area.PValue(0.0), 1e-12);
+  const ComparisonRow error = Row(comparison, "max_error_median_deg");
+  EXPECT_EQ(error.n, 3) << "first trials";
+  ExpectCounts(error.counts, {0, 0, 1, 2});
+  EXPECT_NE(ComparisonAsCsv(comparison).find(",betting,betting\n"), std::string::npos);
+  EXPECT_NE(ComparisonAsTable(comparison).find("Scenes are repeated"), std::string::npos);
+}
+
 TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
   const std::string table = ComparisonAsTable(ComparisonOf("run"));

@@ -159,7 +159,8 @@ TEST(TrialAsJson, SaysWhichTrialItIsAndHowItEnded) {
     EXPECT_EQ(json["estimators"][e]["rotation_error_deg"],
               Json(JsonNumber(result.records[e].rotation_error_deg)));
   }
-  EXPECT_EQ(TrialAsJson(plan, RunLast(plan, result.problem.trial), {1, 0}), TrialAsJson(plan, result, {1, 0}));
+  EXPECT_EQ(TrialAsJson(plan, RunLast(plan, result.problem.trial), {1, 0}),
+            TrialAsJson(plan, result, {1, 0}));
 }
 
 TEST(TrialAsJson, SelectsTrueInliersThatAreSpreadOverTheImage) {

@@ -20,8 +20,8 @@ namespace {
 
 std::string TextOf(const RunDescription& run) {
   std::string text =
-      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}\n", run.study, run.description, run.ademp,
-                  run.seed, run.trials, run.failure.max_rotation_error_deg,
+      fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}\n", run.study, run.description, run.ademp,
+                  run.seed, run.trials, run.repeats_per_scene, run.failure.max_rotation_error_deg,
                   run.failure.max_direction_error_deg, run.factors, run.study_yaml, run.identity,
                   run.stopping_rule, run.until_options, run.origin.program, run.origin.instruction_set);
   for (const DescribedCondition& condition : run.conditions)
@@ -42,6 +42,7 @@ TEST_F(Description, ComesBackAsItWasWritten) {
   study.description = "What, 'in\nwords'?";
   study.ademp = Ademp{"aims", "data", "", "methods", "performance"};
   study.failure = {1.0 / 3.0, 7.0};
+  study.repeats_per_scene = 3;
   study.factors.push_back({"sigma_px", {"0.5", "1", "2"}});
   RunDescription run = Describe(MakePlan(study));
   EXPECT_EQ(run.conditions.size(), 6u);
