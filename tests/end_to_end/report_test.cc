@@ -75,6 +75,31 @@ TEST_F(Report, ShowsEveryRunOnOnePage) {
   EXPECT_EQ(folder_.NumEntries(), 4) << "something was left behind";
 }
 
+// Runs whose trials are not independent, or stopped by what they saw: tests and intervals that hold there.
+TEST_F(Report, ShowsRepeatedScenesAndRunsThatStopped) {
+  const std::string repeated = folder_.Path("repeated.sqlite"), stopped = folder_.Path("stopped.sqlite");
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"run", study_, "--threads", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = RunRcme(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  run({"--repeats-per-scene", "3", "--out", repeated});
+  run({"--until", "ci=0.5", "--out", stopped});
+  const ProgramResult refused = RunRcme({"run", study_, "--out", repeated});
+  EXPECT_EQ(refused.exit_code, 2) << "another study";
+  EXPECT_THAT(refused.err, HasSubstr("repeats_per_scene"));
+  EXPECT_THAT(RunRcme({"summarize", repeated}).out, HasSubstr("Scene and sampler"));
+  EXPECT_THAT(RunRcme({"compare", repeated}).out, HasSubstr("Scenes are repeated"));
+  EXPECT_THAT(RunRcme({"compare", stopped}).out, HasSubstr("valid at every look"));
+  const ProgramResult result = RunRcme({"report", repeated, stopped, "--out", page_});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string page = ReadBytes(page_);
+  for (const char* part :
+       {"failure_flips", "anytime-valid 95 % (betting)", "p (betting)", "p (anytime-valid)"})
+    EXPECT_THAT(page, HasSubstr(part));
+}
+
 TEST_F(Report, RefusesWhatIsNoRun) {
   const std::string empty = folder_.Path("empty.sqlite"), damaged = folder_.Path("damaged.sqlite");
   { ResultStore::OpenForRun(empty, MakePlan(SmallStudy())); }

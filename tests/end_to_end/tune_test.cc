@@ -119,6 +119,8 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(IsRefused(Tune({"--out", out_, "--repeat", "3"}), {"--repeat", "--out"}));
   EXPECT_TRUE(IsRefused(Tune({"--figures", folder_.Path("f"), "--repeat", "3"}), {"--repeat", "--figures"}));
   EXPECT_TRUE(IsRefused(Tune({"--repeat", "0"}), {"--repeat", "0"}));
+  study_ = folder_.Write("repeated.yaml", "repeats_per_scene: 2\n" + ReadBytes(study_));
+  EXPECT_TRUE(IsRefused(Tune({"--out", out_}), {"repeated.yaml", "repeats_per_scene", "leave it out"}));
   study_ = folder_.Write("plain.yaml", SmallStudyYaml());
   EXPECT_TRUE(IsRefused(Tune({"--out", out_}), {"plain.yaml", "no block 'tune'"}));
   EXPECT_TRUE(IsRefused(Call("transfer", {"--out", folder_.Path("t")}), {"plain.yaml", "no block 'tune'"}));
