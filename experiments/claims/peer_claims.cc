@@ -23,7 +23,7 @@ constexpr double kThresholdSigma = 2.0;  // of the calls below, in standard devi
 Claim MagsacClaim() {
   const CaseClaim claim = {
       {"peer.magsac.degrees_of_freedom",
-       "peers",
+       "related work",
        "MAGSAC as OpenCV has it",
        "The squared residual of a true match, over its variance, has the 4 degrees of freedom of its weights",
        "squared Sampson distance of a match from the known motion over sigma^2, chi2_4",
@@ -74,7 +74,7 @@ Claim InSampleClaim() {
   }
   return {
       "peer.usac.inlier_residuals",
-      "peers",
+      "related work",
       "OpenCV's USAC, defaults",
       "The residuals of its true inliers under its own motion have the law of the noise",
       "PIT of the squared Sampson distance below the threshold of 2 sigma, chi2_1; below 0.5: fitted to them",
@@ -93,7 +93,7 @@ Claim RandomMatchesClaim() {
       },
       {target}, kAnswersToNothing.limits);
   return {"peer.usac.random_matches",
-          "peers",
+          "related work",
           "OpenCV's USAC, defaults",
           "Matches without any motion are refused (its test of non-randomness is off, and cannot be set)",
           "share of trials with all matches random in which a motion is returned",

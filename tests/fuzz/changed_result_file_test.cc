@@ -127,7 +127,7 @@ TEST_F(ChangedResultFile, RowsLostDoubledSwappedAndForeign) {
            "INSERT INTO levels VALUES (2, 0, '0.5')",
            "DELETE FROM options WHERE estimator = 1 AND name = 'mu'",
            "DELETE FROM estimators WHERE estimator = 1",
-           "INSERT INTO estimators VALUES (2, 'foreign', 'foreign')",
+           "INSERT INTO estimators VALUES (2, 'foreign', 'foreign', '')",
            "DELETE FROM totals",
            "DELETE FROM totals WHERE condition = 1",
            "INSERT INTO totals VALUES (2, 0, 0)",

@@ -198,14 +198,5 @@ TEST_F(EstimatorFileInStudy, Errors) {
 }
 
 // Those that come with the project.
-TEST(EstimatorFile, EveryFileOfTheProjectIsValid) {
-  int num_files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/experiments/estimators")) {
-    EXPECT_NO_THROW(LoadEstimatorFile(entry.path().string())) << entry.path();
-    ++num_files;
-  }
-  EXPECT_GE(num_files, 1);
-}
-
 }  // namespace
 }  // namespace rcme

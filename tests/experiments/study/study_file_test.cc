@@ -118,19 +118,6 @@ TEST(ToYaml, RoundTripOfAwkwardText) {
   EXPECT_EQ(ToYaml(again), text);
 }
 
-TEST(ToYaml, RoundTripOfTheCommittedStudies) {
-  int num_studies = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/experiments/studies")) {
-    if (entry.path().extension() != ".yaml") continue;
-    const Study study = LoadStudy(entry.path().string());
-    const std::string text = ToYaml(study);
-    EXPECT_EQ(ToYaml(ParseStudy(text, "again.yaml")), text) << entry.path();
-    EXPECT_FALSE(study.description.empty()) << entry.path();
-    ++num_studies;
-  }
-  EXPECT_GE(num_studies, 1);
-}
-
 TEST(ParseStudyErrors, UnknownKeys) {
   EXPECT_TRUE(Refuses(Edited("seed: 3", "sead: 3"), {":2:", "'sead'", "known keys", "seed", "trials"}));
   EXPECT_TRUE(Refuses(Edited("num_matches:", "matches:"), {":4:", "'matches'", "known keys", "num_matches"}));
