@@ -104,7 +104,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
        [](R r, B) { return If(IsOk(r), static_cast<double>(r.num_explained) / r.num_matches); }},
       {"num_candidates", kMean, "hypotheses that passed every test, of all trials",
        [](R r, B) { return std::optional<double>(r.counts.num_candidates); }},
-      {"time_ms", kMedian, "wall time of the call, of all trials; only with --times",
+      {"time_ms", kMedian, "processor time of the call, of all trials; only with --times",
        [](R r, B) { return std::optional<double>(1e3 * r.seconds); }},
   };
   return all;

@@ -55,7 +55,10 @@ const ColumnMeaning& MeaningOf(const std::string& column) {
       {"num_poor_inlier_sets", {"", "hypotheses whose mean entropy exceeded mu"}},
       {"num_too_small_inlier_sets", {"", "hypotheses with too few inliers"}},
       {"num_candidates", {"", "hypotheses that passed every test"}},
-      {"seconds", {"s", "wall time of the call; the only number that another run does not repeat"}},
+      {"seconds",
+       {"s",
+        "processor time of the call, of the thread that makes it; the only number that another run does not "
+        "repeat"}},
   };
   const auto found = meanings.find(column);
   if (found == meanings.end()) throw std::logic_error("no meaning is written down for the column " + column);

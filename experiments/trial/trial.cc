@@ -1,11 +1,11 @@
 #include "experiments/trial/trial.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "experiments/base/thread_time.h"
 #include "experiments/trial/answer_check.h"
 #include "stats/consistency.h"
 
@@ -127,11 +127,11 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   result.records.reserve(plan.estimators.size());
   for (size_t e = 0; e < plan.estimators.size(); ++e) {
     RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
-    const auto start = std::chrono::steady_clock::now();
+    const double start = ThreadSeconds();
     MotionEstimate estimate = plan.estimators[e]->Estimate(result.data.problem, sampling_rng);
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const double seconds = ThreadSeconds() - start;
     result.estimates.push_back(Judged(std::move(estimate), result.data.problem.matches.size()));
-    TrialRecord record = ScoreJudged(result.estimates.back(), result.data, elapsed.count());
+    TrialRecord record = ScoreJudged(result.estimates.back(), result.data, seconds);
     record.condition = condition.index;
     record.trial = trial;
     record.estimator = static_cast<std::uint32_t>(e);

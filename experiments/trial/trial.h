@@ -27,7 +27,8 @@ struct TrialRecord {
   bool failed_by_kappa = false;
   int num_explained = 0;  // of all matches, by the refined motion
   LoopCounts counts;
-  double seconds = 0.0;  // wall time of the call; the only field that is not a function of the trial's name
+  double seconds = 0.0;  // processor time of the call, of its thread; the only field that
+                         // is not a function of the trial's name
 };
 
 // What is kept of the problem of one trial.
