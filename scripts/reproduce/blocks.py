@@ -9,7 +9,7 @@
 
 So a page says itself what each of its tables is made of. Kinds:
 
-    rates TABLE     a row per level of `rows`, a column per level of `across` (default: estimator), each cell the
+    rates TABLE ... the rows of one table or several; a row per level of `rows`, a column per level of `across` (default: estimator), each cell the
                     quantities of `cells`; further columns about the problem by `scene: quantity as Heading; ...`;
                     `where` picks rows, `only` picks columns, `having` leaves out rows without that column, `format`
                     says how a cell is shown (tables.py)
@@ -62,7 +62,7 @@ class Spec:
 
 
 def rates(spec):
-    rows = read_table(spec.argument)
+    rows = [row for name in spec.argument.split() for row in read_table(name)]
     rows = select(rows, spec.get("where")) if spec.get("where") else list(rows)
     factors, across = spec.parts("rows"), spec.get("across", "estimator")
     scene = spec.parts("scene")
