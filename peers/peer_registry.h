@@ -3,7 +3,7 @@
 namespace rcme {
 
 // Adds the estimators of other libraries to the table (estimator_registry.h), each with its library's version
-// in its sentence. To be called once, before anything reads the table, from one thread. OpenCV is told to
+// in its sentence. To be called once, before anything reads the table, from one thread. OpenCV is set to
 // start no threads of its own.
 //
 // Their answers are pure functions of problem and stream as everybody's, but of the library too: another

@@ -64,7 +64,6 @@ class BlockSource<FivePoint> {
                                                       const MatchBlocks& matches, const HypothesisId& id);
 
  private:
-  // Places of samples_.
   void SolveSamples(const MatchBlocks& matches);
   void SolveOne(const MatchBlocks& matches, const Sample& sample);
   int CountModels(size_t place) const { return models_.begin[place + 1] - models_.begin[place]; }
