@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ enum class MotionStatus {
   kTooFewExplained,         // the refined motion explains a smaller share of the matches than was asked for
   kDirectionNotObservable,  // the parallax is within its noise: the rotation is given, the direction is not
   kNotBetterThanChance,     // no more matches agree with the motion than would agree with any motion
+  kTooUncertain,            // the probability that the motion is wrong is greater than what was allowed
   kLibraryError,  // another library that the estimator calls failed: an exception, or no finite motion
   kInvalidInput,  // NaN or infinite coordinates, a singular camera, a noise level not positive
   // Never an estimator's own: what the check of its answer makes of kOk.
@@ -38,6 +40,25 @@ struct LoopCounts {
   int num_poor_inlier_sets = 0;       // failed the inlier quality test (eq::inlier-quality-test)
   int num_too_small_inlier_sets = 0;  // failed the size condition (eq:inlier_size_cond)
   int num_candidates = 0;             // |C| (eq::candidate-set)
+};
+
+// What makes a motion uncertain first of all; the estimator's message says it in words, with numbers.
+enum class Doubt {
+  kNone,              // nothing: the motion is very likely right, or the estimator does not ask
+  kOtherMotion,       // another motion explains matches that this one does not
+  kPlane,             // the matches lie near a plane: two motions explain them
+  kFewMatchesDecide,  // one or a few matches with a large influence decide between motions
+  kOppositeWay,       // the direction of translation may have the opposite sign
+  kLowParallax,       // hardly any parallax: the direction is poorly determined
+  kFewMatches,        // few matches agree with the motion, chance might give as many
+};
+
+// Another motion that explains the matches, with what speaks for it.
+struct MotionMode {
+  RelativePose cam2_from_cam1;
+  Matrix5d pose_cov = Matrix5d::Zero();  // 5x5 [rotation, direction], rad^2
+  double weight = 0.0;                   // probability that it is the right one
+  double explained_share = 0.0;          // of all matches: those it explains and the answer does not
 };
 
 struct MotionEstimate {
@@ -68,6 +89,14 @@ struct MotionEstimate {
   int num_explained = 0;
 
   LoopCounts counts;
+
+  // Of estimators that give probabilities; the others leave NaN and empty lists.
+  double failure_probability = std::numeric_limits<double>::quiet_NaN();  // beyond the bounds of its options
+  double sigma_estimated_px = std::numeric_limits<double>::quiet_NaN();   // from the residuals
+  double sigma_estimated_sd_px = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> inlier_probabilities;  // one per match
+  std::vector<MotionMode> other_modes;       // the most likely first
+  Doubt doubt = Doubt::kNone;
 };
 
 }  // namespace rcme

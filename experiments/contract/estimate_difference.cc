@@ -38,6 +38,12 @@ Numbers NumbersOf(const MotionEstimate& e) {
                      {"num_candidates", e.counts.num_candidates},
                      {"model of the hypothesis", e.hypothesis.model},
                      {"size of its sample", e.hypothesis.sample.size()},
+                     {"failure_probability", e.failure_probability},
+                     {"sigma_estimated_px", e.sigma_estimated_px},
+                     {"sigma_estimated_sd_px", e.sigma_estimated_sd_px},
+                     {"doubt", static_cast<double>(e.doubt)},
+                     {"number of other modes", static_cast<double>(e.other_modes.size())},
+                     {"number of inlier probabilities", static_cast<double>(e.inlier_probabilities.size())},
                      {"number of inliers", static_cast<double>(e.inliers.size())}};
   Add("R", e.cam2_from_cam1.R, &numbers);
   Add("t", e.cam2_from_cam1.t, &numbers);
@@ -46,6 +52,14 @@ Numbers NumbersOf(const MotionEstimate& e) {
   Add("initial t", e.initial_pose.t, &numbers);
   for (const int index : e.hypothesis.sample) numbers.emplace_back("a match of the sample", index);
   for (const int index : e.inliers) numbers.emplace_back("an inlier", index);
+  for (const double p : e.inlier_probabilities) numbers.emplace_back("an inlier probability", p);
+  for (const MotionMode& mode : e.other_modes) {
+    Add("R of a mode", mode.cam2_from_cam1.R, &numbers);
+    Add("t of a mode", mode.cam2_from_cam1.t, &numbers);
+    Add("pose_cov of a mode", mode.pose_cov, &numbers);
+    numbers.emplace_back("weight of a mode", mode.weight);
+    numbers.emplace_back("explained share of a mode", mode.explained_share);
+  }
   return numbers;
 }
 

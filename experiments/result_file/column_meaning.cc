@@ -55,6 +55,18 @@ const ColumnMeaning& MeaningOf(const std::string& column) {
       {"num_poor_inlier_sets", {"", "hypotheses whose mean entropy exceeded mu"}},
       {"num_too_small_inlier_sets", {"", "hypotheses with too few inliers"}},
       {"num_candidates", {"", "hypotheses that passed every test"}},
+      {"failure_probability",
+       {"",
+        "probability that the motion is beyond the bounds, as the estimator states it; NULL: it states "
+        "none"}},
+      {"sigma_estimated_px", {"px", "noise per coordinate, estimated from the residuals; NULL likewise"}},
+      {"sigma_estimated_sd_px", {"px", "its standard deviation, as the estimator states it; NULL likewise"}},
+      {"inlier_brier",
+       {"", "mean squared error of the inlier probabilities, undetectable wrong matches left aside"}},
+      {"doubt",
+       {"",
+        "what makes the motion uncertain: 0 nothing, 1 another motion, 2 a plane, 3 few influential matches, "
+        "4 the opposite direction, 5 low parallax, 6 few matches"}},
       {"seconds",
        {"s",
         "processor time of the call, of the thread that makes it; the only number that another run does not "

@@ -45,12 +45,28 @@ Description FaultOfCounts(const MotionEstimate& e, size_t num_matches) {
   return std::nullopt;
 }
 
+// NaN stands for "none is given".
+Description FaultOfProbabilities(const MotionEstimate& e, size_t num_matches) {
+  const auto is_probability = [](double p) { return p >= 0.0 && p <= 1.0; };
+  if (!std::isnan(e.failure_probability) && !is_probability(e.failure_probability))
+    return fmt::format("failure_probability is {}", e.failure_probability);
+  for (const double sigma : {e.sigma_estimated_px, e.sigma_estimated_sd_px}) {
+    if (sigma < 0.0) return fmt::format("an estimate of sigma or its standard deviation is {} px", sigma);
+  }
+  const std::vector<double>& p = e.inlier_probabilities;
+  if (!p.empty() && p.size() != num_matches)
+    return fmt::format("{} inlier probabilities of {} matches", p.size(), num_matches);
+  if (!std::ranges::all_of(p, is_probability)) return Description("an inlier probability is outside [0, 1]");
+  return std::nullopt;
+}
+
 // Everything but the motion and its covariance.
 Description FaultOfAccount(const MotionEstimate& estimate, size_t num_matches) {
   if (!IsKnown(estimate.status))
     return fmt::format("status {} is not a known status", static_cast<int>(estimate.status));
-  const Description inliers = FaultOfInliers(estimate.inliers, num_matches);
-  return inliers ? inliers : FaultOfCounts(estimate, num_matches);
+  if (const Description inliers = FaultOfInliers(estimate.inliers, num_matches)) return inliers;
+  if (const Description counts = FaultOfCounts(estimate, num_matches)) return counts;
+  return FaultOfProbabilities(estimate, num_matches);
 }
 
 Description FaultOfMotion(const MotionEstimate& estimate) {

@@ -58,6 +58,21 @@ void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecor
   if (num_true > 0) record->inlier_recall = 1.0 * num_found / num_true;
 }
 
+// NaN without probabilities or without the truth.
+double BrierOfInliers(const MotionEstimate& estimate, const Truth& truth) {
+  const size_t n = estimate.inlier_probabilities.size();
+  if (n == 0 || truth.is_inlier_true.size() != n) return kNaN;
+  double sum = 0.0;
+  int count = 0;
+  for (size_t i = 0; i < n; ++i) {
+    if (!truth.is_undetectable.empty() && truth.is_undetectable[i]) continue;
+    const double error = estimate.inlier_probabilities[i] - (truth.is_inlier_true[i] ? 1.0 : 0.0);
+    sum += error * error;
+    ++count;
+  }
+  return count == 0 ? kNaN : sum / count;
+}
+
 ProblemRecord Describe(const TrialData& data, const Condition& condition, std::uint32_t trial) {
   const std::vector<bool>& is_inlier = data.truth.is_inlier_true;
   const double num_inliers =
@@ -80,6 +95,11 @@ TrialRecord ScoreJudged(const MotionEstimate& judged, const TrialData& data, dou
   record.failed_by_kappa = judged.failed_by_kappa;
   record.num_explained = judged.num_explained;
   record.counts = judged.counts;
+  record.failure_probability = judged.failure_probability;
+  record.sigma_estimated_px = judged.sigma_estimated_px;
+  record.sigma_estimated_sd_px = judged.sigma_estimated_sd_px;
+  record.inlier_brier = BrierOfInliers(judged, data.truth);
+  record.doubt = static_cast<int>(judged.doubt);
   record.seconds = seconds;
   ScoreMotion(judged, data.truth, &record);
   ScoreInliers(judged, data.truth, &record);

@@ -27,6 +27,11 @@ struct TrialRecord {
   bool failed_by_kappa = false;
   int num_explained = 0;  // of all matches, by the refined motion
   LoopCounts counts;
+  double failure_probability = 0.0;  // as the estimator states it; NaN: it states none
+  double sigma_estimated_px = 0.0, sigma_estimated_sd_px = 0.0;
+  double inlier_brier =
+      0.0;               // mean squared error of the inlier probabilities, over the matches that can be told
+  int doubt = 0;         // number of the Doubt (motion_estimate.h)
   double seconds = 0.0;  // processor time of the call, of its thread; the only field that
                          // is not a function of the trial's name
 };

@@ -32,6 +32,11 @@ void VisitFields(Record& record, Visitor&& visit) {
   visit("num_poor_inlier_sets", record.counts.num_poor_inlier_sets);
   visit("num_too_small_inlier_sets", record.counts.num_too_small_inlier_sets);
   visit("num_candidates", record.counts.num_candidates);
+  visit("failure_probability", record.failure_probability);
+  visit("sigma_estimated_px", record.sigma_estimated_px);
+  visit("sigma_estimated_sd_px", record.sigma_estimated_sd_px);
+  visit("inlier_brier", record.inlier_brier);
+  visit("doubt", record.doubt);
   visit("seconds", record.seconds);
 }
 
