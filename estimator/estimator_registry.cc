@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "estimator/estimators/rcme.h"
+#include "estimator/estimators/rcme_calibrated.h"
 #include "estimator/estimators/standard.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -19,6 +20,9 @@ std::vector<EstimatorEntry>& Table() {
        [] { return RcmeModel(SampleTest::kOff); }},
       {"rcme", "RCME: model-sample test, inlier set quality test, selection by entropy, refinement",
        [] { return RcmeModel(SampleTest::kOn); }},
+      {"rcme_calibrated",
+       "RCME that estimates the noise, keeps several explanations and states the probability that it is wrong",
+       RcmeCalibratedModel},
   };
   return registry;
 }

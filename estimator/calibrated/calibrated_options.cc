@@ -1,0 +1,46 @@
+#include "estimator/calibrated/calibrated_options.h"
+
+#include <fmt/format.h>
+
+#include "parameters/input_error.h"
+
+namespace rcme {
+
+std::vector<Parameter> Parameters(CalibratedOptions& o) {
+  using P = Parameter;
+  return {
+      P::Integer("min_samples", &o.min_samples, {8, 1e6}, "least number of minimal samples of five matches"),
+      P::Integer("max_samples", &o.max_samples, {8, 1e6},
+                 "greatest number; as many are drawn as find a sample without a wrong match with probability "
+                 "0.999, by the share of matches that the best hypothesis explains"),
+      P::Integer("num_candidates", &o.num_candidates, {1, 1000}, "hypotheses that are refined a little"),
+      P::Integer("num_modes", &o.num_modes, {1, 100}, "of these, how many are refined to the optimum"),
+      P::Real("max_rotation_error_deg", &o.max_rotation_error_deg, {1e-6, 180.0}, "deg",
+              "the stated probability of failure is that of a greater error of the rotation"),
+      P::Real("max_direction_error_deg", &o.max_direction_error_deg, {1e-6, 180.0}, "deg",
+              "or of a greater error of the direction"),
+      P::Real("max_failure_probability", &o.max_failure_probability, {0.0, 1.0}, "",
+              "a motion that is more likely than this to be wrong is refused (too_uncertain); 1: none is"),
+      P::Choice("sigma", &o.sigma,
+                {{"estimated", SigmaKnowledge::kEstimated}, {"assumed", SigmaKnowledge::kAssumed}},
+                "noise level: estimated from the residuals, begun at the assumed one, or taken as known"),
+      P::Choice("covariance", &o.covariance,
+                {{"information", CovarianceKind::kInformation}, {"sandwich", CovarianceKind::kSandwich}},
+                "of the motion: inverse information, or from the residuals themselves (HC3)"),
+      P::Real("second_motion_odds", &o.second_motion_odds, {0.0, 1.0}, "",
+              "odds that a second motion which explains as many matches as the answer is the camera's own"),
+      P::Real("focal_sd", &o.focal_sd, {0.0, 0.5}, "",
+              "relative standard deviation of the focal lengths; its effect is added to the covariance"),
+      P::Real("principal_point_sd_px", &o.principal_point_sd_px, {0.0, 1e4}, "px",
+              "standard deviation of the principal points per coordinate, likewise"),
+  };
+}
+
+void Validate(const CalibratedOptions& options) {
+  if (options.min_samples > options.max_samples) {
+    throw InputError(fmt::format("min_samples is {}, more than max_samples, {}", options.min_samples,
+                                 options.max_samples));
+  }
+}
+
+}  // namespace rcme

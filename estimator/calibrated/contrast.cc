@@ -1,0 +1,71 @@
+#include "estimator/calibrated/contrast.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rcme {
+namespace {
+
+constexpr int kShareSteps = 8;
+
+// The share of right matches among `set` at which its likelihood is greatest, by expectation-maximisation,
+// with half a match of prior on either side.
+double ShareAmong(const std::vector<size_t>& set, const Explanation& mode, double background) {
+  double share = 0.5;
+  for (int step = 0; step < kShareSteps; ++step) {
+    double right = 0.5;
+    for (const size_t i : set) {
+      const double inlier = share * mode.left_out_density[i];
+      right += inlier / (inlier + (1.0 - share) * background);
+    }
+    share = right / (static_cast<double>(set.size()) + 1.0);
+  }
+  return share;
+}
+
+struct Moments {
+  double sum = 0.0, sum_squares = 0.0;
+  double count = 0.0;
+  void Add(double x) {
+    sum += x;
+    sum_squares += x * x;
+    count += 1.0;
+  }
+  // Sum of squares about the mean.
+  double Scatter() const { return count > 0.0 ? std::max(sum_squares - sum * sum / count, 0.0) : 0.0; }
+};
+
+}  // namespace
+
+double Contrast::Verdict() const {
+  const double beyond = std::max(std::abs(shared) - 2.0 * std::sqrt(shared_variance), 0.0);
+  return exclusive + std::copysign(beyond, shared);
+}
+
+Contrast CompareModes(const Explanation& a, const Explanation& b, double background) {
+  Contrast contrast;
+  std::vector<size_t> only_one;
+  Moments shared;
+  for (size_t i = 0; i < a.probability.size(); ++i) {
+    const bool by_a = a.probability[i] > 0.5, by_b = b.probability[i] > 0.5;
+    if (by_a && by_b) {
+      shared.Add(std::log(a.left_out_density[i] / b.left_out_density[i]));
+    } else if (by_a || by_b) {
+      only_one.push_back(i);
+      ++(by_a ? contrast.num_only_a : contrast.num_only_b);
+    }
+  }
+  const double share_a = ShareAmong(only_one, a, background), share_b = ShareAmong(only_one, b, background);
+  Moments exclusive;
+  for (const size_t i : only_one) {
+    exclusive.Add(std::log((share_a * a.left_out_density[i] + (1.0 - share_a) * background) /
+                           (share_b * b.left_out_density[i] + (1.0 - share_b) * background)));
+  }
+  contrast.exclusive = exclusive.sum;
+  contrast.shared = shared.sum;
+  contrast.shared_variance = shared.Scatter();
+  contrast.variance = exclusive.Scatter() + 0.25 * shared.Scatter();
+  return contrast;
+}
+
+}  // namespace rcme

@@ -1,0 +1,74 @@
+#include "estimator/calibrated/explain_matches.h"
+
+#include <algorithm>
+
+#include "estimator/calibrated/candidates.h"
+#include "estimator/calibrated/leverage_branches.h"
+#include "estimator/calibrated/twisted_pair.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kMostSteps = 20;
+constexpr double kPlanarShare =
+    0.6;  // of a mode's right matches near one plane: its other motion is looked at
+
+class ModeList {
+ public:
+  ModeList(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior)
+      : problem_(problem), matches_(matches), prior_(prior) {}
+
+  const std::vector<ExplainedMode>& modes() const { return modes_; }
+  bool Knows(const Mode& mode) const {
+    return std::ranges::any_of(modes_,
+                               [&](const ExplainedMode& known) { return IsSameMode(known.mode, mode); });
+  }
+  void Add(Mode mode) {
+    Explanation explanation = Explain(matches_, mode);
+    modes_.push_back({std::move(mode), std::move(explanation)});
+  }
+  void AddBranches(size_t i) {
+    for (Mode& branch : LeverageBranches(matches_, prior_, modes_[i].mode, modes_[i].explanation)) {
+      if (!Knows(branch)) Add(std::move(branch));
+    }
+  }
+  void AddTwistedPair(size_t i) {
+    const RelativePose pose = modes_[i].mode.pose;
+    const std::optional<Eigen::Vector3d> plane =
+        FindPlane(problem_, pose, modes_[i].explanation.probability, kPlanarShare);
+    const std::optional<RelativePose> other = plane ? OtherMotionOfPlane(pose, *plane) : std::nullopt;
+    if (!other) return;
+    Mode mode = modes_[i].mode;
+    mode.pose = *other;
+    mode.origin = ModeOrigin::kTwistedPair;
+    if (FitMode(matches_, prior_, kMostSteps, &mode) && !Knows(mode)) Add(std::move(mode));
+  }
+  // The likelihood's optimum for the other sign of t is not sought: only c(z) tells the two apart.
+  void AddOppositeWay(size_t i) {
+    Mode mode = modes_[i].mode;
+    mode.pose.t = -mode.pose.t;
+    mode.origin = ModeOrigin::kOppositeWay;
+    FitMode(matches_, prior_, 1, &mode);
+    if (!Knows(mode)) Add(std::move(mode));
+  }
+
+ private:
+  const MotionProblem& problem_;
+  const MatchBlocks& matches_;
+  const MixturePrior& prior_;
+  std::vector<ExplainedMode> modes_;
+};
+
+}  // namespace
+
+std::vector<ExplainedMode> ExplainMatches(const MotionProblem& problem, const MatchBlocks& matches,
+                                          const MixturePrior& prior, std::vector<Mode> modes) {
+  ModeList list(problem, matches, prior);
+  for (Mode& mode : modes) list.Add(std::move(mode));
+  for (size_t i = 0, count = list.modes().size(); i < count; ++i) list.AddBranches(i);
+  for (size_t i = 0, count = list.modes().size(); i < count; ++i) list.AddTwistedPair(i);
+  for (size_t i = 0, count = list.modes().size(); i < count; ++i) list.AddOppositeWay(i);
+  return list.modes();
+}
+
+}  // namespace rcme

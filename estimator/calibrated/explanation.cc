@@ -1,0 +1,48 @@
+#include "estimator/calibrated/explanation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rcme {
+
+double NoiseDensity(const NoiseLaw& noise, double u) {
+  const double inverse = 1.0 / (1.0 + u * u / noise.dof());
+  double power = inverse;
+  for (int i = 1; i < noise.power; ++i) power *= inverse;
+  return noise.peak * power;
+}
+
+double NoiseWeight(const NoiseLaw& noise, double u) { return 2.0 * noise.power / (noise.dof() + u * u); }
+
+Explanation Explain(const MatchBlocks& matches, const Mode& mode) {
+  const auto n = static_cast<size_t>(matches.num_matches());
+  const MixtureParameters& m = mode.mixture;
+  Explanation e;
+  EvaluateTerms(matches, mode.pose, &e.terms);
+  e.inlier_density.resize(n);
+  e.probability.resize(n);
+  e.leverage.assign(n, 0.0);
+  e.left_out_density.resize(n);
+  const double outlier = (1.0 - m.inlier_ratio) * m.outlier_density;
+  for (size_t i = 0; i < n; ++i) {
+    const double u = e.terms.residual[i] / m.scale;
+    const double in_front = CheiralityFactor(e.terms.depth[i] / m.scale) / m.scale;
+    e.inlier_density[i] = NoiseDensity(m.noise, u) * in_front;
+    const double inlier = m.inlier_ratio * e.inlier_density[i];
+    e.probability[i] = inlier / (inlier + outlier);
+    e.num_explained += e.probability[i] > 0.5;
+    e.left_out_density[i] = e.inlier_density[i];
+    const bool is_used = mode.used[i / kBlockSize] >> (i % kBlockSize) & 1;
+    if (!is_used || e.probability[i] < 1e-3) continue;
+    Vector5d J;
+    for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = e.terms.derivative[k][i];
+    const double information = e.probability[i] * NoiseWeight(m.noise, u) / (m.scale * m.scale);
+    const double h = std::clamp(information * J.dot(mode.inverse_hessian * J), 0.0, 1.0);
+    e.leverage[i] = h;
+    const double left = std::sqrt(std::max(1.0 - h, 1e-4));
+    e.left_out_density[i] = NoiseDensity(m.noise, u / left) * left * in_front;
+  }
+  return e;
+}
+
+}  // namespace rcme

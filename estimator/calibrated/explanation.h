@@ -1,0 +1,31 @@
+// What a mode says of every match: the density of its residual, whether it is right, and its influence.
+#pragma once
+
+#include <vector>
+
+#include "estimator/calibrated/mode.h"
+#include "estimator/kernels/mixture_sums.h"
+
+namespace rcme {
+
+struct Explanation {
+  MatchTermLists terms;
+  std::vector<double> inlier_density;  // f(r / s) c(z / s) / s
+  std::vector<double> probability;     // that the match is right
+  // p v J H^-1 J' / s^2, at most 1: the share of a match's residual that the motion follows.
+  std::vector<double> leverage;
+  // The density of the residual that the motion fitted without the match would leave, r / (1 - h), whose
+  // standard deviation is s / sqrt(1 - h).
+  std::vector<double> left_out_density;
+  int num_explained = 0;  // matches that are right with a probability of more than one half
+};
+
+// One entry per match; a match that the mode does not use is left out by definition.
+Explanation Explain(const MatchBlocks& matches, const Mode& mode);
+
+// f(u) of the noise law.
+double NoiseDensity(const NoiseLaw& noise, double u);
+// v = 2k / (2k - 1 + u^2)
+double NoiseWeight(const NoiseLaw& noise, double u);
+
+}  // namespace rcme

@@ -1,0 +1,141 @@
+#include "estimator/calibrated/hypothesis_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/kernels/block_source.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kFirstMatches = 64;
+constexpr size_t kLeastFullScores = 40;  // of a round; a quarter of it where that is more
+// Two hypotheses are the same motion, or near to each other, by |<E_a, E_b>| / 2.
+constexpr double kSame = 0.9999, kNear = 0.98;
+
+struct RankedModel {
+  double F[9];  // whitened
+  double first_score, score;
+};
+
+// The samples that are needed when a share `w` of the matches is right: 1 - (1 - w^5)^N >= 0.999.
+double SamplesNeeded(double w) {
+  const double all_right = std::pow(std::clamp(w, 1e-3, 0.999), 5);
+  return std::log(1e-3) / std::log1p(-all_right);
+}
+
+// The share of right matches that a score shows: a right match counts about 0.88, if the motion is exact; it
+// is not, so that more samples are drawn than needed.
+double InlierShare(double score, int num_matches) { return score / (0.88 * num_matches); }
+
+class Rounds {
+ public:
+  Rounds(const MatchBlocks& matches, const ScoreMatches& score_matches, RandomStream& rng)
+      : matches_(matches), scores_(score_matches), rng_(rng) {}
+
+  // Draws until `num_samples` are drawn in all, scores their models.
+  void Draw(int num_samples) {
+    const int first_end = std::min(kFirstMatches, scores_.num_matches());
+    while (num_drawn_ < num_samples) {
+      source_.FillNext(matches_, RequestedOutputs::kNone, rng_, &block_, &proposals_);
+      for (int lane = 0; lane < kBlockSize; ++lane) {
+        num_drawn_ += proposals_[static_cast<size_t>(lane)].is_last ? 1 : 0;
+        ++counts_.num_hypotheses;
+        if (!(block_.is_model >> lane & 1)) {
+          ++counts_.num_degenerate_samples;
+          continue;
+        }
+        RankedModel model;
+        for (int i = 0; i < 9; ++i) model.F[i] = block_.F[i][lane];
+        model.first_score = model.score = scores_.SumScores(model.F, kSoftScale, 0, first_end);
+        fresh_.push_back(model);
+      }
+    }
+    ScoreBest(first_end);
+  }
+  double best_score() const { return best_score_; }
+  const std::vector<RankedModel>& scored() const { return scored_; }
+  const LoopCounts& counts() const { return counts_; }
+
+ private:
+  // The best of the fresh models on the rest of the matches.
+  void ScoreBest(int first_end) {
+    const size_t count = std::min(std::max(kLeastFullScores, fresh_.size() / 4), fresh_.size());
+    std::partial_sort(
+        fresh_.begin(), fresh_.begin() + static_cast<std::ptrdiff_t>(count), fresh_.end(),
+        [](const RankedModel& a, const RankedModel& b) { return a.first_score > b.first_score; });
+    for (size_t i = 0; i < count; ++i) {
+      RankedModel& model = fresh_[i];
+      model.score += scores_.SumScores(model.F, kSoftScale, first_end, scores_.num_matches());
+      best_score_ = std::max(best_score_, model.score);
+      scored_.push_back(model);
+    }
+    fresh_.clear();
+  }
+
+  const MatchBlocks& matches_;
+  const ScoreMatches& scores_;
+  RandomStream& rng_;
+  BlockSource<FivePoint> source_;
+  HypothesisBlock block_;
+  ProposalBlock proposals_{};
+  std::vector<RankedModel> fresh_, scored_;
+  double best_score_ = 0.0;
+  int num_drawn_ = 0;
+  LoopCounts counts_;
+};
+
+// E of an F in whitened coordinates, Frobenius norm sqrt(2).
+Eigen::Matrix3d EssentialFromWhitened(const double* F, const RayScale& scale) {
+  Eigen::Matrix3d E;
+  const double left[3] = {scale.x2, scale.y2, 1.0}, right[3] = {scale.x1, scale.y1, 1.0};
+  for (int i = 0; i < 9; ++i) E(i / 3, i % 3) = F[i] / (left[i / 3] * right[i % 3]);
+  return E * (std::sqrt(2.0) / E.norm());
+}
+
+double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return 0.5 * std::abs(a.cwiseProduct(b).sum());
+}
+
+// The best distinct ones, then those far from all that were taken.
+std::vector<ScoredEssential> SelectDistinct(const std::vector<RankedModel>& models, const RayScale& scale,
+                                            size_t count) {
+  std::vector<const RankedModel*> order;
+  for (const RankedModel& model : models) order.push_back(&model);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const RankedModel* a, const RankedModel* b) { return a->score > b->score; });
+  std::vector<ScoredEssential> taken;
+  const auto take = [&](size_t up_to, double too_like) {
+    for (const RankedModel*& model : order) {
+      if (taken.size() >= up_to) return;
+      if (model == nullptr) continue;
+      const ScoredEssential next{EssentialFromWhitened(model->F, scale), model->score};
+      const bool is_new = std::ranges::all_of(
+          taken, [&](const ScoredEssential& other) { return Likeness(next.E, other.E) < too_like; });
+      if (!is_new) continue;
+      taken.push_back(next);
+      model = nullptr;
+    }
+  };
+  take((count + 1) / 2, kSame);
+  take(count, kNear);
+  return taken;
+}
+
+}  // namespace
+
+HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
+                                  const CalibratedOptions& options, RandomStream& rng) {
+  Rounds rounds(matches, score_matches, rng);
+  for (int num_samples = options.min_samples;;) {
+    rounds.Draw(num_samples);
+    const double needed = SamplesNeeded(InlierShare(rounds.best_score(), matches.num_matches()));
+    const int enough = static_cast<int>(std::min(std::ceil(needed), 1.0 * options.max_samples));
+    if (num_samples >= enough) break;
+    num_samples = std::min(enough, 2 * num_samples);
+  }
+  return {SelectDistinct(rounds.scored(), matches.ray_scale(), static_cast<size_t>(options.num_candidates)),
+          rounds.counts()};
+}
+
+}  // namespace rcme

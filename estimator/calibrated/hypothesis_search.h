@@ -1,0 +1,36 @@
+// Step 1 of rcme_calibrated: essential matrices of five-point samples, ranked by a soft score.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "estimator/calibrated/calibrated_options.h"
+#include "estimator/kernels/match_blocks.h"
+#include "estimator/kernels/soft_score.h"
+#include "estimator/motion_estimate.h"
+#include "stats/random.h"
+
+namespace rcme {
+
+// Scale of the soft score in units of the assumed sigma. Little depends on it, so that a sigma assumed
+// wrongly by four does little harm.
+inline constexpr double kSoftScale = 2.5;
+
+struct ScoredEssential {
+  Eigen::Matrix3d E = Eigen::Matrix3d::Zero();  // in rays, Frobenius norm sqrt(2), up to its sign
+  double score = 0.0;                           // of all matches
+};
+
+struct HypothesisSearch {
+  std::vector<ScoredEssential> candidates;  // the best first
+  LoopCounts counts;
+};
+
+// Draws between options.min_samples and options.max_samples samples, in rounds that double: as many as give a
+// sample of right matches alone with probability 0.999. Every hypothesis is scored on the first kFirstMatches
+// matches, whose order must not mean anything, and the best of a round on all. Returned are the best
+// `options.num_candidates` distinct ones, half of them far from all others.
+HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
+                                  const CalibratedOptions& options, RandomStream& rng);
+
+}  // namespace rcme

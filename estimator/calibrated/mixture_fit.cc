@@ -1,0 +1,99 @@
+#include "estimator/calibrated/mixture_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/kernels/mixture_sums.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kLogScaleSd = 1.4;   // of the prior of log s: a factor of four
+constexpr double kScaleRange = 16.0;  // s stays within this factor of 1
+// A step may lower the likelihood by so much, nats: c(z) is not in the gradient, and may fall for a match
+// near an epipole.
+constexpr double kTolerance = 1.0;
+constexpr double kNegligibleDecrement = 4e-4, kSmallDecrement = 0.05;  // twice the gain of a full step, nats
+constexpr double kPriorWrongNear = 5.0;  // wrong matches that the prior of q counts for
+
+double LogPrior(const MixtureParameters& mixture) {
+  const double log_scale = std::log(mixture.scale / mixture.noise.scale_of_gaussian) / kLogScaleSd;
+  return -0.5 * log_scale * log_scale;
+}
+
+// One step of expectation-maximisation. The motion takes five degrees of freedom of the residuals.
+MixtureParameters Updated(const MixtureParameters& old, const MixtureSums& sums, int num_used,
+                          const MixturePrior& prior) {
+  MixtureParameters next = old;
+  if (prior.estimates_scale) {
+    const double freedom = std::max(sums.num_right - 5.0, 1.0);
+    const double pull =
+        std::log(old.scale / old.noise.scale_of_gaussian) / (kLogScaleSd * kLogScaleSd * freedom);
+    const double variance = sums.sum_squares / freedom / std::clamp(1.0 + pull, 0.25, 4.0);
+    next.scale = std::clamp(std::sqrt(variance), 1.0 / kScaleRange, kScaleRange);
+  }
+  next.inlier_ratio = std::clamp((sums.num_right + 0.5) / (num_used + 1.0), 0.01, 0.99);
+  const double wrong = num_used - sums.num_right;
+  next.outlier_density = (sums.num_wrong_near + kPriorWrongNear) /
+                         (2.0 * kNearResidual * wrong + kPriorWrongNear / prior.uniform_density);
+  next.outlier_density = std::clamp(next.outlier_density, 0.1 * prior.uniform_density,
+                                    std::max(10.0 * prior.uniform_density, 0.5 / kNearResidual));
+  return next;
+}
+
+}  // namespace
+
+MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inlier_ratio) {
+  MixtureParameters guess;
+  guess.scale = scale;
+  guess.inlier_ratio = std::clamp(inlier_ratio, 0.05, 0.95);
+  guess.outlier_density = prior.uniform_density;
+  return guess;
+}
+
+bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
+             MixtureUpdate update) {
+  const int num_used = CountIn(mode->used);
+  MixtureSums at = SumMixture(matches, mode->used, mode->pose, mode->mixture);
+  double damping = 1e-3;
+  bool is_converged = false;
+  double decrement = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < max_steps && !is_converged; ++step) {
+    Matrix5d damped = at.hessian;
+    damped.diagonal() *= 1.0 + damping;
+    const Vector5d move = -damped.llt().solve(at.gradient);
+    if (!move.allFinite()) return false;
+    Mode next = *mode;
+    next.pose = Retract(mode->pose, move);
+    if (update == MixtureUpdate::kAll) next.mixture = Updated(mode->mixture, at, num_used, prior);
+    const MixtureSums there = SumMixture(matches, mode->used, next.pose, next.mixture);
+    const double gain =
+        there.log_likelihood + LogPrior(next.mixture) - at.log_likelihood - LogPrior(mode->mixture);
+    if (!std::isfinite(there.log_likelihood)) return false;
+    if (gain <
+        -0.05) {  // an update of the scale alone may cost a little: its degrees of freedom are corrected
+      damping = std::max(10.0 * damping, 0.1);
+      if (damping > 1e6) return false;
+      mode->mixture = next.mixture;
+      at = SumMixture(matches, mode->used, mode->pose, mode->mixture);
+      continue;
+    }
+    damping = std::max(0.1 * damping, 1e-6);
+    decrement = -move.dot(at.gradient);
+    is_converged = decrement < kNegligibleDecrement &&
+                   std::abs(next.mixture.scale - mode->mixture.scale) < 2e-3 * next.mixture.scale;
+    mode->pose = next.pose;
+    mode->mixture = next.mixture;
+    at = there;
+  }
+  const Eigen::LLT<Matrix5d> llt(at.hessian);
+  if (llt.info() != Eigen::Success) return false;
+  mode->log_likelihood = at.log_likelihood;
+  mode->hessian = at.hessian;
+  mode->inverse_hessian = llt.solve(Matrix5d::Identity());
+  return decrement < kSmallDecrement && mode->inverse_hessian.allFinite();
+}
+
+}  // namespace rcme

@@ -1,0 +1,27 @@
+// Step 2 of rcme_calibrated: a motion and its mixture at the optimum of the likelihood, by
+// Levenberg-Marquardt steps of the motion between expectation-maximisation steps of the scale, the share and
+// the density of wrong matches.
+#pragma once
+
+#include "estimator/calibrated/mode.h"
+
+namespace rcme {
+
+// What is known beside the matches.
+struct MixturePrior {
+  double uniform_density = 1e-3;  // 1 / L, L half the diagonal of image 2 in units of the assumed sigma
+  bool estimates_scale = true;
+};
+
+// What a fit may change beside the motion: what the prior says, or nothing.
+enum class MixtureUpdate { kNone, kAll };
+
+MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inlier_ratio);
+
+// At most `max_steps` steps; fewer where one is negligible (below 0.02 standard deviations of the motion and
+// 0.2 % of the scale). Returns whether the last one was small, below 0.2 standard deviations; a mode whose
+// Hessian cannot be inverted does not converge.
+bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
+             MixtureUpdate update = MixtureUpdate::kAll);
+
+}  // namespace rcme

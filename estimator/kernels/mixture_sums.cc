@@ -1,0 +1,222 @@
+#include "estimator/kernels/mixture_sums.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/geometry/essential_matrix.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "estimator/kernels/mixture_sums.cc"
+#include <hwy/foreach_target.h>
+// The above must come before these.
+#include "estimator/kernels/depth_in_noise-inl.h"
+#include "estimator/kernels/epipolar-inl.h"
+#include "stats/portable_math-inl.h"
+
+#ifndef RCME_ESTIMATOR_KERNELS_MIXTURE_SUMS_ONCE_
+#define RCME_ESTIMATOR_KERNELS_MIXTURE_SUMS_ONCE_
+namespace rcme {
+
+// A motion as the kernels take it: F and its derivatives in whitened coordinates, the pose, the scale of
+// rays.
+struct MixtureModel {
+  double F[9], dF[5][9];
+  TwoViewPose pose;
+  RayScale rays;
+  double inverse_noise_rad;  // of the angle between two rays
+};
+// log_likelihood, num_right, sum_squares, num_wrong_near, num_near, then gradient and the Hessian's lower
+// triangle.
+inline constexpr int kNumScalars = 5, kNumMixtureSums = kNumScalars + 20;
+
+}  // namespace rcme
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace rcme::HWY_NAMESPACE {
+
+// x^-k, k >= 1.
+HWY_INLINE Vec InversePower(Vec x, int k) {
+  const Vec inverse = Set(1.0) / x;
+  Vec power = inverse;
+  for (int i = 1; i < k; ++i) power = power * inverse;
+  return power;
+}
+
+// The parts of the density at some matches.
+struct MixtureTerms {
+  Vec total, right, weight, curvature;  // density, p, v, p psi' - p (1 - p) psi^2 bounded from below
+};
+HWY_INLINE MixtureTerms EvaluateMixture(Vec r, Vec z, const MixtureParameters& m) {
+  const Vec one = Set(1.0), u = r * Set(1.0 / m.scale), u2 = u * u;
+  const Vec q = FusedMulAdd(u2, Set(1.0 / m.noise.dof()), one), inverse_q = one / q;
+  const Vec beyond = Lesser(FusedMulAdd(z, Set(1.0 / m.scale), one), Set(0.0));
+  const Vec d = one / FusedMulAdd(beyond, beyond, one);
+  const Vec inlier = Set(m.inlier_ratio * m.noise.peak / m.scale) * InversePower(q, m.noise.power) * (d * d);
+  MixtureTerms terms;
+  terms.total = inlier + Set((1.0 - m.inlier_ratio) * m.outlier_density);
+  terms.right = inlier / terms.total;
+  terms.weight = Set(2.0 * m.noise.power / m.noise.dof()) * inverse_q;
+  // psi' = v (2 / q - 1), psi^2 = v^2 u^2
+  const Vec bend = FusedMulSub(Set(2.0), inverse_q, one);
+  const Vec doubt = (one - terms.right) * (terms.weight * u2);
+  terms.curvature = terms.right * terms.weight * Greater(bend - doubt, Set(0.6));
+  return terms;
+}
+
+// r and its derivatives along the motion's five coordinates (kernels/sampson_equations.h).
+struct Residual {
+  Vec r, derivative[5];
+};
+HWY_INLINE Residual EvaluateResidual(const MixtureModel& model, const Matches& m) {
+  const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
+  const Vec inverse_n = Set(1.0) / hn::Sqrt(Greater(Dot4(c.gradient, c.gradient), Set(1e-200)));
+  const Vec r = c.g * inverse_n, u = r * inverse_n;
+  Residual residual{r, {}};
+  for (int k = 0; k < 5; ++k) {
+    const Constraint d = EvaluateConstraint(Broadcast{model.dF[k]}, m);
+    residual.derivative[k] = FusedNegMulAdd(u, Dot4(c.gradient, d.gradient), d.g) * inverse_n;
+  }
+  return residual;
+}
+
+void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
+                           const MixtureParameters& parameters, double* totals) {
+  alignas(64) double partial[kNumMixtureSums][kBlockSize];
+  const Vec one = Set(1.0), zero = Set(0.0), inverse_s2 = Set(1.0 / (parameters.scale * parameters.scale));
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    Vec sums[kNumMixtureSums], product = one;
+    for (Vec& sum : sums) sum = zero;
+    for (int b = 0; b < matches.num_blocks(); ++b) {
+      const Mask is_used = MaskFromBits(static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
+      const Matches m = LoadMatches(matches[b], lane);
+      const Residual residual = EvaluateResidual(model, m);
+      const Vec z = DepthInNoise(model.pose, model.rays, m).least * Set(model.inverse_noise_rad);
+      const MixtureTerms terms = EvaluateMixture(residual.r, z, parameters);
+      const Vec right = hn::IfThenElseZero(is_used, terms.right);
+      product = product * hn::IfThenElse(is_used, terms.total, one);
+      if (b % 8 == 7) {
+        sums[0] = sums[0] + LogOf(Tag(), product);
+        product = one;
+      }
+      const Vec weight = right * terms.weight;
+      const Vec pull = weight * residual.r;
+      sums[1] = sums[1] + right;
+      sums[2] = FusedMulAdd(pull, residual.r, sums[2]);
+      const Mask is_near = hn::And(is_used, hn::Abs(residual.r) <= Set(kNearResidual));
+      sums[3] = sums[3] + hn::IfThenElseZero(is_near, one - terms.right);
+      sums[4] = sums[4] + hn::IfThenElseZero(is_near, one);
+      const Vec scaled_pull = pull * inverse_s2;
+      const Vec curvature = hn::IfThenElseZero(is_used, terms.curvature) * inverse_s2;
+      for (int k = 0; k < 5; ++k) {
+        sums[kNumScalars + k] = FusedMulAdd(scaled_pull, residual.derivative[k], sums[kNumScalars + k]);
+      }
+      for (int row = 0, i = kNumScalars + 5; row < 5; ++row) {
+        const Vec weighted = curvature * residual.derivative[row];
+        for (int c = 0; c <= row; ++c, ++i) sums[i] = FusedMulAdd(weighted, residual.derivative[c], sums[i]);
+      }
+    }
+    sums[0] = sums[0] + LogOf(Tag(), product);
+    for (int i = 0; i < kNumMixtureSums; ++i) Store(sums[i], partial[i] + lane);
+  }
+  for (int i = 0; i < kNumMixtureSums; ++i) totals[i] = SumOfEight(partial[i]);
+}
+
+// `lists`: residual, depth, five derivatives.
+void ListTerms(const MatchBlocks& matches, const MixtureModel& model, double* const* lists) {
+  for (int b = 0; b < matches.num_blocks(); ++b) {
+    for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+      const Matches m = LoadMatches(matches[b], lane);
+      const Residual residual = EvaluateResidual(model, m);
+      const Vec z = DepthInNoise(model.pose, model.rays, m).least * Set(model.inverse_noise_rad);
+      const int at = b * kBlockSize + lane;
+      hn::StoreU(residual.r, Tag(), lists[0] + at);
+      hn::StoreU(z, Tag(), lists[1] + at);
+      for (int k = 0; k < 5; ++k) hn::StoreU(residual.derivative[k], Tag(), lists[2 + k] + at);
+    }
+  }
+}
+
+double SumCheiralityOverMatches(const MatchBlocks& matches, int num_blocks, const MixtureModel& model,
+                                double scale) {
+  alignas(64) double partial[kBlockSize];
+  const Vec one = Set(1.0), inverse_s2 = Set(1.0 / (scale * scale));
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+    Vec sum = Set(0.0);
+    for (int b = 0; b < num_blocks; ++b) {
+      const Matches m = LoadMatches(matches[b], lane);
+      const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
+      const Vec n2 = Dot4(c.gradient, c.gradient);
+      const Vec v = n2 / FusedMulAdd(c.g * c.g, inverse_s2, n2);
+      const Vec z = DepthInNoise(model.pose, model.rays, m).mean * Set(model.inverse_noise_rad);
+      const Vec term = v * z / hn::Sqrt(FusedMulAdd(z, z, one));
+      const Mask are_matches =
+          hn::And(AreMatches(b * kBlockSize + lane, matches.num_matches()), term == term);
+      sum = sum + hn::IfThenElseZero(are_matches, term);
+    }
+    Store(sum, partial + lane);
+  }
+  return SumOfEight(partial);
+}
+
+}  // namespace rcme::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace rcme {
+
+HWY_EXPORT(SumMixtureOverMatches);
+HWY_EXPORT(ListTerms);
+HWY_EXPORT(SumCheiralityOverMatches);
+
+namespace {
+
+// The angle between two rays has the noise of both, about the mean of the rays' scales.
+double InverseNoise(const RayScale& s) {
+  return 1.0 / std::sqrt(0.5 * (s.x1 * s.x1 + s.y1 * s.y1 + s.x2 * s.x2 + s.y2 * s.y2));
+}
+
+MixtureModel ModelAt(const MatchBlocks& matches, const RelativePose& pose, bool has_derivatives) {
+  MixtureModel model{{}, {}, TwoViewPose(pose), matches.ray_scale(), InverseNoise(matches.ray_scale())};
+  WriteRowMajor(matches.FundamentalFromEssential(EssentialFromPose(pose)), model.F);
+  if (!has_derivatives) return model;
+  const std::array<Eigen::Matrix3d, 5> dE = EssentialTangent(pose);
+  for (size_t k = 0; k < 5; ++k) WriteRowMajor(matches.FundamentalFromEssential(dE[k]), model.dF[k]);
+  return model;
+}
+
+}  // namespace
+
+MixtureSums SumMixture(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
+                       const MixtureParameters& parameters) {
+  double totals[kNumMixtureSums];
+  HWY_DYNAMIC_DISPATCH(SumMixtureOverMatches)
+  (matches, mask, ModelAt(matches, pose, true), parameters, totals);
+  MixtureSums sums{totals[0], totals[1], totals[2], totals[3], totals[4], Vector5d::Zero(), Matrix5d::Zero()};
+  sums.gradient = Eigen::Map<const Vector5d>(totals + kNumScalars);
+  for (int row = 0, i = kNumScalars + 5; row < 5; ++row) {
+    for (int c = 0; c <= row; ++c, ++i) sums.hessian(row, c) = sums.hessian(c, row) = totals[i];
+  }
+  return sums;
+}
+
+void EvaluateTerms(const MatchBlocks& matches, const RelativePose& pose, MatchTermLists* terms) {
+  const size_t size = static_cast<size_t>(matches.num_blocks()) * kBlockSize;
+  double* lists[7];
+  size_t k = 0;
+  for (std::vector<double>* list :
+       {&terms->residual, &terms->depth, &terms->derivative[0], &terms->derivative[1], &terms->derivative[2],
+        &terms->derivative[3], &terms->derivative[4]}) {
+    list->resize(size);
+    lists[k++] = list->data();
+  }
+  HWY_DYNAMIC_DISPATCH(ListTerms)(matches, ModelAt(matches, pose, true), lists);
+}
+
+double SumCheirality(const MatchBlocks& matches, int num_blocks, const RelativePose& pose, double scale) {
+  return HWY_DYNAMIC_DISPATCH(SumCheiralityOverMatches)(matches, std::min(num_blocks, matches.num_blocks()),
+                                                        ModelAt(matches, pose, false), scale);
+}
+
+}  // namespace rcme
+#endif

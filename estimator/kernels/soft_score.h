@@ -1,0 +1,31 @@
+// The score that ranks hypotheses: sum over matches of v = 1 / (1 + r^2 / s^2), r the Sampson residual (Geman
+// and McClure's loss, turned over). In single precision: it only chooses what is looked at more closely.
+#pragma once
+
+#include <vector>
+
+#include "estimator/kernels/match_blocks.h"
+
+namespace rcme {
+
+inline constexpr int kScoreBlockSize = 16;
+
+// The matches in whitened coordinates, sixteen side by side.
+struct alignas(64) ScoreBlock {
+  float x1[kScoreBlockSize], y1[kScoreBlockSize], x2[kScoreBlockSize], y2[kScoreBlockSize];
+};
+
+class ScoreMatches {
+ public:
+  explicit ScoreMatches(const MatchBlocks& matches);
+  int num_matches() const { return num_matches_; }
+  // Of matches first, ..., end - 1; `first` is a multiple of kScoreBlockSize. F in whitened coordinates, row
+  // by row, of any length; `scale` is s in units of the assumed sigma.
+  double SumScores(const double* F, double scale, int first, int end) const;
+
+ private:
+  std::vector<ScoreBlock> blocks_;
+  int num_matches_;
+};
+
+}  // namespace rcme
