@@ -47,9 +47,9 @@ RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E) {
   return best;
 }
 
-bool IsSameMode(const Mode& a, const Mode& b) {
+bool IsSameMode(const Mode& a, const Mode& b, double standard_deviations) {
   const Vector5d difference = LocalCoordinates(a.pose, b.pose);
-  return difference.dot(a.hessian * difference) <= kSameMode;
+  return difference.dot(a.hessian * difference) <= standard_deviations * standard_deviations;
 }
 
 std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,

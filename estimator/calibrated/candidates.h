@@ -17,7 +17,7 @@ RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<ScoredEssential>& candidates, size_t num_modes);
 
-// Whether two modes are one: within five standard deviations of the first, by its inverse information.
-bool IsSameMode(const Mode& a, const Mode& b);
+// Whether two modes are one: within so many standard deviations of the first, by its information.
+bool IsSameMode(const Mode& a, const Mode& b, double standard_deviations = 5.0);
 
 }  // namespace rcme

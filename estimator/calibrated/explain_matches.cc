@@ -19,9 +19,10 @@ class ModeList {
       : problem_(problem), matches_(matches), prior_(prior) {}
 
   const std::vector<ExplainedMode>& modes() const { return modes_; }
-  bool Knows(const Mode& mode) const {
-    return std::ranges::any_of(modes_,
-                               [&](const ExplainedMode& known) { return IsSameMode(known.mode, mode); });
+  bool Knows(const Mode& mode, double standard_deviations = 5.0) const {
+    return std::ranges::any_of(modes_, [&](const ExplainedMode& known) {
+      return IsSameMode(known.mode, mode, standard_deviations);
+    });
   }
   void Add(Mode mode) {
     Explanation explanation = Explain(matches_, mode);
@@ -29,7 +30,7 @@ class ModeList {
   }
   void AddBranches(size_t i) {
     for (Mode& branch : LeverageBranches(matches_, prior_, modes_[i].mode, modes_[i].explanation)) {
-      if (!Knows(branch)) Add(std::move(branch));
+      if (!Knows(branch, 1.0)) Add(std::move(branch));
     }
   }
   void AddTwistedPair(size_t i) {

@@ -1,6 +1,7 @@
 #include "estimator/calibrated/mode_covariance.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <functional>
 
@@ -13,40 +14,58 @@ Vector5d DerivativeOf(const MatchTermLists& terms, size_t i) {
   return J;
 }
 
-// The Hessian of -log_likelihood to first order in the residuals' second derivatives, without the bound that
-// keeps each match's part positive; the mode's own where that is not positive.
-Matrix5d InverseOfHessian(const Mode& mode, const Explanation& e) {
-  Matrix5d hessian = Matrix5d::Zero();
-  const MixtureParameters& m = mode.mixture;
-  for (size_t i = 0; i < e.probability.size(); ++i) {
-    if (!(mode.used[i / kBlockSize] >> (i % kBlockSize) & 1)) continue;
-    const double u = e.terms.residual[i] / m.scale, v = NoiseWeight(m.noise, u), p = e.probability[i];
-    const double bend = 2.0 / (1.0 + u * u / m.noise.dof()) - 1.0;
-    const double curvature = p * v * (bend - (1.0 - p) * v * u * u) / (m.scale * m.scale);
-    const Vector5d J = DerivativeOf(e.terms, i);
-    hessian += curvature * J * J.transpose();
+// The least matrix that is as great as both along every direction in which they are compared.
+Matrix5d GreaterOf(const Matrix5d& a, const Matrix5d& b) {
+  const Eigen::LLT<Matrix5d> llt(b);
+  if (llt.info() != Eigen::Success) return a;
+  const Matrix5d L = llt.matrixL();
+  const Matrix5d half = L.triangularView<Eigen::Lower>().solve(a);
+  const Matrix5d ratio = L.triangularView<Eigen::Lower>().solve(half.transpose());
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(ratio);
+  const Matrix5d root = L * eigen.eigenvectors();
+  return root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose();
+}
+
+// The Hessian by central differences of the gradient, a tenth of a standard deviation either way.
+Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode) {
+  const Matrix5d root = mode.inverse_hessian.llt().matrixL();
+  Matrix5d whitened;
+  constexpr double kStep = 0.1;
+  for (int k = 0; k < 5; ++k) {
+    const Vector5d step = kStep * root.col(k);
+    const Vector5d ahead = SumMixture(matches, mode.used, Retract(mode.pose, step), mode.mixture).gradient;
+    const Vector5d behind = SumMixture(matches, mode.used, Retract(mode.pose, -step), mode.mixture).gradient;
+    whitened.col(k) = root.transpose() * (ahead - behind) / (2.0 * kStep);
   }
-  const Eigen::LLT<Matrix5d> llt(hessian);
-  if (llt.info() != Eigen::Success) return mode.inverse_hessian;
-  const Matrix5d inverse = llt.solve(Matrix5d::Identity());
-  return inverse.allFinite() ? inverse : mode.inverse_hessian;
+  const Matrix5d symmetric = 0.5 * (whitened + whitened.transpose());
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(symmetric);
+  const Matrix5d back = root * eigen.eigenvectors();
+  return back * eigen.eigenvalues().cwiseMax(0.1).cwiseInverse().asDiagonal() * back.transpose();
 }
 
 }  // namespace
 
-Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e) {
+Matrix5d SandwichCovariance(const MatchBlocks& matches, const Mode& mode, const Explanation& e) {
   const MixtureParameters& m = mode.mixture;
-  Matrix5d scores = Matrix5d::Zero();
+  Matrix5d scores = Matrix5d::Zero(), geometry = Matrix5d::Zero();
+  double sum_squares = 0.0, num_right = 0.0;
   for (size_t i = 0; i < e.probability.size(); ++i) {
     if (!(mode.used[i / kBlockSize] >> (i % kBlockSize) & 1)) continue;
     const double u = e.terms.residual[i] / m.scale;
     const double psi = e.probability[i] * NoiseWeight(m.noise, u) * u;
     const double factor = psi / (std::max(1.0 - e.leverage[i], 0.05) * m.scale);
     const Vector5d J = DerivativeOf(e.terms, i);
-    scores += factor * factor * J * J.transpose();
+    const Matrix5d outer = J * J.transpose();
+    scores += factor * factor * outer;
+    geometry += e.probability[i] * outer;
+    sum_squares += psi * psi / (m.scale * m.scale);
+    num_right += e.probability[i];
   }
-  const Matrix5d inverse = InverseOfHessian(mode, e);
-  const Matrix5d covariance = inverse * scores * inverse;
+  const double freedom = std::max(num_right - 5.0, 1.0);
+  const Matrix5d equal = sum_squares / freedom * geometry;
+  scores = GreaterOf(scores, equal);
+  const Matrix5d inverse = InverseOfObserved(matches, mode);
+  const Matrix5d covariance = freedom / std::max(freedom - 2.0, 1.0) * inverse * scores * inverse;
   return covariance.allFinite() ? covariance : mode.inverse_hessian;
 }
 

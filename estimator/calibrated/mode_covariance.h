@@ -11,7 +11,7 @@ namespace rcme {
 // psi = v u: the residuals give their own variances, and a residual with leverage h is smaller than its error
 // by 1 - h (HC3, MacKinnon and White 1985). 5x5 [rotation, direction], rad^2. The inverse information H^-1
 // where the sandwich is not finite.
-Matrix5d SandwichCovariance(const Mode& mode, const Explanation& explanation);
+Matrix5d SandwichCovariance(const MatchBlocks& matches, const Mode& mode, const Explanation& explanation);
 
 // J_K Sigma_K J_K', what uncertain intrinsics add: J_K = -H^-1 dgradient / dK, by differences of one standard
 // deviation each of focal length and principal point of either camera. A focal error common to both cameras,

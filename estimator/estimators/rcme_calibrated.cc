@@ -108,12 +108,12 @@ class RcmeCalibrated : public MotionEstimator {
       return estimate;
     }
     const std::vector<ExplainedMode> explained = ExplainMatches(shuffled, matches, prior, std::move(modes));
-    Answer(shuffled, explained, prior, order, rng, &estimate);
+    Answer(shuffled, matches, explained, prior, order, rng, &estimate);
     return estimate;
   }
 
  private:
-  void Answer(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
+  void Answer(const MotionProblem& problem, const MatchBlocks& matches, const std::vector<ExplainedMode>& modes,
               const MixturePrior& prior, const std::vector<int>& order, RandomStream& rng,
               MotionEstimate* estimate) const {
     const size_t answer = ChooseAnswer(modes);
@@ -125,7 +125,7 @@ class RcmeCalibrated : public MotionEstimator {
     Matrix5d spread = Matrix5d::Zero();
     for (size_t i = 0; i < modes.size(); ++i) {
       if (weights.of_modes[i] < kNegligibleWeight) continue;
-      const Matrix5d covariance = CovarianceOf(problem, modes[i]);
+      const Matrix5d covariance = CovarianceOf(problem, matches, modes[i]);
       success += weights.of_modes[i] * MassWithin(pose, bounds, modes[i].mode.pose, covariance, rng);
       if (!IsWithin(pose, bounds, modes[i].mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, modes[i].mode.pose);
@@ -153,9 +153,9 @@ class RcmeCalibrated : public MotionEstimator {
     estimate->num_support = estimate->num_explained = static_cast<int>(estimate->inliers.size());
   }
 
-  Matrix5d CovarianceOf(const MotionProblem& problem, const ExplainedMode& mode) const {
+  Matrix5d CovarianceOf(const MotionProblem& problem, const MatchBlocks& matches, const ExplainedMode& mode) const {
     Matrix5d covariance = options_.covariance == CovarianceKind::kSandwich
-                              ? SandwichCovariance(mode.mode, mode.explanation)
+                              ? SandwichCovariance(matches, mode.mode, mode.explanation)
                               : mode.mode.inverse_hessian;
     if (options_.focal_sd > 0.0 || options_.principal_point_sd_px > 0.0) {
       covariance += IntrinsicsCovariance(problem, options_, mode.mode);
