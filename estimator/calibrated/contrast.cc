@@ -37,11 +37,6 @@ struct Moments {
 
 }  // namespace
 
-double Contrast::Verdict() const {
-  const double beyond = std::max(std::abs(shared) - 2.0 * std::sqrt(shared_variance), 0.0);
-  return exclusive + std::copysign(beyond, shared);
-}
-
 Contrast CompareModes(const Explanation& a, const Explanation& b, double background) {
   Contrast contrast;
   std::vector<size_t> only_one;
@@ -56,15 +51,12 @@ Contrast CompareModes(const Explanation& a, const Explanation& b, double backgro
     }
   }
   const double share_a = ShareAmong(only_one, a, background), share_b = ShareAmong(only_one, b, background);
-  Moments exclusive;
   for (const size_t i : only_one) {
-    exclusive.Add(std::log((share_a * a.left_out_density[i] + (1.0 - share_a) * background) /
-                           (share_b * b.left_out_density[i] + (1.0 - share_b) * background)));
+    contrast.exclusive += std::log((share_a * a.left_out_density[i] + (1.0 - share_a) * background) /
+                                   (share_b * b.left_out_density[i] + (1.0 - share_b) * background));
   }
-  contrast.exclusive = exclusive.sum;
   contrast.shared = shared.sum;
   contrast.shared_variance = shared.Scatter();
-  contrast.variance = exclusive.Scatter() + 0.25 * shared.Scatter();
   return contrast;
 }
 

@@ -1,9 +1,9 @@
-// Step 5 of rcme_calibrated: two modes are compared where they differ.
+// Step 5 of rcme_calibrated: two modes are compared match by match.
 //
 // On a plane the residuals of the matches that both of two motions explain differ by tens of nats of pure
-// noise, so the likelihoods cannot be compared as they are. What speaks for a motion are the matches that
-// only it explains, with the share of right matches among those refitted for each of the two; what both
-// explain counts as far as it exceeds two of its own standard deviations.
+// noise, so the likelihoods cannot be compared as they are. Matches that only one explains, with the share of
+// right matches among them refitted for each of the two, are kept apart from those that both explain, whose
+// difference is held against its own standard deviation (Vuong 1989).
 #pragma once
 
 #include "estimator/calibrated/explanation.h"
@@ -11,14 +11,10 @@
 namespace rcme {
 
 struct Contrast {
-  double exclusive = 0.0;  // log-likelihood of a minus that of b, over matches that only one explains, nats
+  double exclusive = 0.0;  // log-likelihood of a minus that of b over matches that only one explains, nats
   double shared = 0.0;     // the same over matches that both explain
   double shared_variance = 0.0;  // of `shared`: its terms' sum of squares about their mean
-  double variance = 0.0;         // of both sums, likewise
   int num_only_a = 0, num_only_b = 0;
-
-  // exclusive + what `shared` has beyond two standard deviations: positive, a is the better explanation.
-  double Verdict() const;
 };
 
 // `background`: density of a wrong match's residual, per unit of the assumed sigma, the same for both.

@@ -26,6 +26,7 @@ class ModeList {
   }
   void Add(Mode mode) {
     Explanation explanation = Explain(matches_, mode);
+    if (explanation.num_explained <= 5) return;  // as many follow any motion through them
     modes_.push_back({std::move(mode), std::move(explanation)});
   }
   void AddBranches(size_t i) {

@@ -16,7 +16,7 @@ struct ExplainedMode {
 };
 
 // Every mode with what it says of the matches, then its leverage branches, the other motion of its plane and
-// each of these the other way. `modes` is not empty.
+// each of these the other way; those only that explain more than five matches.
 std::vector<ExplainedMode> ExplainMatches(const MotionProblem& problem, const MatchBlocks& matches,
                                           const MixturePrior& prior, std::vector<Mode> modes);
 

@@ -10,7 +10,9 @@
 namespace rcme {
 namespace {
 
-constexpr double kLogScaleSd = 1.4;   // of the prior of log s: a factor of four
+// The assumed sigma counts as so many matches: enough that five matches, which every motion through them fits
+// exactly, do not drive the scale to zero; few enough that a sigma assumed wrongly by four does little harm.
+constexpr double kPriorMatches = 2.0;
 constexpr double kScaleRange = 16.0;  // s stays within this factor of 1
 // A step may lower the likelihood by so much, nats: c(z) is not in the gradient, and may fall for a match
 // near an epipole.
@@ -18,9 +20,11 @@ constexpr double kTolerance = 1.0;
 constexpr double kNegligibleDecrement = 4e-4, kSmallDecrement = 0.05;  // twice the gain of a full step, nats
 constexpr double kPriorWrongNear = 5.0;  // wrong matches that the prior of q counts for
 
+// The logarithm of the inverse-gamma density of s^2 with kPriorMatches degrees of freedom at s0^2, but for a
+// constant.
 double LogPrior(const MixtureParameters& mixture) {
-  const double log_scale = std::log(mixture.scale / mixture.noise.scale_of_gaussian) / kLogScaleSd;
-  return -0.5 * log_scale * log_scale;
+  const double ratio = mixture.noise.scale_of_gaussian / mixture.scale;
+  return kPriorMatches * (std::log(ratio) - 0.5 * ratio * ratio);
 }
 
 // One step of expectation-maximisation. The motion takes five degrees of freedom of the residuals.
@@ -28,10 +32,9 @@ MixtureParameters Updated(const MixtureParameters& old, const MixtureSums& sums,
                           const MixturePrior& prior) {
   MixtureParameters next = old;
   if (prior.estimates_scale) {
-    const double freedom = std::max(sums.num_right - 5.0, 1.0);
-    const double pull =
-        std::log(old.scale / old.noise.scale_of_gaussian) / (kLogScaleSd * kLogScaleSd * freedom);
-    const double variance = sums.sum_squares / freedom / std::clamp(1.0 + pull, 0.25, 4.0);
+    const double freedom = std::max(sums.num_right - 5.0, 0.0);
+    const double prior_squares = kPriorMatches * old.noise.scale_of_gaussian * old.noise.scale_of_gaussian;
+    const double variance = (sums.sum_squares + prior_squares) / (freedom + kPriorMatches);
     next.scale = std::clamp(std::sqrt(variance), 1.0 / kScaleRange, kScaleRange);
   }
   next.inlier_ratio = std::clamp((sums.num_right + 0.5) / (num_used + 1.0), 0.01, 0.99);

@@ -7,21 +7,14 @@
 namespace rcme {
 namespace {
 
-// log Phi(-z) / Phi(z), z >= 0.
-double NormalLogOdds(double z) {
-  const double tail = 0.5 * std::erfc(z / std::sqrt(2.0));
-  // Beyond 25 the tail is phi(z) / z to a thousandth.
-  if (z > 25.0) return -0.5 * z * z - std::log(z) - 0.9189385332046727;
-  return std::log(tail) - std::log1p(-tail);
-}
+constexpr double kExclusive = 0.175, kShared = 1.0, kWidth = 0.6;
 
 }  // namespace
 
-double RivalLogOdds(const Contrast& contrast, double log_det_ratio) {
-  const double D = contrast.exclusive + 0.5 * contrast.shared + 0.5 * log_det_ratio;
-  if (!(D > 0.0)) return kGreatestLogOdds;
-  const double z = D / std::sqrt(contrast.variance + 1.0);
-  return std::min(std::max(NormalLogOdds(z), -D), kGreatestLogOdds);
+double ModeLogOdds(const Contrast& contrast, double log_det_ratio, double num_explained) {
+  const double width = std::clamp(log_det_ratio, -5.0, 5.0) * num_explained / (num_explained + 50.0);
+  return kExclusive * contrast.exclusive +
+         kShared * contrast.shared / std::sqrt(contrast.shared_variance + 10.0) + kWidth * width;
 }
 
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background) {

@@ -7,15 +7,17 @@
 
 namespace rcme {
 
-// Log-odds of a rival against the answer, after Vuong 1989: with
+// Log-odds of mode a against mode b,
 //
-//   D = exclusive + shared / 2 + (log det Sigma_answer - log det Sigma_rival) / 2,   z = D / sqrt(V + 1)
+//   kExclusive exclusive + kShared shared / sqrt(variance + 10)
+//       + kWidth n / (n + 50) clamp(log(det Sigma_a / det Sigma_b), -5, 5),
 //
-// V the variance of the per-match differences, the more conservative (the greater) of log Phi(-z) / Phi(z),
-// which doubts D as far as its terms scatter, and of the Bayes value -D; at most kGreatestLogOdds, as the
-// answer is the one that the contrast prefers.
-double RivalLogOdds(const Contrast& answer_against_rival, double log_det_ratio);
-inline constexpr double kGreatestLogOdds = -0.7;
+// n the mean number of matches that the two explain, Sigma without the scale of the noise. The Bayes factor
+// with Laplace's approximation would have the coefficients 1, 1 (of `shared` itself) and 1/2. These are of a
+// logistic regression on which of two modes is right, over planes, nearly planar scenes, rooms and few
+// matches (experiments/results/calibrated): the densities are not quite those of the model, so that evidence
+// is worth less than its nats, and the widths of modes of few matches are themselves uncertain.
+double ModeLogOdds(const Contrast& a_against_b, double log_det_ratio, double num_explained);
 
 // Evidence of a motion against there being none, nats: log-likelihood of the matches with each match's
 // density as the others predict it, less that of wrong matches alone, less the logarithm of the number of

@@ -38,21 +38,27 @@ MixturePrior PriorOf(const MotionProblem& problem, const CalibratedOptions& opti
   return {2.0 / diagonal, options.sigma == SigmaKnowledge::kEstimated};
 }
 
-// The mode that the contrast prefers to all others, begun at the most likely.
+// Of the information in units of the mode's own noise: how well the geometry of its matches determines the
+// motion.
+double LogDetGeometry(const Mode& mode) {
+  const Eigen::LLT<Matrix5d> llt(mode.mixture.scale * mode.mixture.scale * mode.hessian);
+  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
+}
+
+double LogOdds(const ExplainedMode& a, const ExplainedMode& b) {
+  const double background = std::max(a.mode.mixture.outlier_density, b.mode.mixture.outlier_density);
+  return ModeLogOdds(CompareModes(a.explanation, b.explanation, background),
+                     LogDetGeometry(b.mode) - LogDetGeometry(a.mode),
+                     0.5 * (a.explanation.num_explained + b.explanation.num_explained));
+}
+
+// The mode that is more likely than every other one it is compared with, begun at the greatest likelihood.
 size_t ChooseAnswer(const std::vector<ExplainedMode>& modes) {
   size_t answer = 0;
   for (size_t i = 1; i < modes.size(); ++i) {
-    const double background =
-        std::max(modes[answer].mode.mixture.outlier_density, modes[i].mode.mixture.outlier_density);
-    const Contrast contrast = CompareModes(modes[answer].explanation, modes[i].explanation, background);
-    if (contrast.Verdict() < 0.0) answer = i;
+    if (LogOdds(modes[answer], modes[i]) < 0.0) answer = i;
   }
   return answer;
-}
-
-double LogDet(const Matrix5d& positive) {
-  const Eigen::LLT<Matrix5d> llt(positive);
-  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
 }
 
 struct Weights {
@@ -66,10 +72,7 @@ Weights WeighModes(const std::vector<ExplainedMode>& modes, size_t answer, const
   std::vector<double> log_odds(modes.size(), 0.0);
   for (size_t i = 0; i < modes.size(); ++i) {
     if (i == answer) continue;
-    const ExplainedMode& b = modes[i];
-    const double background = std::max(a.mode.mixture.outlier_density, b.mode.mixture.outlier_density);
-    const Contrast contrast = CompareModes(a.explanation, b.explanation, background);
-    log_odds[i] = RivalLogOdds(contrast, LogDet(b.mode.hessian) - LogDet(a.mode.hessian));
+    log_odds[i] = -LogOdds(a, modes[i]);
   }
   const double background = std::max(prior.uniform_density, a.mode.mixture.outlier_density);
   const double none = -EvidenceOfMotion(a.explanation, a.mode.mixture, background);
@@ -102,20 +105,20 @@ class RcmeCalibrated : public MotionEstimator {
         FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
     MotionEstimate estimate;
     estimate.counts = search.counts;
-    if (modes.empty()) {
+    const std::vector<ExplainedMode> explained = ExplainMatches(shuffled, matches, prior, std::move(modes));
+    if (explained.empty()) {
       estimate.status = MotionStatus::kNoCandidate;
-      estimate.message = "no hypothesis has an optimum";
+      estimate.message = "no motion explains more than five matches";
       return estimate;
     }
-    const std::vector<ExplainedMode> explained = ExplainMatches(shuffled, matches, prior, std::move(modes));
     Answer(shuffled, matches, explained, prior, order, rng, &estimate);
     return estimate;
   }
 
  private:
-  void Answer(const MotionProblem& problem, const MatchBlocks& matches, const std::vector<ExplainedMode>& modes,
-              const MixturePrior& prior, const std::vector<int>& order, RandomStream& rng,
-              MotionEstimate* estimate) const {
+  void Answer(const MotionProblem& problem, const MatchBlocks& matches,
+              const std::vector<ExplainedMode>& modes, const MixturePrior& prior,
+              const std::vector<int>& order, RandomStream& rng, MotionEstimate* estimate) const {
     const size_t answer = ChooseAnswer(modes);
     const Weights weights = WeighModes(modes, answer, prior, options_);
     const MotionBounds bounds{kRadPerDeg * options_.max_rotation_error_deg,
@@ -153,7 +156,8 @@ class RcmeCalibrated : public MotionEstimator {
     estimate->num_support = estimate->num_explained = static_cast<int>(estimate->inliers.size());
   }
 
-  Matrix5d CovarianceOf(const MotionProblem& problem, const MatchBlocks& matches, const ExplainedMode& mode) const {
+  Matrix5d CovarianceOf(const MotionProblem& problem, const MatchBlocks& matches,
+                        const ExplainedMode& mode) const {
     Matrix5d covariance = options_.covariance == CovarianceKind::kSandwich
                               ? SandwichCovariance(matches, mode.mode, mode.explanation)
                               : mode.mode.inverse_hessian;
