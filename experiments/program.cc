@@ -59,6 +59,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddRunCommand(app);
   AddSummarizeCommand(app);
   AddCompareCommand(app);
+  AddReliabilityCommand(app);
   AddReportCommand(app);
   AddPlotCommand(app);
   AddCheckCommand(app);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "stats/distributions.h"
+#include "stats/score_mean.h"
 
 namespace rcme {
 namespace {
@@ -52,6 +53,24 @@ ClusteredEstimate MeasureClusteredMean(std::span<const double> numbers,
   std::vector<double> influences(numbers.begin(), numbers.end());
   for (double& x : influences) x = (x - mean) / n;
   return EstimateFromInfluences(mean, influences, clusters, confidence);
+}
+
+ClusteredEstimate MeasureBoundedClusteredMean(std::span<const double> numbers, double greatest,
+                                              std::span<const std::int64_t> clusters, double confidence) {
+  ClusteredEstimate mean = MeasureClusteredMean(numbers, clusters, confidence);
+  const std::vector<double> ones(numbers.size(), 1.0);
+  const std::vector<double> sums = SumsByCluster(numbers, clusters), sizes = SumsByCluster(ones, clusters);
+  if (!std::ranges::all_of(numbers, [&](double x) { return x >= 0.0 && x <= greatest; }))
+    throw std::invalid_argument("clustered estimate: a number is outside of its range");
+  mean.interval = {0.0, greatest};
+  if (sums.empty()) return mean;
+  const double largest = greatest * *std::ranges::max_element(sizes);
+  ScoreMean shares;  // of the greatest possible sum
+  for (const double sum : sums) shares.Add(std::min(1.0, sum / largest));
+  const Interval interval = shares.Sequence(confidence);
+  const double scale = largest * static_cast<double>(sums.size()) / static_cast<double>(numbers.size());
+  mean.interval = {scale * interval.lower, std::min(greatest, scale * interval.upper)};
+  return mean;
 }
 
 }  // namespace rcme

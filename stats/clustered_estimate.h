@@ -30,4 +30,12 @@ ClusteredEstimate EstimateFromInfluences(double value, std::span<const double> i
 ClusteredEstimate MeasureClusteredMean(std::span<const double> numbers,
                                        std::span<const std::int64_t> clusters, double confidence = 0.95);
 
+// The same of numbers in [0, greatest], with another interval: by betting on the sums of the clusters
+// (score_mean.h), a confidence sequence. It holds for any law, also where the few great numbers that decide
+// the mean have not been drawn; Student's is then a point. How many numbers a cluster has is taken as given.
+// Throws std::invalid_argument for a number outside.
+ClusteredEstimate MeasureBoundedClusteredMean(std::span<const double> numbers, double greatest,
+                                              std::span<const std::int64_t> clusters,
+                                              double confidence = 0.95);
+
 }  // namespace rcme

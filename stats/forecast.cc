@@ -8,13 +8,13 @@
 namespace rcme {
 namespace {
 
-ClusteredEstimate MeanOf(std::span<const Forecast> forecasts, double (*score)(const Forecast&),
-                         double confidence) {
+ClusteredEstimate MeanOf(std::span<const Forecast> forecasts, double greatest,
+                         double (*score)(const Forecast&), double confidence) {
   CheckForecasts(forecasts);
   std::vector<double> scores;
   scores.reserve(forecasts.size());
   for (const Forecast& forecast : forecasts) scores.push_back(score(forecast));
-  return MeasureClusteredMean(scores, ClustersOf(forecasts), confidence);
+  return MeasureBoundedClusteredMean(scores, greatest, ClustersOf(forecasts), confidence);
 }
 
 }  // namespace
@@ -48,14 +48,25 @@ double LogScore(double probability, bool happened, double clip) {
   return happened ? -std::log(p) : -std::log1p(-p);
 }
 
+ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts, double confidence) {
+  const ClusteredEstimate share = MeanOf(
+      forecasts, 1.0, [](const Forecast& f) { return f.happened ? 1.0 : 0.0; }, confidence);
+  if (share.num_clusters < share.n) return share;
+  ClusteredEstimate of_single = share;
+  of_single.interval =
+      ExactBinomialInterval(std::llround(share.value * static_cast<double>(share.n)), share.n, confidence);
+  return of_single;
+}
+
 ClusteredEstimate MeasureBrierScore(std::span<const Forecast> forecasts, double confidence) {
   return MeanOf(
-      forecasts, [](const Forecast& f) { return BrierScore(f.probability, f.happened); }, confidence);
+      forecasts, 1.0, [](const Forecast& f) { return BrierScore(f.probability, f.happened); }, confidence);
 }
 
 ClusteredEstimate MeasureLogScore(std::span<const Forecast> forecasts, double confidence) {
   return MeanOf(
-      forecasts, [](const Forecast& f) { return LogScore(f.probability, f.happened); }, confidence);
+      forecasts, std::max(LogScore(0.0, true), LogScore(1.0, false)),
+      [](const Forecast& f) { return LogScore(f.probability, f.happened); }, confidence);
 }
 
 std::vector<std::int64_t> NumberedClusters(std::span<const Forecast> forecasts) {

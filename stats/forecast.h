@@ -33,7 +33,10 @@ std::vector<std::int64_t> ClustersOf(std::span<const Forecast> forecasts);
 double BrierScore(double probability, bool happened);
 double LogScore(double probability, bool happened, double clip = kProbabilityClip);
 
-// Mean scores over forecasts that CheckForecasts lets pass, with intervals by clusters.
+// Of forecasts that CheckForecasts lets pass, with intervals by clusters that hold for any law (by betting,
+// MeasureBoundedClusteredMean): the share whose event happened (exact where each is a cluster of its own),
+// and the mean scores.
+ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts, double confidence = 0.95);
 ClusteredEstimate MeasureBrierScore(std::span<const Forecast> forecasts, double confidence = 0.95);
 ClusteredEstimate MeasureLogScore(std::span<const Forecast> forecasts, double confidence = 0.95);
 

@@ -15,6 +15,7 @@ void AddRunCommand(CLI::App& app);
 void AddAuditCommand(CLI::App& app);
 void AddSummarizeCommand(CLI::App& app);
 void AddCompareCommand(CLI::App& app);
+void AddReliabilityCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);
 void AddCheckCommand(CLI::App& app);
 void AddPlotCommand(CLI::App& app);

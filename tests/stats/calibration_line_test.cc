@@ -72,6 +72,14 @@ TEST(CalibrationLine, WithoutAnOptimumNothingIsClaimed) {
     EXPECT_TRUE(std::isnan(line.slope.value) && std::isnan(line.intercept.standard_error));
     EXPECT_TRUE(line.slope.interval.Contains(1e9));
   }
+  // By rounding, the matrix of forecasts that are all equal is not always exactly singular.
+  for (int percent = 1; percent < 100; ++percent) {
+    for (const int n : {7, 30, 111}) {
+      std::vector<Forecast> equal;
+      for (int i = 0; i < n; ++i) equal.push_back({percent / 100.0, i % 3 == 0, i});
+      EXPECT_FALSE(FitCalibrationLine(equal).has_optimum) << percent << " % of " << n;
+    }
+  }
   EXPECT_THROW(FitCalibrationLine({}), std::invalid_argument);
 }
 

@@ -121,6 +121,14 @@ TEST(Reliability, ClustersAreNotTakenForIndependent) {
   EXPECT_GT(as_independent.rate(), 0.2) << as_independent;
 }
 
+// As an exact test has it: never 0, by whatever many samples.
+TEST(Reliability, PValueOfTheWorstForecasts) {
+  std::vector<Forecast> wrong;
+  for (int i = 0; i < 50; ++i) wrong.push_back({i % 2 == 0 ? 0.01 : 0.99, i % 2 == 0, i});
+  RandomStream rng({.seed = 1, .purpose = 415});
+  EXPECT_EQ(CheckCalibration(wrong, {}, 9, rng).p_value, 0.1);
+}
+
 TEST(Reliability, BadInput) {
   RandomStream rng({.seed = 1, .purpose = 414});
   EXPECT_THROW(ReliabilityCurve({}), std::invalid_argument);
