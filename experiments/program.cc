@@ -56,6 +56,7 @@ int RunProgram(int argc, const char* const* argv) {
       "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
   app.get_formatter()->column_width(34);
+  app.require_subcommand(0, 1);  // of `rcme plot audit` the second word is no command
   AddRunCommand(app);
   AddSummarizeCommand(app);
   AddCompareCommand(app);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/analysis/failure_forecasts.h"
 #include "experiments/trial/trial_event.h"
 #include "experiments/trial/trial_measure.h"
 #include "parameters/input_error.h"
@@ -23,6 +24,13 @@ Compared Event(const TrialEvent& event) {
 Compared Measure(ComparedKind kind, const TrialMeasure& measure) {
   return {kind, measure.name, measure.doc,
           [measure](const TrialRecord& record, const FailureBounds&) { return measure.Of(record); }};
+}
+
+// The less the better, other than the scores of accuracy.
+Compared Brier() {
+  return {ComparedKind::kScore, "brier",
+          "Brier score (P - y)^2 of the stated probability of failure, 0 best; of answers that have one",
+          BrierOfStated};
 }
 
 bool IsNamed(const Compared& compared, const std::string& name) {
@@ -48,6 +56,7 @@ const std::vector<Compared>& AllCompared() {
     std::vector<Compared> compared;
     for (const TrialEvent& event : TrialEvents()) compared.push_back(Event(event));
     for (const TrialMeasure& score : TrialScores()) compared.push_back(Measure(ComparedKind::kScore, score));
+    compared.push_back(Brier());
     for (const TrialMeasure& error : TrialErrors()) compared.push_back(Measure(ComparedKind::kError, error));
     return compared;
   }();

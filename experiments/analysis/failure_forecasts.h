@@ -11,6 +11,9 @@
 
 namespace rcme {
 
+// Up to this probability a motion counts as sure.
+inline constexpr double kSureBelow = 0.1;
+
 // The probability that the estimator states; nothing for a refusal, where the truth is not known, or where it
 // states none.
 std::optional<double> StatedFailureProbability(const TrialRecord& record);

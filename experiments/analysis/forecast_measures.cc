@@ -11,6 +11,7 @@ namespace rcme {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kNumHistogramBins = 20;
 // Of the outcomes that are drawn here; the streams of trials have other purposes (data_source.h).
 constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200;
 
@@ -58,6 +59,16 @@ void CountSure(const std::vector<Forecast>& forecasts, ForecastMeasures* measure
   }
 }
 
+std::vector<std::int64_t> HistogramOf(const std::vector<Forecast>& forecasts) {
+  const std::vector<double> edges = HistogramEdges();
+  std::vector<std::int64_t> counts(kNumHistogramBins, 0);
+  for (const Forecast& forecast : forecasts) {
+    const auto above = std::ranges::upper_bound(edges, forecast.probability);
+    ++counts[std::min<size_t>(static_cast<size_t>(above - edges.begin()), kNumHistogramBins) - 1];
+  }
+  return counts;
+}
+
 // The same stream for all: samples of equal forecasts are equal.
 void MeasureCalibration(const std::vector<Forecast>& forecasts, std::uint64_t seed,
                         ForecastMeasures* measures) {
@@ -81,6 +92,13 @@ std::vector<double> BandProbabilities() {
   return probabilities;
 }
 
+std::vector<double> HistogramEdges() {
+  std::vector<double> edges;
+  for (int k = 0; k <= kNumHistogramBins; ++k)
+    edges.push_back(std::pow(static_cast<double>(k) / kNumHistogramBins, 2.0));
+  return edges;
+}
+
 ForecastMeasures MeasureForecasts(const FailureForecasts& of, std::uint64_t seed) {
   ForecastMeasures measures;
   measures.estimator = of.estimator;
@@ -94,6 +112,7 @@ ForecastMeasures MeasureForecasts(const FailureForecasts& of, std::uint64_t seed
   measures.failure = MeasureShareHappened(of.forecasts);
   measures.brier = MeasureBrierScore(of.forecasts);
   measures.log_score = MeasureLogScore(of.forecasts);
+  measures.histogram = HistogramOf(of.forecasts);
   measures.area = AreaOf(of.forecasts, measures.failure);
   MeasureCalibration(of.forecasts, seed, &measures);
   MeasureRiskCoverage(of, &measures);

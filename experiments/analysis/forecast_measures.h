@@ -14,8 +14,6 @@
 
 namespace rcme {
 
-// Below this probability a motion counts as sure.
-inline constexpr double kSureBelow = 0.1;
 inline constexpr int kNumCalibrationBins = 10;
 inline constexpr int kNumCalibrationSamples = 399;
 
@@ -33,6 +31,7 @@ struct ForecastMeasures {
   std::vector<ReliabilityStep> curve;  // likewise
   CalibrationError error_of_equal_width, error_of_equal_mass;  // in kNumCalibrationBins bins
   std::vector<CalibrationBin> bins;                            // of equal width
+  std::vector<std::int64_t> histogram;                         // of the probabilities: HistogramEdges()
   CalibrationLine line;
   // P(a failure has the greater probability): NaN where nothing failed, or everything.
   AreaUnderCurve area;
@@ -52,6 +51,9 @@ struct ForecastMeasures {
 
 // 0 to 1, closer where probabilities are small.
 std::vector<double> BandProbabilities();
+
+// (k / 20)^2, k = 0..20: of equal width in the square root of the probability, the last bin with its end.
+std::vector<double> HistogramEdges();
 
 // `seed`: of the outcomes that are drawn to see what right probabilities would give.
 ForecastMeasures MeasureForecasts(const FailureForecasts& forecasts, std::uint64_t seed);

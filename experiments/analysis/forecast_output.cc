@@ -138,6 +138,7 @@ Json EntryOf(const ForecastMeasures& m) {
                     {"curve", CurveAsJson(m)},
                     {"band", BandAsJson(m)},
                     {"bins", BinsAsJson(m)},
+                    {"histogram", m.histogram},
                     {"risk_coverage", RiskCoverageAsJson(m)}});
   return entry;
 }
@@ -181,7 +182,11 @@ std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, cons
 
 std::string ForecastsAsJson(const std::string& study, const std::string& by,
                             const std::vector<ForecastMeasures>& measures) {
-  Json json = {{"study", study}, {"by", by}, {"sure_below", kSureBelow}, {"entries", Json::array()}};
+  Json json = {{"study", study},
+               {"by", by},
+               {"sure_below", kSureBelow},
+               {"histogram_edges", HistogramEdges()},
+               {"entries", Json::array()}};
   for (const ForecastMeasures& m : measures) json["entries"].push_back(EntryOf(m));
   return JsonText(kReliabilityFormat, json);
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "experiments/analysis/failure_forecasts.h"
 #include "experiments/analysis/scene_split.h"
 #include "experiments/analysis/scenes_of_run.h"
 #include "experiments/trial/trial_measure.h"
@@ -39,6 +40,17 @@ std::optional<double> Yes(bool value) { return value ? 1.0 : 0.0; }
 
 bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
 
+bool IsSure(const TrialRecord& r) {
+  const std::optional<double> stated = StatedFailureProbability(r);
+  return stated && *stated <= kSureBelow;
+}
+
+// Of what few estimators state: without rows where none of a run does.
+bool IsOfProbabilities(const std::string& quantity) {
+  return quantity == "sigma_estimated_px" || quantity == "inlier_brier" ||
+         quantity == "failure_probability" || quantity == "brier" || quantity == "failure_of_sure";
+}
+
 TrialQuantity StatusRate(MotionStatus status, const std::string& doc) {
   return {StatusName(status), SummaryRow::Kind::kRate, doc + ", of all trials",
           [status](const TrialRecord& r, const FailureBounds&) { return Yes(r.status == status); }};
@@ -65,7 +77,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
        "a motion beyond a failure bound or an answer that is not valid, of all trials but those not scored",
        [](R r, B b) { return If(IsScored(r), HasFailed(r, b)); }},
       StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
-      {"other_refusal", kRate, "no motion for any other reason (the sum of the next eight), of all trials",
+      {"other_refusal", kRate, "no motion for any other reason (the sum of the next nine), of all trials",
        [](R r, B) { return Yes(HasRefused(r) && r.status != MotionStatus::kNoCandidate); }},
       StatusRate(MotionStatus::kTooFewMatches, "too few distinct matches"),
       StatusRate(MotionStatus::kDegenerateMatches, "matches that determine no motion"),
@@ -73,6 +85,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       StatusRate(MotionStatus::kTooFewExplained, "a refined motion that explains too few matches"),
       StatusRate(MotionStatus::kDirectionNotObservable, "parallax within its noise, no direction"),
       StatusRate(MotionStatus::kNotBetterThanChance, "no more matches agree than by chance"),
+      StatusRate(MotionStatus::kTooUncertain, "a probability of failure greater than what is allowed"),
       StatusRate(MotionStatus::kInvalidInput, "coordinates, cameras or a noise level that are not valid"),
       StatusRate(MotionStatus::kLibraryError, "another library that the estimator calls failed"),
       StatusRate(MotionStatus::kInvalidMotion, "a failure: not a rotation and a unit vector, or not finite"),
@@ -104,6 +117,19 @@ const std::vector<TrialQuantity>& OwnQuantities() {
        [](R r, B) { return If(IsOk(r), static_cast<double>(r.num_explained) / r.num_matches); }},
       {"num_candidates", kMean, "hypotheses that passed every test, of all trials",
        [](R r, B) { return std::optional<double>(r.counts.num_candidates); }},
+      {"sigma_estimated_px", kMean,
+       "noise level estimated from the residuals, of returned motions that have one",
+       [](R r, B) { return If(IsOk(r), r.sigma_estimated_px); }},
+      {"inlier_brier", SummaryRow::Kind::kScore,
+       "mean squared error of the inlier probabilities, 0 best; of returned motions that have them",
+       [](R r, B) { return If(IsOk(r), r.inlier_brier); }},
+      {"failure_probability", SummaryRow::Kind::kScore,
+       "stated probability of failure, its mean; of answers that have one and whose truth is known, as the "
+       "next two",
+       [](R r, B) { return StatedFailureProbability(r); }},
+      {"brier", SummaryRow::Kind::kScore, "Brier score (P - y)^2 of that, 0 best", BrierOfStated},
+      {"failure_of_sure", kRate, "failure, of those with P at most 0.1",
+       [](R r, B b) { return If(IsSure(r), HasFailed(r, b)); }},
       {"time_ms", kMedian, "processor time of the call, of all trials; only with --times",
        [](R r, B) { return std::optional<double>(1e3 * r.seconds); }},
   };
@@ -355,6 +381,10 @@ Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
     if (!run.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
     cells[c].AppendRows(run, row, &summary.rows);
   }
+  const bool has_probabilities = std::ranges::any_of(
+      summary.rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity) && row.n > 0; });
+  if (!has_probabilities)
+    std::erase_if(summary.rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity); });
   if (!with_times)
     std::erase_if(summary.rows, [](const SummaryRow& row) { return row.quantity == "time_ms"; });
   return summary;

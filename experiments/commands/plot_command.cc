@@ -21,6 +21,8 @@ const std::vector<Kind>& Kinds() {
       {"paired_difference", "COMPARISON.csv", "differences to a reference, of `rcme compare --format csv`"},
       {"time_against_success", "SUMMARY.csv ...",
        "success against the time of a call, of `rcme summarize --pooled --times`"},
+      {"reliability", "RELIABILITY.json",
+       "stated probabilities of failure against what happened, of `rcme reliability`"},
       {"tune", "TUNE.json", "what `rcme tune --figures` draws, again"},
       {"transfer", "TRANSFER.json", "what `rcme transfer` draws, again"},
       {"audit", "FOLDER", "what `rcme audit` draws, again"},

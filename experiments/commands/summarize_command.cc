@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "experiments/analysis/forecast_output.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/analysis/trial_table.h"
 #include "experiments/base/file_output.h"
@@ -14,6 +16,14 @@ void WriteTrials(const ResultStore& store, bool with_times, const std::string& o
   FileInPieces file(out);
   WriteTrialTable(store, with_times, [&](const std::string& text) { file.Write(text); });
   file.Finish();
+}
+
+// For people. What is said of probabilities is of all conditions together; without any, nothing.
+std::string Tables(const ResultStore& store, const Summary& summary) {
+  const std::string text = SummaryAsTable(summary);
+  const bool has_probabilities = std::ranges::any_of(
+      summary.rows, [](const SummaryRow& row) { return row.quantity == "failure_probability"; });
+  return has_probabilities ? text + "\n" + ForecastsAsTable(MeasureFailureForecasts(store)) : text;
 }
 
 }  // namespace
@@ -70,7 +80,7 @@ void AddSummarizeCommand(CLI::App& app) {
                                       arguments->is_pooled ? Pooling::kPooled : Pooling::kPerCondition);
     const std::string text = arguments->format == "csv"    ? SummaryAsCsv(summary)
                              : arguments->format == "json" ? SummaryAsJson(summary)
-                                                           : SummaryAsTable(summary);
+                                                           : Tables(store, summary);
     PrintOrWrite(arguments->out, text);
   });
 }

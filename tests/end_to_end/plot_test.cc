@@ -29,6 +29,14 @@ TEST(Plot, DrawsAFigureWithTheOptionsOfItsKind) {
   EXPECT_GT(std::filesystem::file_size(out + ".png"), 1000u);
 }
 
+TEST(Plot, AKindMayBeCalledAsACommandIs) {
+  for (const char* kind : {"audit", "tune", "transfer", "reliability"}) {
+    const ProgramResult result = RunRcme({"plot", kind, "no_such_file", "--out", "x"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(std::string(kind) + ".py: ")) << result.err;
+  }
+}
+
 TEST(Plot, BadInputIsNamedAndEndsWithTwo) {
   const ProgramResult unknown = RunRcme({"plot", "pie_chart", "x.csv"});
   EXPECT_EQ(unknown.exit_code, 2);

@@ -230,7 +230,7 @@ TEST_F(CompareMeasuresTest, ScoresByHand) {
   // AUC@10 of standard: 0.9, 0.5, 0, 0.8 and a refusal; of ours: 1, 0.8, 0.2, a refusal, a refusal.
   Write("run", {{1.0, 0.0}, {5.0, 2.0}, {20.0, 8.0}, {2.0, -1.0}, {-1.0, -1.0}});
   const Comparison comparison = ComparisonOf("run", "", {.compared = {"scores"}});
-  EXPECT_EQ(comparison.rows.size(), 2 * TrialScores().size());
+  EXPECT_EQ(comparison.rows.size(), 2 * (TrialScores().size() + 1)) << "and Brier";
   const ComparisonRow row = Row(comparison, "auc_10_deg");
   ScoreMean expected({-1.0, 1.0});
   for (const double difference : {0.1, 0.3, 0.2, -0.8, 0.0}) expected.Add(difference);

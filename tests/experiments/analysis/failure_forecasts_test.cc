@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -176,6 +177,10 @@ TEST_F(FailureForecastsTest, MeasuresOfRightProbabilities) {
   EXPECT_NEAR(m.risk_coverage.back().risk, (m.failure.value * 3000.0 + 300.0) / 3300.0, 1e-12)
       << "refusals are failures";
   EXPECT_EQ(m.bins.size(), 4U);
+  ASSERT_EQ(m.histogram.size(), 20U);
+  EXPECT_EQ(std::accumulate(m.histogram.begin(), m.histogram.end(), std::int64_t{0}), 3000);
+  EXPECT_NEAR(static_cast<double>(m.histogram[6]), 3000.0 * (0.1225 - 0.09) / 0.4, 80.0);
+  EXPECT_EQ(m.histogram[13], 0) << "from .4225 on";
 }
 
 TEST_F(FailureForecastsTest, TableAndFileSayTheSame) {

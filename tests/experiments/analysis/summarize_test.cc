@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -145,8 +146,7 @@ TEST_F(SummarizeTest, PooledConditionsAreOne) {
     records.back().condition = 1;
   }
   Write("both", records);
-  const Summary pooled =
-      Summarize(ResultStore::OpenForReading(folder_.Path("both")), true, Pooling::kPooled);
+  const Summary pooled = Summarize(ResultStore::OpenForReading(folder_.Path("both")), true, Pooling::kPooled);
   EXPECT_TRUE(pooled.factor_names.empty());
   int num_checked = 0;
   for (const SummaryRow& row : pooled.rows) {
@@ -327,6 +327,40 @@ TEST_F(SummarizeTest, EveryTrialHasExactlyOneOutcome) {
   }
   for (const std::string& outcome : outcomes) sum += Row(outcome).value;
   EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+// Of three answers with P: .05 (right), .02 (fails), .5 (fails); refusals and answers without one are in
+// none.
+TEST_F(SummarizeTest, ProbabilitiesOfFailure) {
+  std::vector<TrialRecord> records = HandMadeRecords();
+  for (TrialRecord& record : records) record.failure_probability = HasRefused(record) ? 0.9 : kNaN;
+  records[0].failure_probability = 0.05;
+  records[4].failure_probability = 0.02;
+  records[5].failure_probability = 0.5;
+  Write("stated", records);
+  std::map<std::string, SummaryRow> rows;
+  for (const SummaryRow& row : SummaryOf("stated").rows) {
+    if (row.condition == 0) rows.try_emplace(row.quantity, row);
+  }
+  EXPECT_EQ(rows["failure_probability"].n, 3);
+  EXPECT_NEAR(rows["failure_probability"].value, 0.19, 1e-12);
+  EXPECT_EQ(rows["brier"].kind, SummaryRow::Kind::kScore);
+  EXPECT_NEAR(rows["brier"].value, (0.0025 + 0.98 * 0.98 + 0.25) / 3.0, 1e-12);
+  EXPECT_EQ(rows["failure_of_sure"].n, 2);
+  EXPECT_EQ(rows["failure_of_sure"].value, 0.5);
+  EXPECT_EQ(rows["failure_of_sure"].interval.upper, ExactBinomialInterval(1, 2).upper);
+}
+
+TEST_F(SummarizeTest, WithoutProbabilitiesThereAreNoRowsOfThem) {
+  std::vector<TrialRecord> records = HandMadeRecords();
+  for (TrialRecord& record : records)
+    record.failure_probability = record.inlier_brier = record.sigma_estimated_px = kNaN;
+  Write("unstated", records);
+  for (const SummaryRow& row : SummaryOf("unstated").rows) {
+    for (const char* quantity :
+         {"failure_probability", "brier", "failure_of_sure", "inlier_brier", "sigma_estimated_px"})
+      EXPECT_NE(row.quantity, quantity);
+  }
 }
 
 TEST_F(SummarizeTest, EmptyCellsSayThatNothingIsKnown) {

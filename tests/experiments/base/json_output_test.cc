@@ -42,6 +42,7 @@ TEST(JsonText, TheFiguresKnowTheSameFormats) {
                                      {"plots/tuning_figures/tune_file.py", kTuningFormat},
                                      {"plots/tuning_figures/tune_file.py", kTransferFormat},
                                      {"plots/trial_sheet/trial_file.py", kTrialFormat},
+                                     {"plots/reliability_figure/reliability_file.py", kReliabilityFormat},
                                      {"plots/report_page/data.py", kReportFormat}}) {
     EXPECT_EQ(FormatsIn(path).count(format), 1u) << path;
   }

@@ -1,0 +1,154 @@
+"""Reliability diagrams with their histograms, and risk-coverage curves."""
+
+import math
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from common import style
+from common.command_line import PlotError
+from rates.rate_bands import per_cent
+from reliability_figure.reliability_file import STATED
+
+MAX_DIAGRAMS = 3
+TICKS = (0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1)
+BAND = dict(color=style.SKY_BLUE, alpha=0.35, linewidth=0)
+RIGHT = dict(color="0.5", linewidth=0.8, linestyle=style.DOTTED)
+BARS = dict(color="0.6", linewidth=0)
+
+
+def root(value):
+    return abs(value) ** 0.5
+
+
+def square(value):
+    return value ** 2
+
+
+def of_group(file, group):
+    """The entries of a group; default: of the first."""
+    groups = list(dict.fromkeys(entry.group for entry in file.entries))
+    if group is None:
+        group = groups[0]
+    elif group not in groups:
+        raise PlotError(f"{file.path}: has no group '{group}'; expected one of {', '.join(map(repr, groups))}.")
+    return [entry for entry in file.entries if entry.group == group]
+
+
+def with_diagram(file, entries, names):
+    """Those named; default: those that state probabilities, or else the first."""
+    if names is None:
+        return ([entry for entry in entries if entry.source == STATED] or entries)[:MAX_DIAGRAMS]
+    known = {entry.estimator: entry for entry in entries}
+    for name in names:
+        if name not in known:
+            raise PlotError(f"{file.path}: has no probabilities of '{name}'; expected one of {', '.join(known)}.")
+    if len(names) > MAX_DIAGRAMS:
+        raise PlotError(f"--estimators: at most {MAX_DIAGRAMS} diagrams fit beside each other.")
+    return [known[name] for name in names]
+
+
+def number(measured, digits):
+    if math.isnan(measured.value):
+        return "not defined"
+    if math.isnan(measured.lower + measured.upper):
+        return f"{measured.value:.{digits}f}"
+    return f"{measured.value:.{digits}f} [{measured.lower:.{digits}f}, {measured.upper:.{digits}f}]"
+
+
+def scores_in_words(entry):
+    return (f"n = {entry.n}, refused {entry.refused}\nBrier {number(entry.brier, 4)}\n"
+            f"ECE {entry.calibration_error:.4f} (if right {entry.error_if_calibrated:.4f})\n"
+            f"slope {number(entry.slope, 2)}\nAUC {number(entry.auc, 3)}")
+
+
+def title_of(entry):
+    return style.label_of(entry.estimator) + ("" if entry.source == STATED else ", P from inlier share")
+
+
+def root_axis(axes, direction):
+    """From 0 to 1, with room for small probabilities."""
+    getattr(axes, f"set_{direction}scale")("function", functions=(root, square))
+    getattr(axes, f"set_{direction}lim")(0, 1)
+    axis = getattr(axes, f"{direction}axis")
+    axis.set_ticks(TICKS)
+    axis.set_major_formatter(per_cent)
+
+
+def draw_diagram(axes, entry, look):
+    for direction in ("x", "y"):
+        root_axis(axes, direction)
+    axes.plot([0, 1], [0, 1], **RIGHT, label="_right")
+    if entry.band:
+        axes.fill_between(*zip(*entry.band), **BAND, label="_band")
+    axes.plot(*zip(*entry.curve), color=look.color, linewidth=1.4, label="_curve")
+    for one in entry.bins:
+        share = one.failure
+        axes.errorbar(one.mean_probability, share.value, [[share.value - share.lower], [share.upper - share.value]],
+                      fmt="o", markersize=3.4, color=look.color, markeredgecolor="white", markeredgewidth=0.5,
+                      elinewidth=0.8, clip_on=False, label="_bin")
+    axes.set_ylabel("Failed (%)")
+    axes.tick_params(labelbottom=False)
+    axes.text(0.04, 0.97, scores_in_words(entry), transform=axes.transAxes, fontsize=6.2, va="top", linespacing=1.35)
+
+
+def draw_histogram(axes, entry, edges):
+    """Logarithmic: most trials are sure, and the few others count."""
+    root_axis(axes, "x")
+    axes.stairs(entry.histogram, edges, fill=True, **BARS)
+    axes.set_yscale("symlog", linthresh=1, linscale=0.4)
+    axes.set_ylim(0, 1.6 * max(entry.histogram))
+    axes.set(xlabel="Stated P (%)", ylabel="Trials")
+    axes.tick_params(axis="x", labelsize=7)
+
+
+def draw_risk_coverage(axes, entries, looks):
+    for entry in entries:
+        axes.plot(*zip(*entry.risk_coverage), color=looks[entry.estimator].color,
+                  linestyle=looks[entry.estimator].dashes, linewidth=1.3, label="_risk")
+    axes.set_xlim(0, 1)
+    axes.set_yscale("function", functions=(root, square))
+    top = max(risk for entry in entries for _, risk in entry.risk_coverage)
+    axes.set_ylim(0, min(1.0, 1.05 * top) or 1)
+    axes.yaxis.set_ticks([tick for tick in (0, 0.001, *TICKS[1:]) if tick <= (top or 1)])
+    axes.xaxis.set_major_formatter(per_cent)
+    axes.yaxis.set_major_formatter(per_cent)
+    axes.set(xlabel="Answered, surest first (%)", ylabel="Failed among them (%)")
+    axes.set_title("Risk and coverage")
+
+
+def handles_of(entries, looks):
+    handles = [Line2D([], [], color=looks[entry.estimator].color, linestyle=looks[entry.estimator].dashes, linewidth=1.3,
+                      label=f"{title_of(entry)}: AURC {number(entry.risk_coverage_area, 4)}") for entry in entries]
+    return handles + [Patch(**BAND, label="if P were right (95 %)")]
+
+
+def caption_of(file, group):
+    parts = [f"Study {file.study}"] + ([style.level_in_words(file.by, group)] if file.by else [])
+    return "; ".join(parts + [
+        "lines: isotonic regression of failures on P; dots: ten bins of equal width with exact 95 % intervals",
+        "the band is pointwise", "axes in proportion to the square root", "risk and coverage: a refusal is the least sure "
+        "and counts as a failure; AURC: area under the curve"]) + "."
+
+
+def draw(file, names=None, group=None):
+    """The whole figure."""
+    entries = of_group(file, group)
+    diagrams = with_diagram(file, entries, names)
+    looks = style.looks_of(list(dict.fromkeys(entry.estimator for entry in entries)))
+    figure = Figure(figsize=(2.7 * (len(diagrams) + 1), 4.0), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.add_gridspec(2, len(diagrams) + 1, height_ratios=(3.2, 1))
+    letters = style.letters(len(diagrams) + 1)
+    for column, entry in enumerate(diagrams):
+        axes = figure.add_subplot(grid[0, column])
+        draw_diagram(axes, entry, looks[entry.estimator])
+        axes.set_title(next(letters) + title_of(entry))
+        draw_histogram(figure.add_subplot(grid[1, column]), entry, file.edges)
+    axes = figure.add_subplot(grid[:, len(diagrams)])
+    draw_risk_coverage(axes, entries, looks)
+    axes.set_title(next(letters) + axes.get_title("left"))
+    style.add_legend_and_caption(figure, handles_of(entries, looks), caption_of(file, entries[0].group))
+    return figure

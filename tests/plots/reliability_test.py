@@ -1,0 +1,124 @@
+#!/usr/bin/python3
+"""Tests of plots/reliability.py; run as: /usr/bin/python3 tests/plots/reliability_test.py"""
+
+import contextlib
+import io
+import json
+import math
+import pathlib
+import sys
+import tempfile
+import unittest
+import warnings
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "plots"))
+
+import reliability as script  # noqa: E402
+from common.command_line import PlotError  # noqa: E402
+from reliability_figure.panels import draw  # noqa: E402
+from reliability_figure.reliability_file import read_reliability  # noqa: E402
+
+warnings.simplefilter("error")  # a layout that was given up is a fault
+
+
+def measured(value, lower=None, upper=None):
+    return {"value": value, "standard_error": None, "interval": [lower, upper]}
+
+
+def entry(estimator="rcme_calibrated", group="", source="stated", **changes):
+    """Every number is another."""
+    return {
+        "estimator": estimator, "group": group, "source": source, "n": 100, "refused": 7, "without": 0,
+        "brier": measured(0.031, 0.02, 0.05), "calibration_slope": measured(None), "area_under_curve":
+        measured(0.91, 0.8, 0.97), "risk_coverage_area": measured(0.0123, 0.01, 0.015),
+        "calibration_error": {"value": 0.021, "mean_if_calibrated": 0.013, "upper_if_calibrated": 0.03, "p_value": 0.2},
+        "curve": [{"first": 0, "last": 0.05, "recalibrated": 0.01, "n": 80, "failed": 1},
+                  {"first": 0.4, "last": 1, "recalibrated": 0.6, "n": 20, "failed": 12}],
+        "band": [{"probability": p, "lower": 0.8 * p, "upper": min(1, 1.2 * p)} for p in (0, 0.5, 1)],
+        "bins": [{"least": 0, "greatest": 0.05, "mean_probability": 0.02,
+                  "failure": {"value": 0.0125, "interval": [0.001, 0.07], "n": 80}},
+                 {"least": 0.4, "greatest": 1, "mean_probability": 0.7,
+                  "failure": {"value": 0.6, "interval": [0.36, 0.81], "n": 20}}],
+        "histogram": [80, 0, 5, 15],
+        "risk_coverage": [{"probability": 0, "coverage": 0.5, "risk": 0.0}, {"probability": None, "coverage": 1,
+                                                                             "risk": 0.18}], **changes}
+
+
+def content(*entries, **changes):
+    return {"format": "rcme reliability 1", "study": "demo", "by": "", "sure_below": 0.1,
+            "histogram_edges": [0, 0.0625, 0.25, 0.5625, 1], "entries": list(entries), **changes}
+
+
+class ReliabilityTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def write(self, value):
+        path = self.folder / "reliability.json"
+        path.write_text(json.dumps(value))
+        return str(path)
+
+    def read(self, *entries, **changes):
+        return read_reliability(self.write(content(*entries, **changes)))
+
+    def test_the_panels_have_the_numbers_of_the_file(self):
+        figure = draw(self.read(entry(), entry("poselib", source="inlier_share")))
+        diagram, histogram, risk = figure.axes
+        curve = next(line for line in diagram.lines if line.get_label() == "_curve")
+        self.assertEqual([tuple(point) for point in curve.get_xydata()], [(0, 0.01), (0.05, 0.01), (0.4, 0.6), (1, 0.6)])
+        band = diagram.collections[0].get_paths()[0].vertices
+        self.assertIn((0.5, 0.6), {tuple(point) for point in band})
+        self.assertIn((0.5, 0.4), {tuple(point) for point in band})
+        dots = {tuple(line.get_xydata()[0]) for line in diagram.lines if len(line.get_xydata()) == 1}
+        self.assertEqual(dots, {(0.02, 0.0125), (0.7, 0.6)})
+        text = diagram.texts[0].get_text()
+        for words in ("n = 100, refused 7", "Brier 0.0310 [0.0200, 0.0500]", "slope not defined", "AUC 0.910"):
+            self.assertIn(words, text)
+        self.assertEqual(list(histogram.patches[0].get_data().values), [80, 0, 5, 15])
+        self.assertEqual([tuple(point) for point in risk.lines[0].get_xydata()], [(0.5, 0), (1, 0.18)])
+        self.assertEqual(len(risk.lines), 2, "all estimators, also those without a diagram")
+
+    def test_those_that_state_probabilities_come_first(self):
+        file = self.read(entry("standard", source="inlier_share"), entry())
+        self.assertEqual([axes.get_title("left") for axes in draw(file).axes if axes.get_title("left")],
+                         ["(a) rcme_calibrated", "(b) Risk and coverage"])
+        named = draw(file, ["standard"])
+        self.assertEqual(named.axes[0].get_title("left"), "(a) Standard, P from inlier share")
+
+    def test_a_group_is_drawn_alone(self):
+        file = self.read(entry(group="0.1"), entry(group="0.3", n=55), by="outlier_ratio")
+        self.assertIn("n = 55", draw(file, group="0.3").axes[0].texts[0].get_text())
+        self.assertIn("outlier ratio = 0.3", draw(file, group="0.3").texts[0].get_text().replace("\n", " "))
+        with self.assertRaisesRegex(PlotError, "no group 'x'; expected one of '0.1', '0.3'"):
+            draw(file, group="x")
+
+    def test_what_cannot_be_drawn_is_named(self):
+        with self.assertRaisesRegex(PlotError, "nothing to draw"):
+            self.read({"estimator": "a", "group": "", "source": "stated", "n": 0, "refused": 3, "without": 0})
+        with self.assertRaisesRegex(PlotError, "no probabilities of 'nobody'"):
+            draw(self.read(entry()), ["nobody"])
+        for changes, words in (({"histogram": [1]}, "4 whole numbers"), ({"brier": measured("x")}, "finite number"),
+                               ({"curve": [{"first": 2, "last": 3, "recalibrated": 0}]}, r"0\.\.1"),
+                               ({"source": "guess"}, "'stated', 'inlier_share'")):
+            with self.assertRaisesRegex(PlotError, words):
+                self.read(entry(**changes))
+        with self.assertRaisesRegex(PlotError, "expected 'rcme reliability 1'"):
+            self.read(entry(), format="rcme reliability 9")
+
+    def test_no_failures_at_all(self):
+        never = entry(risk_coverage=[{"probability": 0, "coverage": 1, "risk": 0.0}], area_under_curve=measured(None),
+                      curve=[{"first": 0, "last": 0, "recalibrated": 0, "n": 100, "failed": 0}], band=[])
+        self.assertTrue(math.isclose(draw(self.read(never)).axes[-1].get_ylim()[1], 1))
+
+    def test_writes_both_files(self):
+        out, said = self.folder / "figure", io.StringIO()
+        with contextlib.redirect_stdout(said):
+            self.assertEqual(script.main([self.write(content(entry(), entry("poselib"))), "--out", str(out)]), 0)
+        for suffix in (".png", ".pdf"):
+            self.assertGreater(out.with_suffix(suffix).stat().st_size, 1000)
+
+
+if __name__ == "__main__":
+    unittest.main()
