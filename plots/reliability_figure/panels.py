@@ -6,6 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter, NullLocator
 
 from common import style
 from common.command_line import PlotError
@@ -14,6 +15,7 @@ from reliability_figure.reliability_file import STATED
 
 MAX_DIAGRAMS = 3
 TICKS = (0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1)
+SCORES_HEIGHT = 46  # points between a diagram and its title
 BAND = dict(color=style.SKY_BLUE, alpha=0.35, linewidth=0)
 RIGHT = dict(color="0.5", linewidth=0.8, linestyle=style.DOTTED)
 BARS = dict(color="0.6", linewidth=0)
@@ -91,7 +93,7 @@ def draw_diagram(axes, entry, look):
                       elinewidth=0.8, clip_on=False, label="_bin")
     axes.set_ylabel("Failed (%)")
     axes.tick_params(labelbottom=False)
-    axes.text(0.04, 0.97, scores_in_words(entry), transform=axes.transAxes, fontsize=6.2, va="top", linespacing=1.35)
+    axes.text(0, 1.03, scores_in_words(entry), transform=axes.transAxes, fontsize=6.2, va="bottom", linespacing=1.35)
 
 
 def draw_histogram(axes, entry, edges):
@@ -100,6 +102,9 @@ def draw_histogram(axes, entry, edges):
     axes.stairs(entry.histogram, edges, fill=True, **BARS)
     axes.set_yscale("symlog", linthresh=1, linscale=0.4)
     axes.set_ylim(0, 1.6 * max(entry.histogram))
+    axes.yaxis.set_ticks([tick for tick in (0, *(10 ** power for power in range(9))) if tick <= max(entry.histogram)])
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda count, _: f"{count:g}"))
     axes.set(xlabel="Stated P (%)", ylabel="Trials")
     axes.tick_params(axis="x", labelsize=7)
 
@@ -116,7 +121,6 @@ def draw_risk_coverage(axes, entries, looks):
     axes.xaxis.set_major_formatter(per_cent)
     axes.yaxis.set_major_formatter(per_cent)
     axes.set(xlabel="Answered, surest first (%)", ylabel="Failed among them (%)")
-    axes.set_title("Risk and coverage")
 
 
 def handles_of(entries, looks):
@@ -138,17 +142,17 @@ def draw(file, names=None, group=None):
     entries = of_group(file, group)
     diagrams = with_diagram(file, entries, names)
     looks = style.looks_of(list(dict.fromkeys(entry.estimator for entry in entries)))
-    figure = Figure(figsize=(2.7 * (len(diagrams) + 1), 4.0), layout="constrained")
+    figure = Figure(figsize=(2.7 * (len(diagrams) + 1), 4.6), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.add_gridspec(2, len(diagrams) + 1, height_ratios=(3.2, 1))
     letters = style.letters(len(diagrams) + 1)
     for column, entry in enumerate(diagrams):
         axes = figure.add_subplot(grid[0, column])
         draw_diagram(axes, entry, looks[entry.estimator])
-        axes.set_title(next(letters) + title_of(entry))
+        axes.set_title(next(letters) + title_of(entry), pad=SCORES_HEIGHT)
         draw_histogram(figure.add_subplot(grid[1, column]), entry, file.edges)
     axes = figure.add_subplot(grid[:, len(diagrams)])
     draw_risk_coverage(axes, entries, looks)
-    axes.set_title(next(letters) + axes.get_title("left"))
+    axes.set_title(next(letters) + "Risk and coverage")
     style.add_legend_and_caption(figure, handles_of(entries, looks), caption_of(file, entries[0].group))
     return figure
