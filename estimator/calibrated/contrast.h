@@ -15,6 +15,8 @@ struct Contrast {
   double shared = 0.0;     // the same over matches that both explain
   double shared_variance = 0.0;  // of `shared`: its terms' sum of squares about their mean
   int num_only_a = 0, num_only_b = 0;
+  // Of b, over the matches that only it explains, against their being wrong, nats.
+  double evidence_only_b = 0.0;
 };
 
 // `background`: density of a wrong match's residual, per unit of the assumed sigma, the same for both.

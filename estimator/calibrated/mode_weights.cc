@@ -7,7 +7,7 @@
 namespace rcme {
 namespace {
 
-constexpr double kExclusive = 0.175, kShared = 1.0, kWidth = 0.6;
+constexpr double kExclusive = 0.26, kShared = 1.25, kWidth = 0.75;
 
 }  // namespace
 
@@ -25,9 +25,15 @@ double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixtur
   return evidence;
 }
 
+bool IsSecondMotion(const Contrast& contrast) {
+  constexpr int kLeastMatches = 12;
+  constexpr double kLeastNats = 40.0;  // 22 for five exact matches, the search, and a margin
+  return contrast.num_only_b >= kLeastMatches && contrast.evidence_only_b > kLeastNats;
+}
+
 double SecondMotionLogOdds(double odds, int num_answer, int num_second) {
   if (!(odds > 0.0) || num_second == 0) return -std::numeric_limits<double>::infinity();
-  return std::log(odds) + 1.5 * std::log(static_cast<double>(num_second) / std::max(num_answer, 1));
+  return std::log(odds) + 3.0 * std::log(static_cast<double>(num_second) / std::max(num_answer, 1));
 }
 
 }  // namespace rcme

@@ -25,8 +25,13 @@ double ModeLogOdds(const Contrast& a_against_b, double log_det_ratio, double num
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background);
 inline constexpr double kSearchNats = 7.0;
 
-// Log-odds that a second motion is the camera's: log(odds (num_b / num_a)^1.5), a prior; num_a and num_b are
-// the matches that the answer and it explain alone.
+// Whether b explains so many matches that a does not, that they are a motion of their own: an object that
+// moves, or the scene behind it. More than the five that any motion may explain, and the search, give by
+// chance.
+bool IsSecondMotion(const Contrast& a_against_b);
+
+// Log-odds that a second motion is the camera's: log(odds (num_second / num_answer)^3), a prior; the
+// numbers are of the matches that each explains alone.
 double SecondMotionLogOdds(double odds, int num_answer, int num_second);
 
 }  // namespace rcme

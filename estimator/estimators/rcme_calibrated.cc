@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +11,7 @@
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/mode_covariance.h"
-#include "estimator/calibrated/mode_weights.h"
+#include "estimator/calibrated/weigh_modes.h"
 #include "estimator/problem_check.h"
 
 namespace rcme {
@@ -36,57 +35,6 @@ MotionProblem Shuffled(const MotionProblem& problem, RandomStream& rng, std::vec
 MixturePrior PriorOf(const MotionProblem& problem, const CalibratedOptions& options) {
   const double diagonal = std::hypot(problem.camera2.width, problem.camera2.height) / problem.sigma_px;
   return {2.0 / diagonal, options.sigma == SigmaKnowledge::kEstimated};
-}
-
-// Of the information in units of the mode's own noise: how well the geometry of its matches determines the
-// motion.
-double LogDetGeometry(const Mode& mode) {
-  const Eigen::LLT<Matrix5d> llt(mode.mixture.scale * mode.mixture.scale * mode.hessian);
-  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
-}
-
-double LogOdds(const ExplainedMode& a, const ExplainedMode& b) {
-  const double background = std::max(a.mode.mixture.outlier_density, b.mode.mixture.outlier_density);
-  return ModeLogOdds(CompareModes(a.explanation, b.explanation, background),
-                     LogDetGeometry(b.mode) - LogDetGeometry(a.mode),
-                     0.5 * (a.explanation.num_explained + b.explanation.num_explained));
-}
-
-// The mode that is more likely than every other one it is compared with, begun at the greatest likelihood.
-size_t ChooseAnswer(const std::vector<ExplainedMode>& modes) {
-  size_t answer = 0;
-  for (size_t i = 1; i < modes.size(); ++i) {
-    if (LogOdds(modes[answer], modes[i]) < 0.0) answer = i;
-  }
-  return answer;
-}
-
-struct Weights {
-  std::vector<double> of_modes;  // sum to one, with that of no motion
-  double of_none = 0.0;
-};
-
-Weights WeighModes(const std::vector<ExplainedMode>& modes, size_t answer, const MixturePrior& prior,
-                   const CalibratedOptions& options) {
-  const ExplainedMode& a = modes[answer];
-  std::vector<double> log_odds(modes.size(), 0.0);
-  for (size_t i = 0; i < modes.size(); ++i) {
-    if (i == answer) continue;
-    log_odds[i] = -LogOdds(a, modes[i]);
-  }
-  const double background = std::max(prior.uniform_density, a.mode.mixture.outlier_density);
-  const double none = -EvidenceOfMotion(a.explanation, a.mode.mixture, background);
-  Weights weights;
-  double total = std::exp(std::min(none, 50.0));
-  weights.of_none = total;
-  for (const double odds : log_odds) {
-    weights.of_modes.push_back(std::exp(odds));
-    total += weights.of_modes.back();
-  }
-  for (double& weight : weights.of_modes) weight /= total;
-  weights.of_none /= total;
-  (void)options;
-  return weights;
 }
 
 class RcmeCalibrated : public MotionEstimator {
@@ -119,17 +67,18 @@ class RcmeCalibrated : public MotionEstimator {
   void Answer(const MotionProblem& problem, const MatchBlocks& matches,
               const std::vector<ExplainedMode>& modes, const MixturePrior& prior,
               const std::vector<int>& order, RandomStream& rng, MotionEstimate* estimate) const {
-    const size_t answer = ChooseAnswer(modes);
-    const Weights weights = WeighModes(modes, answer, prior, options_);
     const MotionBounds bounds{kRadPerDeg * options_.max_rotation_error_deg,
                               kRadPerDeg * options_.max_direction_error_deg};
+    const ModeWeights weights = WeighModes(modes, bounds, prior, options_);
+    const size_t answer = weights.answer;
     const RelativePose& pose = modes[answer].mode.pose;
     double success = 0.0, weight_within = 0.0;
     Matrix5d spread = Matrix5d::Zero();
     for (size_t i = 0; i < modes.size(); ++i) {
       if (weights.of_modes[i] < kNegligibleWeight) continue;
       const Matrix5d covariance = CovarianceOf(problem, matches, modes[i]);
-      success += weights.of_modes[i] * MassWithin(pose, bounds, modes[i].mode.pose, covariance, rng);
+      success += weights.of_modes[i] *
+                 MassWithin(pose, bounds, modes[i].mode.pose, modes[i].mode.inverse_hessian, rng);
       if (!IsWithin(pose, bounds, modes[i].mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, modes[i].mode.pose);
       spread += weights.of_modes[i] * (covariance + away * away.transpose());

@@ -1,0 +1,94 @@
+#include "estimator/calibrated/weigh_modes.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/calibrated/mode_weights.h"
+
+namespace rcme {
+namespace {
+
+// Of the information in units of the mode's own noise: how well the geometry of its matches determines the
+// motion.
+double LogDetGeometry(const Mode& mode) {
+  const Eigen::LLT<Matrix5d> llt(mode.mixture.scale * mode.mixture.scale * mode.hessian);
+  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
+}
+
+class ModeComparison {
+ public:
+  explicit ModeComparison(const std::vector<ExplainedMode>& modes) : modes_(modes) {
+    for (const ExplainedMode& mode : modes) log_dets_.push_back(LogDetGeometry(mode.mode));
+  }
+  Contrast Compare(size_t a, size_t b) const {
+    const double background =
+        std::max(modes_[a].mode.mixture.outlier_density, modes_[b].mode.mixture.outlier_density);
+    return CompareModes(modes_[a].explanation, modes_[b].explanation, background);
+  }
+  double LogOdds(size_t a, size_t b, const Contrast& contrast) const {
+    return ModeLogOdds(contrast, log_dets_[b] - log_dets_[a],
+                       0.5 * (modes_[a].explanation.num_explained + modes_[b].explanation.num_explained));
+  }
+  double LogOdds(size_t a, size_t b) const { return LogOdds(a, b, Compare(a, b)); }
+
+ private:
+  const std::vector<ExplainedMode>& modes_;
+  std::vector<double> log_dets_;
+};
+
+size_t ChooseAnswer(const std::vector<ExplainedMode>& modes, const ModeComparison& comparison) {
+  size_t answer = 0;
+  for (size_t i = 1; i < modes.size(); ++i) {
+    if (comparison.LogOdds(answer, i) < 0.0) answer = i;
+  }
+  return answer;
+}
+
+constexpr double kRivalExponent = 2.5;
+
+// Scales the odds of the modes within the bounds around the answer to a sum of one, and those of the others
+// to their norm.
+void ScaleOdds(const std::vector<ExplainedMode>& modes, size_t answer, const MotionBounds& bounds,
+               std::vector<double>* odds) {
+  double same = 0.0, rivals = 0.0, powers = 0.0;
+  std::vector<bool> is_same;
+  for (size_t i = 0; i < modes.size(); ++i) {
+    is_same.push_back(IsWithin(modes[answer].mode.pose, bounds, modes[i].mode.pose));
+    (is_same[i] ? same : rivals) += (*odds)[i];
+    if (!is_same[i]) powers += std::pow((*odds)[i], kRivalExponent);
+  }
+  const double rival_factor = rivals > 0.0 ? std::pow(powers, 1.0 / kRivalExponent) / rivals : 0.0;
+  for (size_t i = 0; i < modes.size(); ++i) (*odds)[i] *= is_same[i] ? 1.0 / same : rival_factor;
+}
+
+}  // namespace
+
+ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
+                       const MixturePrior& prior, const CalibratedOptions& options) {
+  const ModeComparison comparison(modes);
+  ModeWeights weights;
+  weights.answer = ChooseAnswer(modes, comparison);
+  const ExplainedMode& answer = modes[weights.answer];
+  for (size_t i = 0; i < modes.size(); ++i) {
+    const Contrast contrast = comparison.Compare(weights.answer, i);
+    double log_odds = i == weights.answer ? 0.0 : -comparison.LogOdds(weights.answer, i, contrast);
+    const bool is_second = i != weights.answer && IsSecondMotion(contrast);
+    if (is_second)
+      log_odds = std::max(log_odds, SecondMotionLogOdds(options.second_motion_odds, contrast.num_only_a,
+                                                        contrast.num_only_b));
+    weights.is_second_motion.push_back(is_second);
+    weights.of_modes.push_back(std::exp(std::min(log_odds, 0.0)));
+  }
+  ScaleOdds(modes, weights.answer, bounds, &weights.of_modes);
+  const double background = std::max(prior.uniform_density, answer.mode.mixture.outlier_density);
+  const double evidence = EvidenceOfMotion(answer.explanation, answer.mode.mixture, background);
+  weights.of_no_motion = std::exp(std::min(-evidence, 50.0));
+  double total = weights.of_no_motion;
+  for (const double weight : weights.of_modes) total += weight;
+  for (double& weight : weights.of_modes) weight /= total;
+  weights.of_no_motion /= total;
+  return weights;
+}
+
+}  // namespace rcme

@@ -1,0 +1,27 @@
+// Steps 5 and 6 of rcme_calibrated: which mode is the answer, and how likely each is to be the camera's
+// motion.
+#pragma once
+
+#include <vector>
+
+#include "estimator/calibrated/calibrated_options.h"
+#include "estimator/calibrated/explain_matches.h"
+#include "estimator/calibrated/failure_probability.h"
+
+namespace rcme {
+
+struct ModeWeights {
+  size_t answer = 0;
+  std::vector<double> of_modes;        // probability of each; with of_no_motion they sum to one
+  double of_no_motion = 0.0;           // that the matches are wrong altogether
+  std::vector<bool> is_second_motion;  // explains many matches that the answer does not; its odds are a prior
+};
+
+// The answer is the mode that no other one is more likely than (ModeLogOdds), begun at the greatest
+// likelihood. Modes within `bounds` of it are the same motion found more than once: together they weigh as
+// much as it. The others are alike among themselves, too, so that their odds add up to less than their sum:
+// to (sum odds^2.5)^(1/2.5), the exponent from the regression of ModeLogOdds.
+ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
+                       const MixturePrior& prior, const CalibratedOptions& options);
+
+}  // namespace rcme
