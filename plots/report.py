@@ -16,7 +16,7 @@ from common.command_line import Parser, PlotError, check_folder, run as run_scri
 from common.style import label_of, split_unit
 from report_page import tables
 from report_page.data import read_runs
-from report_page.figures import figures
+from report_page.figures import figures, reliability_figure
 from report_page.html import code, definitions, details, element, joined, listed, page
 from report_page.style import CSS
 
@@ -128,13 +128,21 @@ def again_section(run):
         tables.conditions(run)])
 
 
+def reliability_section(run):
+    return joined([tables.reliability(run), reliability_figure(run),
+                   element("p", "Made by ", code(f"rcme reliability {shlex.quote(run.facts['run'])}"), "; with ",
+                           code("--by FACTOR"), " per level.")])
+
+
 def sections(run):
     """[(part of the id, heading, content)] of one run."""
     parts = [("study", "The study", study_section(run))]
     if len(run.problems.rows):
         parts.append(("severity", "Severity of the problems", tables.severity(run)))
-    return parts + [("results", "Results", results_section(run)), ("figures", "Figures", figures(run)),
-                    ("comparison", "Paired comparisons", comparison_section(run)),
+    parts += [("results", "Results", results_section(run)), ("figures", "Figures", figures(run))]
+    if run.reliability is not None:
+        parts.append(("reliability", "Probability of failure", reliability_section(run)))
+    return parts + [("comparison", "Paired comparisons", comparison_section(run)),
                     ("again", "How to get these numbers again", again_section(run))]
 
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "experiments/analysis/comparison_output.h"
+#include "experiments/analysis/forecast_output.h"
 #include "experiments/analysis/report_findings.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/base/file_output.h"
@@ -118,6 +119,10 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["findings"] = FindingsOf(summary, comparison);
   WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));
   WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));
+  if (HasFailureProbabilities(summary)) {
+    const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(store);
+    WriteFileWhole(folder + "/reliability.json", ForecastsAsJson(summary.study, "", measures));
+  }
   if (!comparison.rows.empty()) WriteFileWhole(folder + "/comparison.csv", ComparisonAsCsv(comparison));
 }
 

@@ -338,6 +338,11 @@ const std::vector<QuantityHelp>& SummaryQuantities() {
   return help;
 }
 
+bool HasFailureProbabilities(const Summary& summary) {
+  return std::ranges::any_of(
+      summary.rows, [](const SummaryRow& row) { return row.quantity == "failure_probability" && row.n > 0; });
+}
+
 std::string KindName(SummaryRow::Kind kind) {
   switch (kind) {
     case SummaryRow::Kind::kRate:

@@ -57,6 +57,9 @@ struct Summary {
   int repeats_per_scene = 1;
 };
 
+// Whether an estimator of the run states probabilities of failure.
+bool HasFailureProbabilities(const Summary& summary);
+
 // A quantity of the summary, for `rcme list quantities`.
 struct QuantityHelp {
   std::string name, kind, doc;

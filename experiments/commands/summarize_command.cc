@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "experiments/analysis/forecast_output.h"
@@ -21,9 +20,8 @@ void WriteTrials(const ResultStore& store, bool with_times, const std::string& o
 // For people. What is said of probabilities is of all conditions together; without any, nothing.
 std::string Tables(const ResultStore& store, const Summary& summary) {
   const std::string text = SummaryAsTable(summary);
-  const bool has_probabilities = std::ranges::any_of(
-      summary.rows, [](const SummaryRow& row) { return row.quantity == "failure_probability"; });
-  return has_probabilities ? text + "\n" + ForecastsAsTable(MeasureFailureForecasts(store)) : text;
+  return HasFailureProbabilities(summary) ? text + "\n" + ForecastsAsTable(MeasureFailureForecasts(store))
+                                          : text;
 }
 
 }  // namespace

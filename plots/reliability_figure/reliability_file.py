@@ -1,6 +1,7 @@
 """Reads reliability.json, which `rcme reliability` writes. It checks and names; it computes nothing.
 
-    format, study, by, histogram_edges, entries: [estimator, group, source, n, refused, and where n is not 0 brier,
+    format, study, by, histogram_edges, entries: [estimator, group, source, n, refused, and where n is not 0
+    mean_probability, failure, sure_failed, sure, brier,
     calibration_slope, area_under_curve, risk_coverage_area, calibration_error, curve, band, bins, histogram, risk_coverage]
 Keys that are not drawn are not looked at.
 """
@@ -39,6 +40,10 @@ class Entry:
     source: str
     n: int
     refused: int
+    mean_probability: float
+    failure: Measured
+    sure_failed: Measured
+    sure: Measured
     brier: Measured
     slope: Measured
     auc: Measured
@@ -57,6 +62,7 @@ class Reliability:
     path: str
     study: str
     by: str
+    sure_below: float
     edges: tuple
     entries: tuple  # those with a probability
 
@@ -90,8 +96,8 @@ def read_entry(node, num_bins):
     error = node.node("calibration_error")
     return Entry(
         node.text("estimator"), node.text("group"), node.one_of("source", (STATED, PROXY)), node.count("n"),
-        node.count("refused"), *(read_measured(node, key) for key in (
-            "brier", "calibration_slope", "area_under_curve", "risk_coverage_area")),
+        node.count("refused"), node.fraction("mean_probability"), *(read_measured(node, key) for key in (
+            "failure", "sure_failed", "sure", "brier", "calibration_slope", "area_under_curve", "risk_coverage_area")),
         error.fraction("value"), error.fraction("mean_if_calibrated"), read_curve(node),
         tuple(tuple(point.fraction(key) for key in ("probability", "lower", "upper"))
               for point in node.nodes("band", "point")),
@@ -107,4 +113,4 @@ def read_reliability(path):
     entries = tuple(read_entry(node, len(edges) - 1) for node in file.nodes("entries", "entry") if node.count("n") > 0)
     if not entries:
         raise file.error("has no estimator with a probability; there is nothing to draw")
-    return Reliability(path, file.text("study"), file.text("by"), tuple(edges), entries)
+    return Reliability(path, file.text("study"), file.text("by"), file.fraction("sure_below"), tuple(edges), entries)

@@ -1,5 +1,5 @@
 """Reads what `rcme report` writes for its page: a folder run_NNNN per run with run.json, summary.csv and, where there is
-more than one estimator, comparison.csv (experiments/analysis/report_data.h)."""
+more than one estimator, comparison.csv, where one states probabilities, reliability.json (experiments/analysis/report_data.h)."""
 
 import pathlib
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from common.command_line import PlotError
 from common.json_file import read_object
 from common.summary_csv import Summary, numbers, read_comparison, read_summary
+from reliability_figure.reliability_file import read_reliability
 
 FORMAT = "rcme report 1"
 NEEDED = {  # key of run.json: its type
@@ -25,6 +26,7 @@ class Run:
     facts: dict
     whole_summary: Summary
     comparison: object  # Summary, or None where there is nothing to compare
+    reliability: object = None  # Reliability, or None where no estimator states probabilities
 
     def of_scene(self):
         """Which rows of the summary describe the problems; a study may also call an estimator so."""
@@ -73,7 +75,8 @@ def read_run(number, folder):
         check(comparison, ("risk_difference", "lower", "upper", p_value, "p_holm"), facts)
         comparison.path = "comparison.csv"  # from here on a message is part of the page
     summary.path = "summary.csv"
-    return Run(number, facts, summary, comparison)
+    stated = folder / "reliability.json"
+    return Run(number, facts, summary, comparison, read_reliability(str(stated)) if stated.exists() else None)
 
 
 def read_runs(folder):

@@ -14,6 +14,7 @@ from common.command_line import PlotError
 from common.summary_csv import where
 from rates import cells, differences, lines
 from rates.selection import title_of
+from reliability_figure import panels as reliability
 from report_page.html import code, element, joined
 
 QUANTITIES = ("failure", "no_candidate")
@@ -87,6 +88,16 @@ def difference_figure(run, x):
                  "intervals; filled marks where Holm's p-value is below 0.05; the numbers are in the tables of paired "
                  "comparisons.", caption,
                  script_command(run, "paired_difference", ["--x", x, "--event", ",".join(EVENTS)]))
+
+
+def reliability_figure(run):
+    """Of the estimators that state probabilities."""
+    caption = "Stated probabilities of failure against what happened."
+    return drawn(lambda: reliability.draw(run.reliability),
+                 f"{caption} Per estimator the reliability curve in the band of right probabilities, a histogram of the "
+                 "probabilities, and the risk-coverage curves; the numbers are in the table above.", caption,
+                 f"rcme {shlex.join(['reliability', run.facts['run']])} --format json --out reliability.json && "
+                 "rcme plot reliability reliability.json --out reliability")
 
 
 def heat_maps(run, x, y, others):

@@ -5,6 +5,7 @@ import shlex
 
 from common import style
 from rates.selection import difference_interval_in_words, interval_in_words, test_in_words, title_of
+from reliability_figure.reliability_file import STATED
 from report_page.html import Html, code, definitions, details, element, joined, table
 
 SHOWN = ("failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
@@ -112,6 +113,34 @@ def results(run):
         ["estimator", "n", *map(heading, shown), "T"],
         by_condition(lines, lambda row: condition_heading(run, row, run.summary.factors, with_replay=True)),
         class_="results")
+
+
+def measured_cell(measured, digits=3, scale=1, unit=""):
+    """A number of reliability.json with its interval."""
+    value, lower, upper = (scale * part for part in (measured.value, measured.lower, measured.upper))
+    if value != value:
+        return DASH
+    interval = [Html("<br>"), small(f"[{lower:.{digits}f}, {upper:.{digits}f}]")] if lower == lower and upper == upper else []
+    return joined([f"{value:.{digits}f}{unit}", *interval])
+
+
+def reliability(run):
+    """A row per estimator: how good its probabilities of failure are."""
+    at_most = f"{run.reliability.sure_below:g}"
+    lines = [[style.label_of(entry.estimator), "stated" if entry.source == STATED else "inlier share", entry.n,
+              entry.refused, f"{entry.mean_probability:.4f}", measured_cell(entry.failure, 4), measured_cell(entry.brier, 4),
+              joined([f"{entry.calibration_error:.4f}", Html("<br>"), small(f"if right: {entry.error_if_calibrated:.4f}")]),
+              measured_cell(entry.slope, 2), measured_cell(entry.auc), measured_cell(entry.risk_coverage_area, 4),
+              measured_cell(entry.sure_failed, 2, 100, " %"), measured_cell(entry.sure, 2, 100, " %")]
+             for entry in run.reliability.entries]
+    return table(
+        "Probability of failure P, of the answers whose truth is known, with 95 % intervals, the trials of a scene as one "
+        "cluster. Brier: mean of (P - y)\u00b2, 0 best. ECE: calibration error in ten bins, below it what right "
+        "probabilities would have. Slope: 1 is right, below 1 too sure. AURC: mean failure rate over all shares of trials "
+        "answered, surest first; a refusal comes last and counts as a failure. Of an estimator that states no P, its share of "
+        "inliers stands in, recalibrated on the other half of the scenes of this run.",
+        ["estimator", "P from", "n", "refused", "mean P", "failed", "Brier", "ECE", "slope", "AUC", "AURC",
+         f"failed at P \u2264 {at_most}", f"trials at P \u2264 {at_most}"], [(None, lines)], class_="results")
 
 
 def severity(run):

@@ -18,6 +18,7 @@ from unittest import mock
 PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
 
+import fake_reliability  # noqa: E402
 import report  # noqa: E402
 from report_page import figures as report_figures  # noqa: E402
 from report_page.html import VOID  # noqa: E402
@@ -275,6 +276,16 @@ class Page(ReportTest):
             {**condition, "first": [{"failure": None, "refusal": None}] * 3} for condition in facts()["conditions"]]),
             summary_csv=summary() + scene)
         self.assertNotIn("Severity of the problems", self.page())  # an estimator may be called so
+
+    def test_probabilities_of_failure_have_a_table_and_a_figure(self):
+        self.add_run()
+        self.assertNotIn("Probability of failure", self.page())
+        (self.data / "run_0001" / "reliability.json").write_text(json.dumps(
+            fake_reliability.content(fake_reliability.entry(), fake_reliability.entry("mine", source="inlier_share"))))
+        page = self.page()
+        for words in ("Probability of failure", "rcme_calibrated", "inlier share", "0.0310", "[0.0200, 0.0500]", "1.25 %",
+                      "75.00 %", "if right: 0.0130", "rcme plot reliability", "rcme reliability"):
+            self.assertIn(words, page)
 
     def test_one_estimator_has_no_comparison(self):
         self.add_run(run_json=facts(estimators=["standard"]), summary_csv=summary(estimators=["standard"]),
