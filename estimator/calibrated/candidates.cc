@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/mixture_sums.h"
@@ -9,7 +10,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kFewSteps = 3, kMostSteps = 20;
+constexpr int kFewSteps = 3, kMostSteps = 30;
 constexpr int kCheiralityBlocks =
     32;                             // matches that decide on which side the cameras are, in blocks of eight
 constexpr double kSameMode = 25.0;  // squared standard deviations
@@ -30,6 +31,23 @@ std::vector<Mode> Distinct(std::vector<Mode> modes, size_t count) {
     if (is_new) distinct.push_back(std::move(mode));
   }
   return distinct;
+}
+
+// Of some scales the one that explains the matches best at the mode's motion. From a scale that is too wide,
+// a fit may end in a compromise between two motions.
+double StartScale(const MatchBlocks& matches, const Mode& mode) {
+  double best = kSoftScale, greatest = -std::numeric_limits<double>::infinity();
+  for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
+    MixtureParameters mixture = mode.mixture;
+    mixture.scale = factor * mixture.noise.scale_of_gaussian;
+    const double right = SumMixture(matches, mode.used, mode.pose, mixture).num_right;
+    mixture.inlier_ratio = std::clamp(right / matches.num_matches(), 0.05, 0.95);
+    const double log_likelihood = SumMixture(matches, mode.used, mode.pose, mixture).log_likelihood;
+    if (!(log_likelihood > greatest)) continue;
+    greatest = log_likelihood;
+    best = mixture.scale;
+  }
+  return best;
 }
 
 }  // namespace
@@ -66,8 +84,11 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
     if (mode.hessian.diagonal().minCoeff() > 0.0) modes.push_back(std::move(mode));
   }
   std::vector<Mode> optima;
-  for (Mode& mode : Distinct(std::move(modes), num_modes)) {
-    if (!prior.estimates_scale) mode.mixture.scale = mode.mixture.noise.scale_of_gaussian;
+  modes = Distinct(std::move(modes), num_modes);
+  const double scale = modes.empty() || !prior.estimates_scale ? NoiseLaw().scale_of_gaussian
+                                                               : StartScale(matches, modes.front());
+  for (Mode& mode : modes) {
+    mode.mixture.scale = scale;
     if (FitMode(matches, prior, kMostSteps, &mode)) optima.push_back(std::move(mode));
   }
   return Distinct(std::move(optima), num_modes);

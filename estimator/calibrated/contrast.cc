@@ -44,6 +44,7 @@ Contrast CompareModes(const Explanation& a, const Explanation& b, double backgro
   for (size_t i = 0; i < a.probability.size(); ++i) {
     const bool by_a = a.probability[i] > 0.5, by_b = b.probability[i] > 0.5;
     if (by_a && by_b) {
+      ++contrast.num_shared;
       shared.Add(std::log(a.left_out_density[i] / b.left_out_density[i]));
     } else if (by_a || by_b) {
       only_one.push_back(i);

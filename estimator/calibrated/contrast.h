@@ -14,7 +14,7 @@ struct Contrast {
   double exclusive = 0.0;  // log-likelihood of a minus that of b over matches that only one explains, nats
   double shared = 0.0;     // the same over matches that both explain
   double shared_variance = 0.0;  // of `shared`: its terms' sum of squares about their mean
-  int num_only_a = 0, num_only_b = 0;
+  int num_only_a = 0, num_only_b = 0, num_shared = 0;
   // Of b, over the matches that only it explains, against their being wrong, nats.
   double evidence_only_b = 0.0;
 };

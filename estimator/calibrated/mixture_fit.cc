@@ -17,15 +17,8 @@ constexpr double kScaleRange = 16.0;  // s stays within this factor of 1
 // A step may lower the likelihood by so much, nats: c(z) is not in the gradient, and may fall for a match
 // near an epipole.
 constexpr double kTolerance = 1.0;
-constexpr double kNegligibleDecrement = 4e-4, kSmallDecrement = 0.05;  // twice the gain of a full step, nats
+constexpr double kNegligibleDecrement = 4e-4, kSmallDecrement = 1.0;  // twice the gain of a full step, nats
 constexpr double kPriorWrongNear = 5.0;  // wrong matches that the prior of q counts for
-
-// The logarithm of the inverse-gamma density of s^2 with kPriorMatches degrees of freedom at s0^2, but for a
-// constant.
-double LogPrior(const MixtureParameters& mixture) {
-  const double ratio = mixture.noise.scale_of_gaussian / mixture.scale;
-  return kPriorMatches * (std::log(ratio) - 0.5 * ratio * ratio);
-}
 
 // One step of expectation-maximisation. The motion takes five degrees of freedom of the residuals.
 MixtureParameters Updated(const MixtureParameters& old, const MixtureSums& sums, int num_used,
@@ -72,16 +65,17 @@ bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_step
     next.pose = Retract(mode->pose, move);
     if (update == MixtureUpdate::kAll) next.mixture = Updated(mode->mixture, at, num_used, prior);
     const MixtureSums there = SumMixture(matches, mode->used, next.pose, next.mixture);
-    const double gain =
-        there.log_likelihood + LogPrior(next.mixture) - at.log_likelihood - LogPrior(mode->mixture);
     if (!std::isfinite(there.log_likelihood)) return false;
-    if (gain <
-        -0.05) {  // an update of the scale alone may cost a little: its degrees of freedom are corrected
-      damping = std::max(10.0 * damping, 0.1);
-      if (damping > 1e6) return false;
+    if (there.log_likelihood < at.log_likelihood - kTolerance) {
+      // The motion's step or the mixture's? The density of wrong matches has no normalisation, so that its
+      // update may lower the likelihood.
       mode->mixture = next.mixture;
       at = SumMixture(matches, mode->used, mode->pose, mode->mixture);
-      continue;
+      if (there.log_likelihood < at.log_likelihood - kTolerance) {
+        damping = std::max(10.0 * damping, 0.1);
+        if (damping > 1e6) return false;
+        continue;
+      }
     }
     damping = std::max(0.1 * damping, 1e-6);
     decrement = -move.dot(at.gradient);

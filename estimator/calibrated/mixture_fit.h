@@ -19,7 +19,7 @@ enum class MixtureUpdate { kNone, kAll };
 MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inlier_ratio);
 
 // At most `max_steps` steps; fewer where one is negligible (below 0.02 standard deviations of the motion and
-// 0.2 % of the scale). Returns whether the last one was small, below 0.2 standard deviations; a mode whose
+// 0.2 % of the scale). Returns whether the last one was below a standard deviation; a mode whose
 // Hessian cannot be inverted does not converge.
 bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
              MixtureUpdate update = MixtureUpdate::kAll);

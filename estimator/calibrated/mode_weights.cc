@@ -13,8 +13,10 @@ constexpr double kExclusive = 0.26, kShared = 1.25, kWidth = 0.75;
 
 double ModeLogOdds(const Contrast& contrast, double log_det_ratio, double num_explained) {
   const double width = std::clamp(log_det_ratio, -5.0, 5.0) * num_explained / (num_explained + 50.0);
-  return kExclusive * contrast.exclusive +
-         kShared * contrast.shared / std::sqrt(contrast.shared_variance + 10.0) + kWidth * width;
+  const double sd = std::sqrt(contrast.shared_variance + 10.0);
+  const double beyond_noise = std::max(std::abs(contrast.shared) - 3.0 * sd, 0.0);
+  return kExclusive * (contrast.exclusive + std::copysign(beyond_noise, contrast.shared)) +
+         kShared * contrast.shared / sd + kWidth * width;
 }
 
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background) {
@@ -28,7 +30,8 @@ double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixtur
 bool IsSecondMotion(const Contrast& contrast) {
   constexpr int kLeastMatches = 12;
   constexpr double kLeastNats = 40.0;  // 22 for five exact matches, the search, and a margin
-  return contrast.num_only_b >= kLeastMatches && contrast.evidence_only_b > kLeastNats;
+  return contrast.num_only_b >= kLeastMatches && contrast.evidence_only_b > kLeastNats &&
+         contrast.num_shared < std::min(contrast.num_only_a, contrast.num_only_b);
 }
 
 double SecondMotionLogOdds(double odds, int num_answer, int num_second) {

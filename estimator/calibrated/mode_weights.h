@@ -9,7 +9,7 @@ namespace rcme {
 
 // Log-odds of mode a against mode b,
 //
-//   kExclusive exclusive + kShared shared / sqrt(variance + 10)
+//   kExclusive (exclusive + what `shared` has beyond 3 sd) + kShared shared / sd, sd = sqrt(variance + 10)
 //       + kWidth n / (n + 50) clamp(log(det Sigma_a / det Sigma_b), -5, 5),
 //
 // n the mean number of matches that the two explain, Sigma without the scale of the noise. The Bayes factor
