@@ -17,4 +17,12 @@ std::vector<CaseClaim> MleCalibration();         // coverage of maximum likeliho
 CaseClaim EstimatorCalibration(const std::string& label, const std::string& reading,
                                std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds);
 
+// That its stated probabilities of failure are right. Only of an estimator that states them
+// (StatesProbability).
+CaseClaim ProbabilityCalibration(const std::string& label, const std::string& reading,
+                                 std::shared_ptr<const MotionEstimator> estimator,
+                                 const FailureBounds& bounds);
+// Who states a probability can refuse by it: an estimator with the option max_failure_probability.
+bool StatesProbability(const std::string& estimator);
+
 }  // namespace rcme

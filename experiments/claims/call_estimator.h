@@ -26,6 +26,14 @@ inline constexpr size_t kDifficultyStatistic = 4;
 // The targets for it: coverage and mean PIT of statistic 0 are claimed, the rates are measured.
 std::vector<Target> ReportedCovarianceTargets();
 
+// What an answer says of its stated probability of failure P, y being 1 where it failed:
+//   0  P - y;  1  (P - y) P, which many confident mistakes or too much caution move;  2  y where P is at most
+//   0.1 3  (P - y)^2;  4  P.
+// NaN where no P is stated, and for a refusal.
+Outcome StatedProbabilityStatistic(const TrialRecord& record, const FailureBounds& bounds = FailureBounds());
+// The targets for it: the first three are claimed.
+std::vector<Target> StatedProbabilityTargets();
+
 // Whether the call failed where a refusal ("Detect-fail") counts as no failure, and where it counts as one.
 bool FailsSilently(const TrialRecord& record);
 bool FailsOrRefuses(const TrialRecord& record);

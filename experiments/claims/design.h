@@ -29,6 +29,11 @@ inline constexpr CheckDesign kReprojectionCoverage{0,
                                                    {4'000, 32'000, 120'000}};  // bundle adjustment, likewise
 inline constexpr CheckDesign kEstimatorCoverage{0,
                                                 {4'000, 32'000, 120'000}};  // an estimator's call, likewise
+inline constexpr CheckDesign kStatedProbability{
+    0.015, {2'000, 12'000, 60'000}, 1, 0.2};  // mean of stated less actual failure
+inline constexpr CheckDesign kWeightedProbability{0.01, {2'000, 12'000, 60'000}, 1, 0.1};  // weighted by it
+inline constexpr CheckDesign kSureAnswers{
+    0.01, {2'000, 12'000, 60'000}, 0.5};  // failures among answers with P <= 0.1
 inline constexpr CheckDesign kUntunedCoverage{0,
                                               {1'000'000, 1'000'000, 1'000'000}};  // always a million points
 inline constexpr CheckDesign kIdentity{0.001,

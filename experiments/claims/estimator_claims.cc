@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "experiments/claims/calibration.h"
 #include "experiments/claims/call_estimator.h"
 #include "experiments/claims/design.h"
@@ -22,6 +24,31 @@ CaseClaim EstimatorCalibration(const std::string& label, const std::string& read
           kDifficultyStatistic};
 }
 
+CaseClaim ProbabilityCalibration(const std::string& label, const std::string& reading,
+                                 std::shared_ptr<const MotionEstimator> estimator,
+                                 const FailureBounds& bounds) {
+  return {{"estimator.probability." + label,
+           "of one's own",
+           reading,
+           "Motions fail as often as their stated probabilities of failure say",
+           "stated probability less 1 for a failure, 0 for none; and the failures among the sure answers",
+           "outlier_ratio",
+           {}},
+          [estimator, bounds](Case& made) {
+            return StatedProbabilityStatistic(CallEstimator(*estimator, made), bounds);
+          },
+          StatedProbabilityTargets(),
+          kStatedProbability.limits,
+          {.num_true_matches = 0, .matches = MatchesOf::kPair}};
+}
+
+bool StatesProbability(const std::string& estimator) {
+  const std::unique_ptr<EstimatorModel> model = FindEstimator(estimator).make();
+  return std::ranges::any_of(model->Parameters(), [](const Parameter& option) {
+    return option.name() == "max_failure_probability";
+  });
+}
+
 std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators) {
   std::vector<Claim> claims;
   for (const EstimatorEntry& entry : estimators) {
@@ -32,6 +59,13 @@ std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators
       settings.push_back({{"num_matches", "100"}, {"outlier_ratio", outlier_ratio}});
     }
     claims.push_back(OnBuiltInScene(claim, settings));
+  }
+  for (const EstimatorEntry& entry : estimators) {
+    if (!StatesProbability(entry.name)) continue;
+    claims.push_back(OnBuiltInScene(
+        ProbabilityCalibration(entry.name, entry.name + ", defaults", entry.make()->Make(), FailureBounds()),
+        {{{"num_matches", "100"}, {"outlier_ratio", "0.2"}},
+         {{"num_matches", "100"}, {"outlier_ratio", "0.7"}}}));
   }
   return claims;
 }

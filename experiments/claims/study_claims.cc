@@ -22,6 +22,9 @@ std::vector<CaseClaim> CalibrationOf(const StudyPlan& plan) {
     const EstimatorSpec& spec = plan.study.estimators[e];
     all.push_back(EstimatorCalibration(spec.label, spec.name + ", options of the study", plan.estimators[e],
                                        plan.study.failure));
+    if (!StatesProbability(spec.name)) continue;
+    all.push_back(ProbabilityCalibration(spec.label, spec.name + ", options of the study", plan.estimators[e],
+                                         plan.study.failure));
   }
   return all;
 }
