@@ -70,8 +70,11 @@ bool IsSameMode(const Mode& a, const Mode& b, double standard_deviations) {
   return difference.dot(a.hessian * difference) <= standard_deviations * standard_deviations;
 }
 
-std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
-                            const std::vector<ScoredEssential>& candidates, size_t num_modes) {
+namespace {
+
+// Of every candidate a mode after a few steps at a fixed scale.
+std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& prior,
+                                const std::vector<ScoredEssential>& candidates) {
   std::vector<Mode> modes;
   const double share = candidates.empty() ? 0.5 : candidates.front().score / matches.num_matches();
   const MixtureParameters common = FirstGuess(prior, kSoftScale, share);
@@ -83,12 +86,35 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
     FitMode(matches, prior, kFewSteps, &mode, MixtureUpdate::kNone);
     if (mode.hessian.diagonal().minCoeff() > 0.0) modes.push_back(std::move(mode));
   }
-  std::vector<Mode> optima;
-  modes = Distinct(std::move(modes), num_modes);
-  const double scale = modes.empty() || !prior.estimates_scale ? NoiseLaw().scale_of_gaussian
-                                                               : StartScale(matches, modes.front());
+  return modes;
+}
+
+// The same modes at another scale.
+std::vector<Mode> AtScale(const MatchBlocks& matches, std::vector<Mode> modes, double scale) {
   for (Mode& mode : modes) {
     mode.mixture.scale = scale;
+    mode.log_likelihood = SumMixture(matches, mode.used, mode.pose, mode.mixture).log_likelihood;
+  }
+  return modes;
+}
+
+}  // namespace
+
+std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
+                            const std::vector<ScoredEssential>& candidates, size_t num_modes) {
+  const std::vector<Mode> refined = RefineALittle(matches, prior, candidates);
+  const double assumed_scale = NoiseLaw().scale_of_gaussian;
+  std::vector<Mode> starts = Distinct(AtScale(matches, refined, assumed_scale), (num_modes + 1) / 2);
+  if (prior.estimates_scale && !refined.empty()) {
+    std::vector<Mode> wide = Distinct(refined, num_modes / 2);
+    const double scale = StartScale(matches, wide.front());
+    for (Mode& mode : wide) {
+      mode.mixture.scale = scale;
+      starts.push_back(std::move(mode));
+    }
+  }
+  std::vector<Mode> optima;
+  for (Mode& mode : starts) {
     if (FitMode(matches, prior, kMostSteps, &mode)) optima.push_back(std::move(mode));
   }
   return Distinct(std::move(optima), num_modes);
