@@ -65,7 +65,7 @@ std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators
     claims.push_back(OnBuiltInScene(
         ProbabilityCalibration(entry.name, entry.name + ", defaults", entry.make()->Make(), FailureBounds()),
         {{{"num_matches", "100"}, {"outlier_ratio", "0.2"}},
-         {{"num_matches", "100"}, {"outlier_ratio", "0.7"}}}));
+         {{"num_matches", "100"}, {"outlier_ratio", "0.8"}}}));
   }
   return claims;
 }

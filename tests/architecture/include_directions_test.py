@@ -28,7 +28,7 @@ ALLOWED = {
 FOLDERS = {
     "experiments": ["base", "data", "study", "trial", "result_file", "run", "analysis", "claims", "validity", "tuning",
                     "contract", "commands", "."],
-    "plots": ["common", "rates", "audit_figures", "tuning_figures", "report_page", "trial_sheet", "."],
+    "plots": ["common", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "trial_sheet", "."],
 }
 PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)
 OUR_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
