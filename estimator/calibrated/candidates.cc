@@ -4,13 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/calibrated/explanation.h"
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/mixture_sums.h"
 
 namespace rcme {
 namespace {
 
-constexpr int kFewSteps = 3, kMostSteps = 30;
+constexpr int kFewSteps = 3, kMostSteps = 15;
+constexpr int kFirstMatches = 128;  // that a first scale is estimated from
 constexpr int kCheiralityBlocks =
     32;                             // matches that decide on which side the cameras are, in blocks of eight
 constexpr double kSameMode = 25.0;  // squared standard deviations
@@ -33,19 +35,26 @@ std::vector<Mode> Distinct(std::vector<Mode> modes, size_t count) {
   return distinct;
 }
 
-// Of some scales the one that explains the matches best at the mode's motion. From a scale that is too wide,
-// a fit may end in a compromise between two motions.
+// Of some scales the one that explains the matches best at the mode's motion, by their first kFirstMatches.
+// From a scale that is too wide, a fit may end in a compromise between two motions.
 double StartScale(const MatchBlocks& matches, const Mode& mode) {
-  double best = kSoftScale, greatest = -std::numeric_limits<double>::infinity();
+  MatchTermLists terms;
+  EvaluateTerms(matches, mode.pose, &terms);
+  const auto n = static_cast<size_t>(std::min(matches.num_matches(), kFirstMatches));
+  const MixtureParameters& m = mode.mixture;
+  const double wrong = (1.0 - m.inlier_ratio) * m.outlier_density;
+  double best = m.scale, greatest = -std::numeric_limits<double>::infinity();
   for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
-    MixtureParameters mixture = mode.mixture;
-    mixture.scale = factor * mixture.noise.scale_of_gaussian;
-    const double right = SumMixture(matches, mode.used, mode.pose, mixture).num_right;
-    mixture.inlier_ratio = std::clamp(right / matches.num_matches(), 0.05, 0.95);
-    const double log_likelihood = SumMixture(matches, mode.used, mode.pose, mixture).log_likelihood;
+    const double scale = factor * m.noise.scale_of_gaussian;
+    double product = 1.0, log_likelihood = 0.0;
+    for (size_t i = 0; i < n; ++i) {
+      product *= m.inlier_ratio * NoiseDensity(m.noise, terms.residual[i] / scale) / scale + wrong;
+      if (i % 32 == 31) log_likelihood += std::log(product), product = 1.0;
+    }
+    log_likelihood += std::log(product);
     if (!(log_likelihood > greatest)) continue;
     greatest = log_likelihood;
-    best = mixture.scale;
+    best = scale;
   }
   return best;
 }
@@ -83,7 +92,11 @@ std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& 
     mode.pose = PoseInFront(matches, candidate.E);
     mode.mixture = common;
     mode.used = matches.All();
-    FitMode(matches, prior, kFewSteps, &mode, MixtureUpdate::kNone);
+    FitMode(matches, prior, 1, &mode, MixtureUpdate::kNone);
+    const bool is_known =
+        std::ranges::any_of(modes, [&](const Mode& other) { return IsSameMode(other, mode); });
+    if (is_known) continue;
+    FitMode(matches, prior, kFewSteps - 1, &mode, MixtureUpdate::kNone);
     if (mode.hessian.diagonal().minCoeff() > 0.0) modes.push_back(std::move(mode));
   }
   return modes;
@@ -104,18 +117,17 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
                             const std::vector<ScoredEssential>& candidates, size_t num_modes) {
   const std::vector<Mode> refined = RefineALittle(matches, prior, candidates);
   const double assumed_scale = NoiseLaw().scale_of_gaussian;
-  std::vector<Mode> starts = Distinct(AtScale(matches, refined, assumed_scale), (num_modes + 1) / 2);
-  if (prior.estimates_scale && !refined.empty()) {
-    std::vector<Mode> wide = Distinct(refined, num_modes / 2);
-    const double scale = StartScale(matches, wide.front());
-    for (Mode& mode : wide) {
-      mode.mixture.scale = scale;
-      starts.push_back(std::move(mode));
-    }
-  }
   std::vector<Mode> optima;
-  for (Mode& mode : starts) {
+  for (Mode& mode : Distinct(AtScale(matches, refined, assumed_scale), (num_modes + 1) / 2)) {
     if (FitMode(matches, prior, kMostSteps, &mode)) optima.push_back(std::move(mode));
+  }
+  if (!prior.estimates_scale) return Distinct(std::move(optima), num_modes);
+  for (Mode& mode : Distinct(refined, num_modes / 2)) {
+    mode.mixture.scale = StartScale(matches, mode);
+    const bool is_known = std::ranges::any_of(optima, [&](const Mode& other) {
+      return IsSameMode(other, mode) && std::abs(std::log(other.mixture.scale / mode.mixture.scale)) < 0.7;
+    });
+    if (!is_known && FitMode(matches, prior, kMostSteps, &mode)) optima.push_back(std::move(mode));
   }
   return Distinct(std::move(optima), num_modes);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "estimator/calibrated/candidates.h"
+#include "estimator/calibrated/hypothesis_search.h"
 #include "estimator/calibrated/leverage_branches.h"
 #include "estimator/calibrated/twisted_pair.h"
 
@@ -23,6 +24,16 @@ class ModeList {
     return std::ranges::any_of(modes_, [&](const ExplainedMode& known) {
       return IsSameMode(known.mode, mode, standard_deviations);
     });
+  }
+  // The modes that explain at least half as many matches as the one that explains the most.
+  std::vector<size_t> Notable() const {
+    int most = 0;
+    for (const ExplainedMode& mode : modes_) most = std::max(most, mode.explanation.num_explained);
+    std::vector<size_t> notable;
+    for (size_t i = 0; i < modes_.size(); ++i) {
+      if (2 * modes_[i].explanation.num_explained >= most) notable.push_back(i);
+    }
+    return notable;
   }
   void Add(Mode mode) {
     Explanation explanation = Explain(matches_, mode);
@@ -47,6 +58,9 @@ class ModeList {
   }
   // The likelihood's optimum for the other sign of t is not sought: only c(z) tells the two apart.
   void AddOppositeWay(size_t i) {
+    // Of the right matches more than a quarter by more than their noise: no.
+    const double ahead = SumCheirality(matches_, matches_.num_blocks(), modes_[i].mode.pose, kSoftScale);
+    if (ahead > 10.0 + 0.25 * modes_[i].explanation.num_explained) return;
     Mode mode = modes_[i].mode;
     mode.pose.t = -mode.pose.t;
     mode.origin = ModeOrigin::kOppositeWay;
@@ -67,9 +81,9 @@ std::vector<ExplainedMode> ExplainMatches(const MotionProblem& problem, const Ma
                                           const MixturePrior& prior, std::vector<Mode> modes) {
   ModeList list(problem, matches, prior);
   for (Mode& mode : modes) list.Add(std::move(mode));
-  for (size_t i = 0, count = list.modes().size(); i < count; ++i) list.AddBranches(i);
-  for (size_t i = 0, count = list.modes().size(); i < count; ++i) list.AddTwistedPair(i);
-  for (size_t i = 0, count = list.modes().size(); i < count; ++i) list.AddOppositeWay(i);
+  for (const size_t i : list.Notable()) list.AddBranches(i);
+  for (const size_t i : list.Notable()) list.AddTwistedPair(i);
+  for (const size_t i : list.Notable()) list.AddOppositeWay(i);
   return list.modes();
 }
 

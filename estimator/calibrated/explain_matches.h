@@ -15,8 +15,9 @@ struct ExplainedMode {
   Explanation explanation;
 };
 
-// Every mode with what it says of the matches, then its leverage branches, the other motion of its plane and
-// each of these the other way; those only that explain more than five matches.
+// Every mode with what it says of the matches, then, of those that explain at least half of what the best
+// does, the leverage branches, the other motion of its plane and each of these the other way; those only that
+// explain more than five matches.
 std::vector<ExplainedMode> ExplainMatches(const MotionProblem& problem, const MatchBlocks& matches,
                                           const MixturePrior& prior, std::vector<Mode> modes);
 

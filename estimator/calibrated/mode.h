@@ -12,7 +12,6 @@ enum class ModeOrigin {
   kTwistedPair,  // the other motion of a plane (twisted_pair.h)
   kLeverage,     // a fit without a match of large influence (leverage_branches.h)
   kOppositeWay,  // the same E, the other way
-  kUnexplained,  // a sample of the matches that another mode does not explain
 };
 
 // One explanation of the matches: a motion at an optimum of the mixture likelihood.

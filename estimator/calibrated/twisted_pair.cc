@@ -11,6 +11,7 @@ namespace rcme {
 namespace {
 
 constexpr int kRefits = 5;
+constexpr size_t kMostSamples = 128;  // matches that the plane is sought in; their order means nothing
 constexpr double kPlaneBound =
     3.0;  // standard deviations of the parallax within which a match is of the plane
 
@@ -31,7 +32,7 @@ std::vector<DepthSample> DepthSamples(const MotionProblem& problem, const Relati
   const double noise_rad = problem.sigma_px * std::sqrt(1.0 / (problem.camera1.fx * problem.camera1.fy) +
                                                         1.0 / (problem.camera2.fx * problem.camera2.fy));
   std::vector<DepthSample> samples;
-  for (size_t i = 0; i < problem.matches.size(); ++i) {
+  for (size_t i = 0; i < problem.matches.size() && samples.size() < kMostSamples; ++i) {
     if (probability[i] < 0.5) continue;
     const Eigen::Vector3d ray1 = problem.camera1.Ray(problem.matches[i].x1_px);
     const Eigen::Vector3d ray2 = problem.camera2.Ray(problem.matches[i].x2_px);

@@ -47,19 +47,16 @@ size_t ChooseAnswer(const std::vector<ExplainedMode>& modes, const ModeCompariso
 
 constexpr double kRivalExponent = 2.5;
 
-// Scales the odds of the modes within the bounds around the answer to a sum of one, and those of the others
+// Scales the odds of the modes within the bounds around the answer to a sum of one, and those of its rivals
 // to their norm.
-void ScaleOdds(const std::vector<ExplainedMode>& modes, size_t answer, const MotionBounds& bounds,
-               std::vector<double>* odds) {
+void ScaleOdds(const std::vector<bool>& is_rival, std::vector<double>* odds) {
   double same = 0.0, rivals = 0.0, powers = 0.0;
-  std::vector<bool> is_same;
-  for (size_t i = 0; i < modes.size(); ++i) {
-    is_same.push_back(IsWithin(modes[answer].mode.pose, bounds, modes[i].mode.pose));
-    (is_same[i] ? same : rivals) += (*odds)[i];
-    if (!is_same[i]) powers += std::pow((*odds)[i], kRivalExponent);
+  for (size_t i = 0; i < odds->size(); ++i) {
+    (is_rival[i] ? rivals : same) += (*odds)[i];
+    if (is_rival[i]) powers += std::pow((*odds)[i], kRivalExponent);
   }
   const double rival_factor = rivals > 0.0 ? std::pow(powers, 1.0 / kRivalExponent) / rivals : 0.0;
-  for (size_t i = 0; i < modes.size(); ++i) (*odds)[i] *= is_same[i] ? 1.0 / same : rival_factor;
+  for (size_t i = 0; i < odds->size(); ++i) (*odds)[i] *= is_rival[i] ? rival_factor : 1.0 / same;
 }
 
 }  // namespace
@@ -77,10 +74,11 @@ ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBoun
     if (is_second)
       log_odds = std::max(log_odds, SecondMotionLogOdds(options.second_motion_odds, contrast.num_only_a,
                                                         contrast.num_only_b));
+    weights.is_rival.push_back(!IsWithin(answer.mode.pose, bounds, modes[i].mode.pose));
     weights.is_second_motion.push_back(is_second);
     weights.of_modes.push_back(std::exp(std::min(log_odds, 0.0)));
   }
-  ScaleOdds(modes, weights.answer, bounds, &weights.of_modes);
+  ScaleOdds(weights.is_rival, &weights.of_modes);
   const double background = std::max(prior.uniform_density, answer.mode.mixture.outlier_density);
   const double evidence = EvidenceOfMotion(answer.explanation, answer.mode.mixture, background);
   weights.of_no_motion = std::exp(std::min(-evidence, 50.0));

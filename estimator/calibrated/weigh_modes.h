@@ -14,6 +14,7 @@ struct ModeWeights {
   size_t answer = 0;
   std::vector<double> of_modes;        // probability of each; with of_no_motion they sum to one
   double of_no_motion = 0.0;           // that the matches are wrong altogether
+  std::vector<bool> is_rival;          // beyond the bounds around the answer
   std::vector<bool> is_second_motion;  // explains many matches that the answer does not; its odds are a prior
 };
 

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kNegligibleWeight = 1e-9;
+constexpr double kNotableWeight = 1e-4;  // of a mode that is reported
 
 // The matches in an order that means nothing: order[i] is the index of the i-th.
 MotionProblem Shuffled(const MotionProblem& problem, RandomStream& rng, std::vector<int>* order) {
@@ -37,6 +38,114 @@ MixturePrior PriorOf(const MotionProblem& problem, const CalibratedOptions& opti
   return {2.0 / diagonal, options.sigma == SigmaKnowledge::kEstimated};
 }
 
+// What follows from the weights of the modes: the probability of failure and the covariance of the answer.
+struct Verdict {
+  double failure_probability = 1.0;
+  double mass_beyond = 0.0;  // of the modes within the bounds: what of them lies beyond
+  Matrix5d pose_cov = Matrix5d::Zero();
+};
+
+void FillMotion(const ExplainedMode& answer, const Verdict& verdict, double assumed_sigma_px,
+                MotionEstimate* estimate) {
+  const MixtureParameters& mixture = answer.mode.mixture;
+  estimate->status = MotionStatus::kOk;
+  estimate->cam2_from_cam1 = estimate->initial_pose = answer.mode.pose;
+  estimate->pose_cov = verdict.pose_cov;
+  estimate->failure_probability = verdict.failure_probability;
+  estimate->sigma_estimated_px = assumed_sigma_px * mixture.scale / mixture.noise.scale_of_gaussian;
+}
+
+// `order`: see Shuffled.
+void FillMatches(const Explanation& explanation, const std::vector<int>& order, MotionEstimate* estimate) {
+  estimate->inlier_probabilities.resize(order.size());
+  double num_right = 0.0;
+  for (size_t i = 0; i < order.size(); ++i) {
+    const double p = explanation.probability[i];
+    num_right += p;
+    estimate->inlier_probabilities[static_cast<size_t>(order[i])] = p;
+    if (p > 0.5) estimate->inliers.push_back(order[i]);
+  }
+  std::ranges::sort(estimate->inliers);
+  estimate->num_support = estimate->num_explained = static_cast<int>(estimate->inliers.size());
+  // Of a variance from k degrees of freedom, 2 sigma^4 / k.
+  const double freedom = std::max(num_right - 5.0, 1.0);
+  estimate->sigma_estimated_sd_px = estimate->sigma_estimated_px / std::sqrt(2.0 * freedom);
+}
+
+void FillOtherModes(const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
+                    MotionEstimate* estimate) {
+  const Explanation& answer = modes[weights.answer].explanation;
+  for (size_t i = 0; i < modes.size(); ++i) {
+    if (i == weights.answer || weights.of_modes[i] < kNotableWeight) continue;
+    const Explanation& other = modes[i].explanation;
+    int num_only = 0;
+    for (size_t k = 0; k < answer.probability.size(); ++k) {
+      num_only += other.probability[k] > 0.5 && !(answer.probability[k] > 0.5);
+    }
+    estimate->other_modes.push_back({modes[i].mode.pose, modes[i].mode.inverse_hessian, weights.of_modes[i],
+                                     num_only / static_cast<double>(answer.probability.size())});
+  }
+  std::ranges::stable_sort(estimate->other_modes, std::ranges::greater{}, &MotionMode::weight);
+}
+
+Doubt DoubtOfOrigin(const ExplainedMode& mode, bool is_second_motion) {
+  if (is_second_motion) return Doubt::kOtherMotion;
+  switch (mode.mode.origin) {
+    case ModeOrigin::kTwistedPair:
+      return Doubt::kPlane;
+    case ModeOrigin::kLeverage:
+      return Doubt::kFewMatchesDecide;
+    case ModeOrigin::kOppositeWay:
+      return Doubt::kOppositeWay;
+    case ModeOrigin::kSample:
+      break;
+  }
+  return Doubt::kOtherMotion;
+}
+
+// The greatest part of the probability of failure, where that is more than a hundredth.
+Doubt DoubtOf(const std::vector<ExplainedMode>& modes, const ModeWeights& weights, double mass_beyond) {
+  Doubt doubt = Doubt::kNone;
+  double greatest = 0.01;
+  const auto consider = [&](double part, Doubt reason) {
+    if (part > greatest) greatest = part, doubt = reason;
+  };
+  consider(mass_beyond, Doubt::kLowParallax);
+  consider(weights.of_no_motion, Doubt::kFewMatches);
+  for (size_t i = 0; i < modes.size(); ++i) {
+    if (weights.is_rival[i])
+      consider(weights.of_modes[i], DoubtOfOrigin(modes[i], weights.is_second_motion[i]));
+  }
+  return doubt;
+}
+
+std::string ReasonOf(const MotionEstimate& e) {
+  switch (e.doubt) {
+    case Doubt::kNone:
+      return {};
+    case Doubt::kOtherMotion:
+      return fmt::format(": another motion explains {:.0f} % more of the matches",
+                         e.other_modes.empty() ? 0.0 : 100.0 * e.other_modes.front().explained_share);
+    case Doubt::kPlane:
+      return ": a plane, two motions explain the matches";
+    case Doubt::kFewMatchesDecide:
+      return ": a few matches of large influence decide";
+    case Doubt::kOppositeWay:
+      return ": the direction may be the opposite one";
+    case Doubt::kLowParallax:
+      return ": hardly any parallax, the direction is poorly determined";
+    case Doubt::kFewMatches:
+      return ": chance might explain as many matches";
+  }
+  return {};
+}
+
+std::string MessageOf(const MotionEstimate& e) {
+  return fmt::format("{} of {} matches agree, sigma {:.2g} px; wrong with probability {:.2g}{}",
+                     e.inliers.size(), e.inlier_probabilities.size(), e.sigma_estimated_px,
+                     e.failure_probability, ReasonOf(e));
+}
+
 class RcmeCalibrated : public MotionEstimator {
  public:
   explicit RcmeCalibrated(const CalibratedOptions& options) : options_(options) { Validate(options); }
@@ -49,60 +158,58 @@ class RcmeCalibrated : public MotionEstimator {
     const ScoreMatches score_matches(matches);
     const MixturePrior prior = PriorOf(problem, options_);
     const HypothesisSearch search = SearchHypotheses(matches, score_matches, options_, rng);
-    std::vector<Mode> modes =
+    std::vector<Mode> found =
         FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
+    const std::vector<ExplainedMode> modes = ExplainMatches(shuffled, matches, prior, std::move(found));
     MotionEstimate estimate;
     estimate.counts = search.counts;
-    const std::vector<ExplainedMode> explained = ExplainMatches(shuffled, matches, prior, std::move(modes));
-    if (explained.empty()) {
+    const int num_solved = search.counts.num_hypotheses - search.counts.num_degenerate_samples;
+    estimate.counts.num_candidates = std::min(static_cast<int>(modes.size()), num_solved);
+    estimate.counts.num_too_small_inlier_sets = num_solved - estimate.counts.num_candidates;
+    if (modes.empty()) {
       estimate.status = MotionStatus::kNoCandidate;
       estimate.message = "no motion explains more than five matches";
       return estimate;
     }
-    Answer(shuffled, matches, explained, prior, order, rng, &estimate);
+    const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
+    const Verdict verdict = Judge(shuffled, matches, modes, weights, rng);
+    FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
+    FillMatches(modes[weights.answer].explanation, order, &estimate);
+    FillOtherModes(modes, weights, &estimate);
+    estimate.doubt = DoubtOf(modes, weights, verdict.mass_beyond);
+    estimate.message = MessageOf(estimate);
+    if (estimate.failure_probability > options_.max_failure_probability) {
+      estimate.status = MotionStatus::kTooUncertain;
+    }
     return estimate;
   }
 
  private:
-  void Answer(const MotionProblem& problem, const MatchBlocks& matches,
-              const std::vector<ExplainedMode>& modes, const MixturePrior& prior,
-              const std::vector<int>& order, RandomStream& rng, MotionEstimate* estimate) const {
-    const MotionBounds bounds{kRadPerDeg * options_.max_rotation_error_deg,
-                              kRadPerDeg * options_.max_direction_error_deg};
-    const ModeWeights weights = WeighModes(modes, bounds, prior, options_);
-    const size_t answer = weights.answer;
-    const RelativePose& pose = modes[answer].mode.pose;
-    double success = 0.0, weight_within = 0.0;
-    Matrix5d spread = Matrix5d::Zero();
+  MotionBounds Bounds() const {
+    return {kRadPerDeg * options_.max_rotation_error_deg, kRadPerDeg * options_.max_direction_error_deg};
+  }
+
+  // The covariance is the second moment, about the answer, of the modes within the bounds.
+  Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches,
+                const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
+                RandomStream& rng) const {
+    const RelativePose& pose = modes[weights.answer].mode.pose;
+    double within = 0.0, success = 0.0;
+    Verdict verdict;
     for (size_t i = 0; i < modes.size(); ++i) {
-      if (weights.of_modes[i] < kNegligibleWeight) continue;
-      const Matrix5d covariance = CovarianceOf(problem, matches, modes[i]);
-      success += weights.of_modes[i] *
-                 MassWithin(pose, bounds, modes[i].mode.pose, modes[i].mode.inverse_hessian, rng);
-      if (!IsWithin(pose, bounds, modes[i].mode.pose)) continue;
-      const Vector5d away = LocalCoordinates(pose, modes[i].mode.pose);
-      spread += weights.of_modes[i] * (covariance + away * away.transpose());
-      weight_within += weights.of_modes[i];
+      const double weight = weights.of_modes[i];
+      const Mode& mode = modes[i].mode;
+      if (weight < kNegligibleWeight && i != weights.answer) continue;
+      success += weight * MassWithin(pose, Bounds(), mode.pose, mode.inverse_hessian, rng);
+      if (!IsWithin(pose, Bounds(), mode.pose)) continue;
+      const Vector5d away = LocalCoordinates(pose, mode.pose);
+      verdict.pose_cov += weight * (CovarianceOf(problem, matches, modes[i]) + away * away.transpose());
+      within += weight;
     }
-    const Explanation& explanation = modes[answer].explanation;
-    estimate->status = MotionStatus::kOk;
-    estimate->cam2_from_cam1 = estimate->initial_pose = pose;
-    estimate->pose_cov = spread / weight_within;
-    estimate->failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
-    const MixtureParameters& mixture = modes[answer].mode.mixture;
-    const double sigma = problem.sigma_px * mixture.scale / mixture.noise.scale_of_gaussian;
-    estimate->sigma_estimated_px = sigma;
-    estimate->inlier_probabilities.resize(order.size());
-    double num_right = 0.0;
-    for (size_t i = 0; i < order.size(); ++i) {
-      const double p = explanation.probability[i];
-      num_right += p;
-      estimate->inlier_probabilities[static_cast<size_t>(order[i])] = p;
-      if (p > 0.5) estimate->inliers.push_back(order[i]);
-    }
-    std::ranges::sort(estimate->inliers);
-    estimate->sigma_estimated_sd_px = sigma / std::sqrt(2.0 * std::max(num_right - 5.0, 1.0));
-    estimate->num_support = estimate->num_explained = static_cast<int>(estimate->inliers.size());
+    verdict.pose_cov /= within;
+    verdict.mass_beyond = std::max(within - success, 0.0);
+    verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
+    return verdict;
   }
 
   Matrix5d CovarianceOf(const MotionProblem& problem, const MatchBlocks& matches,
