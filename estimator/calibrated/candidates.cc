@@ -12,7 +12,8 @@ namespace rcme {
 namespace {
 
 constexpr int kFewSteps = 3, kMostSteps = 15;
-constexpr int kFirstMatches = 128;  // that a first scale is estimated from
+constexpr int kMatchesOfCandidates = 192;  // that refine and rank the candidates; a whole number of blocks
+constexpr int kFirstMatches = 128;         // that a first scale is estimated from
 constexpr int kCheiralityBlocks =
     32;                             // matches that decide on which side the cameras are, in blocks of eight
 constexpr double kSameMode = 25.0;  // squared standard deviations
@@ -81,22 +82,26 @@ bool IsSameMode(const Mode& a, const Mode& b, double standard_deviations) {
 
 namespace {
 
-// Of every candidate a mode after a few steps at a fixed scale.
+// The first kMatchesOfCandidates matches.
+MatchMask MatchesOfCandidates(const MatchBlocks& matches) {
+  MatchMask mask = matches.All();
+  for (size_t b = kMatchesOfCandidates / kBlockSize; b < mask.size(); ++b) mask[b] = 0;
+  return mask;
+}
+
+// Of every candidate a mode after a few steps at a fixed scale, by some of the matches.
 std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& prior,
                                 const std::vector<ScoredEssential>& candidates) {
   std::vector<Mode> modes;
   const double share = candidates.empty() ? 0.5 : candidates.front().score / matches.num_matches();
   const MixtureParameters common = FirstGuess(prior, kSoftScale, share);
+  const MatchMask some = MatchesOfCandidates(matches);
   for (const ScoredEssential& candidate : candidates) {
     Mode mode;
     mode.pose = PoseInFront(matches, candidate.E);
     mode.mixture = common;
-    mode.used = matches.All();
-    FitMode(matches, prior, 1, &mode, MixtureUpdate::kNone);
-    const bool is_known =
-        std::ranges::any_of(modes, [&](const Mode& other) { return IsSameMode(other, mode); });
-    if (is_known) continue;
-    FitMode(matches, prior, kFewSteps - 1, &mode, MixtureUpdate::kNone);
+    mode.used = some;
+    FitMode(matches, prior, kFewSteps, &mode, MixtureUpdate::kNone);
     if (mode.hessian.diagonal().minCoeff() > 0.0) modes.push_back(std::move(mode));
   }
   return modes;
@@ -111,6 +116,19 @@ std::vector<Mode> AtScale(const MatchBlocks& matches, std::vector<Mode> modes, d
   return modes;
 }
 
+// Adds the optimum from `mode` by all matches, unless it is known; whether it is shows after a few steps.
+void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode, std::vector<Mode>* optima) {
+  mode.used = matches.All();
+  for (const int steps : {kFewSteps, kMostSteps}) {
+    const bool is_converged = FitMode(matches, prior, steps, &mode);
+    const bool is_known = std::ranges::any_of(*optima, [&](const Mode& other) {
+      return IsSameMode(other, mode) && std::abs(std::log(other.mixture.scale / mode.mixture.scale)) < 0.7;
+    });
+    if (is_known) return;
+    if (steps == kMostSteps && is_converged) optima->push_back(std::move(mode));
+  }
+}
+
 }  // namespace
 
 std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
@@ -119,15 +137,12 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
   const double assumed_scale = NoiseLaw().scale_of_gaussian;
   std::vector<Mode> optima;
   for (Mode& mode : Distinct(AtScale(matches, refined, assumed_scale), (num_modes + 1) / 2)) {
-    if (FitMode(matches, prior, kMostSteps, &mode)) optima.push_back(std::move(mode));
+    AddOptimum(matches, prior, std::move(mode), &optima);
   }
   if (!prior.estimates_scale) return Distinct(std::move(optima), num_modes);
   for (Mode& mode : Distinct(refined, num_modes / 2)) {
     mode.mixture.scale = StartScale(matches, mode);
-    const bool is_known = std::ranges::any_of(optima, [&](const Mode& other) {
-      return IsSameMode(other, mode) && std::abs(std::log(other.mixture.scale / mode.mixture.scale)) < 0.7;
-    });
-    if (!is_known && FitMode(matches, prior, kMostSteps, &mode)) optima.push_back(std::move(mode));
+    AddOptimum(matches, prior, std::move(mode), &optima);
   }
   return Distinct(std::move(optima), num_modes);
 }

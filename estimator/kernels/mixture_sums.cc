@@ -88,7 +88,9 @@ void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, co
     Vec sums[kNumMixtureSums], product = one;
     for (Vec& sum : sums) sum = zero;
     for (int b = 0; b < matches.num_blocks(); ++b) {
-      const Mask is_used = MaskFromBits(static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
+      const unsigned bits = mask[static_cast<size_t>(b)];
+      if (bits == 0) continue;
+      const Mask is_used = MaskFromBits(bits >> lane);
       const Matches m = LoadMatches(matches[b], lane);
       const Residual residual = EvaluateResidual(model, m);
       const Vec z = DepthInNoise(model.pose, model.rays, m).least * Set(model.inverse_noise_rad);
