@@ -20,8 +20,8 @@ enum class CovarianceKind {
 // Options of rcme_calibrated.
 struct CalibratedOptions {
   int min_samples = 64, max_samples = 10000;
-  int num_candidates = 24;  // refined a little
-  int num_modes = 6;        // of these to the optimum
+  int num_candidates = 16;  // refined a little
+  int num_modes = 4;        // of these to the optimum
 
   // The motion is wrong if its rotation or its direction is further off.
   double max_rotation_error_deg = 3.0, max_direction_error_deg = 15.0;
