@@ -7,23 +7,33 @@
 #include "estimator/estimators/rcme.h"
 #include "estimator/estimators/rcme_calibrated.h"
 #include "estimator/estimators/standard.h"
+#include "estimator/model_choice/gate.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
+// Every estimator can be put behind the gate of model choice.
+std::vector<EstimatorEntry> Gated(std::vector<EstimatorEntry> entries) {
+  for (EstimatorEntry& entry : entries) {
+    entry.make = [make = std::move(entry.make)] { return WithGate(make()); };
+  }
+  return entries;
+}
+
 std::vector<EstimatorEntry>& Table() {
-  static std::vector<EstimatorEntry> registry = {
+  static std::vector<EstimatorEntry> registry = Gated({
       {"standard", "RANSAC by inlier count, then Gold Standard refinement", StandardModel},
       {"prcme", "RCME without the test of the model against its sample",
        [] { return RcmeModel(SampleTest::kOff); }},
       {"rcme", "RCME: model-sample test, inlier set quality test, selection by entropy, refinement",
        [] { return RcmeModel(SampleTest::kOn); }},
       {"rcme_calibrated",
-       "RCME that estimates the noise, keeps several explanations and states the probability that it is wrong",
+       "RCME that estimates the noise, keeps several explanations and states the probability that it is "
+       "wrong",
        RcmeCalibratedModel},
-  };
+  });
   return registry;
 }
 
@@ -52,6 +62,7 @@ void AddEstimator(EstimatorEntry entry) {
   if (entry.name.empty() || std::ranges::count(Table(), entry.name, &EstimatorEntry::name) > 0) {
     throw InputError(fmt::format("estimator name '{}' is taken or empty", entry.name));
   }
+  entry = Gated({std::move(entry)}).front();
   CheckOptions(entry);
   Table().push_back(std::move(entry));
 }

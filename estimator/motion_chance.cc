@@ -108,7 +108,11 @@ double ChanceOfAgreementWithRotation(const MotionProblem& problem, double thresh
   const RayScale s = MatchWhitening(problem).ray_scale();
   // det C at the image's middle: C = I + J J', J the ratio of the focal lengths
   const double det = (1.0 + std::pow(s.x1 / s.x2, 2)) * (1.0 + std::pow(s.y1 / s.y2, 2));
-  return std::min(1.0, std::numbers::pi * threshold * std::sqrt(det) / BoxOfSecondPoints(problem).Area());
+  return ChanceOfAgreementInEllipse(problem, threshold, std::sqrt(det));
+}
+
+double ChanceOfAgreementInEllipse(const MotionProblem& problem, double threshold, double root_det) {
+  return std::min(1.0, std::numbers::pi * threshold * root_det / BoxOfSecondPoints(problem).Area());
 }
 
 double LogFalseAlarms(const ModelFamily& family, int num_matches, int num_agreeing, double chance) {

@@ -33,6 +33,9 @@ double ChanceOfAgreement(const MotionProblem& problem, const RelativePose& pose,
 // area of the ellipse over that of the rectangle.
 double ChanceOfAgreementWithRotation(const MotionProblem& problem, double threshold);
 
+// The same for d2 = e' C^-1 e of any residual in image 2; `root_det` is sqrt(det C), C in units of sigma^2.
+double ChanceOfAgreementInEllipse(const MotionProblem& problem, double threshold, double root_det);
+
 // A family of models: `num_fixing` matches on the borders of their bands determine at most `most_per_choice`
 // models.
 struct ModelFamily {
@@ -42,6 +45,8 @@ struct ModelFamily {
 inline constexpr ModelFamily kMotions{5, 320.0};
 // Three dimensions; to first order a border is a quadric, and three of these meet in at most 8 points.
 inline constexpr ModelFamily kRotations{3, 8.0};
+// Eight dimensions, in the same way.
+inline constexpr ModelFamily kHomographies{8, 256.0};
 // Of a motion whose rotation is known: great circles of the sphere; two meet in a direction and its opposite,
 // which is the same epipolar geometry.
 inline constexpr ModelFamily kDirections{2, 4.0};

@@ -21,8 +21,12 @@ enum class MotionStatus {
   kDirectionNotObservable,  // the parallax is within its noise: the rotation is given, the direction is not
   kNotBetterThanChance,     // no more matches agree with the motion than would agree with any motion
   kTooUncertain,            // the probability that the motion is wrong is greater than what was allowed
-  kLibraryError,  // another library that the estimator calls failed: an exception, or no finite motion
-  kInvalidInput,  // NaN or infinite coordinates, a singular camera, a noise level not positive
+  // What kind of problem it is, where the estimator is asked to look at that (model_choice/gate.h).
+  kPlanarScene,        // the matches lie on a plane
+  kRotationOnly,       // no translation to be seen
+  kTooLittleParallax,  // too few of the matches show parallax beyond the noise
+  kLibraryError,       // another library that the estimator calls failed: an exception, or no finite motion
+  kInvalidInput,       // NaN or infinite coordinates, a singular camera, a noise level not positive
   // Never an estimator's own: what the check of its answer makes of kOk.
   kInvalidMotion,      // not a rotation and a unit vector, or not finite
   kInvalidCovariance,  // not finite, symmetric and positive semidefinite

@@ -71,6 +71,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddBudgetCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);
+  AddModelChoiceCommand(app);
   AddCheckEstimatorCommand(app);
   AddEstimateCommand(app);
   AddMatchCommand(app);

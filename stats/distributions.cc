@@ -3,6 +3,7 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/beta.hpp>
@@ -26,6 +27,10 @@ double ChiSquareQuantile(int degrees_of_freedom, double probability) {
 }
 double ChiSquareCdf(int degrees_of_freedom, double x) {
   return boost::math::cdf(boost::math::chi_squared(degrees_of_freedom), x);
+}
+double NonCentralChiSquareCdf(int degrees_of_freedom, double noncentrality, double x) {
+  if (noncentrality == 0.0) return ChiSquareCdf(degrees_of_freedom, x);
+  return boost::math::cdf(boost::math::non_central_chi_squared(degrees_of_freedom, noncentrality), x);
 }
 double NormalQuantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);

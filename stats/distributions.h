@@ -7,6 +7,8 @@ namespace rcme {
 
 double ChiSquareQuantile(int degrees_of_freedom, double probability);
 double ChiSquareCdf(int degrees_of_freedom, double x);
+// Of the squared length of a normal vector whose mean has the squared length `noncentrality`.
+double NonCentralChiSquareCdf(int degrees_of_freedom, double noncentrality, double x);
 double NormalQuantile(double probability);
 double NormalCdf(double x);
 double StudentQuantile(int degrees_of_freedom, double probability);

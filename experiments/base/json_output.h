@@ -11,6 +11,7 @@ namespace rcme {
 inline constexpr const char* kAuditFormat = "rcme audit 1";
 inline constexpr const char* kComparisonFormat = "rcme comparison 1";
 inline constexpr const char* kEstimateFormat = "rcme estimate 1";
+inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
 inline constexpr const char* kReliabilityFormat = "rcme reliability 1";
 inline constexpr const char* kReportFormat = "rcme report 1";
 inline constexpr const char* kSummaryFormat = "rcme summary 1";

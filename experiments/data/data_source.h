@@ -24,7 +24,8 @@ enum class StreamPurpose : std::uint32_t {
   kMonteCarlo = 5,
   kCheck = 6,
   kSeverity = 7,
-  kPilotScene = 8
+  kPilotScene = 8,
+  kTrueKind = 9
 };
 
 // The stream of a trial for a purpose.

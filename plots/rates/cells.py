@@ -18,6 +18,7 @@ from rates.selection import (check_factor, check_no_repetition, fixed_levels, in
 COLORS = colormaps["cividis_r"]  # even steps to the eye, with every colour vision and in grey; dark is much
 LEAST_TOP = 0.05  # a scale that ended lower would paint rates that hardly differ from zero as dark as a failure
 CELL_WIDTH, CELL_HEIGHT = 0.62, 0.36  # inches: room for "[10.1, 14.8]"
+LONGEST_LEVEL_NAME = 11  # letters that fit below a cell
 WIDEST = 9.5  # inches; more panels go into a further row
 MAX_PANELS = 60
 
@@ -95,7 +96,9 @@ def draw_panel(axes, rows, x_axis, y_axis, scale):
     for row in rows.itertuples():
         draw_cell(axes, x_axis.levels.index(row.x), y_axis.levels.index(row.y), row, scale)
     axes.set(xlim=(0, len(x_axis.levels)), ylim=(0, len(y_axis.levels)))
-    axes.set_xticks([0.5 + i for i in range(len(x_axis.levels))], x_axis.levels)
+    is_long = max(len(level) for level in x_axis.levels) > LONGEST_LEVEL_NAME
+    axes.set_xticks([0.5 + i for i in range(len(x_axis.levels))], x_axis.levels, rotation=25 if is_long else 0,
+                    ha="right" if is_long else "center")
     axes.set_yticks([0.5 + i for i in range(len(y_axis.levels))], y_axis.levels)
     axes.tick_params(length=0, labelsize=7)
     axes.grid(False)

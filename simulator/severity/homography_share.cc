@@ -44,10 +44,9 @@ double ShareOnPlane(const ViewPair& view, const std::vector<ImagedPoint>& points
 
 }  // namespace
 
-double HomographyShare(const ViewPair& view, std::span<const Eigen::Vector3d> points_in_cam1, double sigma_px,
-                       RandomStream& rng) {
+double HomographyShare(const ViewPair& view, std::span<const Eigen::Vector3d> points_in_cam1,
+                       double max_distance_px, RandomStream& rng) {
   if (points_in_cam1.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const double max_distance_px = std::sqrt(2.0) * 2.448 * sigma_px;
   const std::vector<ImagedPoint> imaged = ImageSome(view, points_in_cam1, rng);
   double best = ShareOnPlane(view, imaged, Eigen::Vector3d::Zero(), max_distance_px);
   const auto n = static_cast<std::uint32_t>(points_in_cam1.size());

@@ -132,7 +132,8 @@ Severity MeasureSeverity(const Scene& scene, const Observation& observation, dou
   MeasureImages(scene, observation, &severity);
   MeasureParallax(scene, points, &severity);
   severity.planarity = Planarity(points);
-  severity.homography_share = HomographyShare(scene, points, sigma_px, rng);
+  // The 95 % radius of two noisy points' difference.
+  severity.homography_share = HomographyShare(scene, points, std::sqrt(2.0) * 2.448 * sigma_px, rng);
   const auto measure = scene.IsDirectionDefined() ? MeasureMotionInformation : MeasureRotationInformation;
   measure(scene, points, sigma_px, &severity);
   return severity;

@@ -48,6 +48,24 @@ TEST(ChiSquare, TwoDegreesOfFreedomIsAnExponential) {
   }
 }
 
+// One degree of freedom is the square of a shifted normal; two are a Poisson mixture of central ones
+// (Johnson, Kotz & Balakrishnan 1995, chapter 29).
+TEST(NonCentralChiSquare, IsWhatItIsMadeOf) {
+  for (const double shift : {0.0, 0.3, 1.5, 4.0}) {
+    for (const double x : {0.1, 1.0, 9.21, 30.0}) {
+      const double root = std::sqrt(x);
+      ExpectRelative(NonCentralChiSquareCdf(1, shift * shift, x),
+                     NormalCdf(root - shift) - NormalCdf(-root - shift), 1e-10);
+      double mixture = 0.0, weight = std::exp(-0.5 * shift * shift);
+      for (int k = 0; k < 80; ++k) {
+        mixture += weight * ChiSquareCdf(2 + 2 * k, x);
+        weight *= 0.5 * shift * shift / (k + 1);
+      }
+      ExpectRelative(NonCentralChiSquareCdf(2, shift * shift, x), mixture, 1e-10);
+    }
+  }
+}
+
 TEST(Normal, QuantilesAndCdfAreTheKnownOnes) {
   const struct {
     double probability, quantile;

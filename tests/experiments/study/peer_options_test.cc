@@ -19,6 +19,10 @@ class PeerOptions : public testing::Test {
   static std::string Entry(const std::string& options) {
     return "  - {name: peer, options: {" + options + "}}\n";
   }
+  // Without those of the gate, which every estimator has.
+  static Settings OwnOptions(const EstimatorSpec& spec) {
+    return {spec.options.begin(), spec.options.begin() + 2};
+  }
   static Study WithPeer(const std::string& options) {
     return ParseStudy(SmallStudyYaml() + Entry(options), "peer.yaml");
   }
@@ -26,7 +30,8 @@ class PeerOptions : public testing::Test {
 
 TEST_F(PeerOptions, InAStudy) {
   const Study study = WithPeer("effort: high");
-  EXPECT_EQ(study.estimators[2].options, (Settings{{"min_inliers", "8"}, {"effort", "high"}}));
+  EXPECT_EQ(OwnOptions(study.estimators[2]), (Settings{{"min_inliers", "8"}, {"effort", "high"}}));
+  EXPECT_EQ(OptionOf(study.estimators[2], "model_choice"), "off");
   EXPECT_EQ(ToYaml(ParseStudy(ToYaml(study), "again.yaml")), ToYaml(study));
   EXPECT_NE(MakePlan(study).identity, MakePlan(WithPeer("effort: low")).identity);
   EXPECT_TRUE(ThrowsInputError([] { WithPeer("mu: 3"); },
@@ -55,7 +60,7 @@ TEST_F(PeerOptions, OnTheCommandLine) {
   Override(&study, "effort", "high");
   Override(&study, "peer.min_inliers", "12");
   Override(&study, "num_iterations", "30");  // of those that have it
-  EXPECT_EQ(study.estimators[2].options, (Settings{{"min_inliers", "12"}, {"effort", "high"}}));
+  EXPECT_EQ(OwnOptions(study.estimators[2]), (Settings{{"min_inliers", "12"}, {"effort", "high"}}));
   EXPECT_EQ(OptionOf(study.estimators[1], "num_iterations"), "30");
   EXPECT_TRUE(ThrowsInputError([&] { Override(&study, "peer.num_iterations", "30"); },
                                {"estimator peer has no option 'num_iterations'", kItsOptions}));

@@ -5,14 +5,17 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/test_support/two_camera_scene.h"
+#include "tests/test_support/far_and_near_scene.h"
 
 namespace rcme {
 namespace {
 
+// chi2_2 at 95 % of the difference of two noisy points, in units of sigma.
+const double kRadiusSigma = std::sqrt(2.0) * 2.448;
+
 double ShareOf(const Scene& scene, std::uint32_t trial = 0) {
   RandomStream rng({1, 0, trial, 7});
-  return HomographyShare(scene, scene.points_in_cam1, 0.5, rng);
+  return HomographyShare(scene, scene.points_in_cam1, kRadiusSigma * 0.5, rng);
 }
 
 // The first of every ten points are moved along their rays onto the plane z = 5 + 0.2 x.
@@ -38,23 +41,12 @@ TEST(HomographyShare, FindsThePlaneAmongOthers) {
   EXPECT_LT(ShareOf(TwoCameraScene(500, 0)), 0.34);
 }
 
-// The camera moves sideways without turning: against points infinitely far away those at depth z move by
-// fx baseline / z px. A plane explains what is within sqrt(2) 2.448 = 3.46 sigma, chi2_2 at 95 % of the
-// difference of two points.
-TEST(HomographyShare, ExplainsWhatIsWithinTheNoiseOfBothPoints) {
+// A plane explains what is within the distance: sqrt(2) 2.448 = 3.46 sigma here.
+TEST(HomographyShare, ExplainsWhatIsWithinTheDistance) {
   const auto share = [](double distance_px) {
-    Scene scene;
-    scene.camera1 = TestCamera1();
-    scene.camera2 = TestCamera2();
-    scene.cam2_from_cam1_true = {Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitX()};
-    scene.baseline_m = 0.5;
-    RandomStream rng({.seed = 1, .purpose = 93});
-    for (int i = 0; i < 100; ++i) {
-      const double depth_m = i % 2 == 0 ? 1e9 : scene.camera2.fx * scene.baseline_m / distance_px;
-      scene.points_in_cam1.push_back(depth_m *
-                                     scene.camera1.Ray({rng.Uniform(0.0, 640.0), rng.Uniform(0.0, 480.0)}));
-    }
-    return HomographyShare(scene, scene.points_in_cam1, 1.0, rng);
+    const Scene scene = FarAndNearScene(distance_px);
+    RandomStream rng({.seed = 1, .purpose = 94});
+    return HomographyShare(scene, scene.points_in_cam1, kRadiusSigma, rng);
   };
   EXPECT_EQ(share(3.4), 1.0);
   EXPECT_LT(share(3.6), 1.0);

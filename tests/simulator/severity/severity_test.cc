@@ -11,7 +11,7 @@
 #include "simulator/severity/point_information.h"
 #include "stats/moments.h"
 #include "stats/spatial_pattern.h"
-#include "tests/test_support/two_camera_scene.h"
+#include "tests/test_support/far_and_near_scene.h"
 
 namespace rcme {
 namespace {
@@ -53,6 +53,18 @@ TEST(Severity, TheCramerRaoBoundIsWhatMaximumLikelihoodReaches) {
     EXPECT_LT(ratio.standard_error(), 0.06);
     EXPECT_NEAR(ratio.mean(), 1.0, 4.0 * ratio.standard_error());
   }
+}
+
+// Points that the noise of both images explains with 95 % count as on the plane: chi2_2 of the difference of
+// two points, sqrt(2) 2.448 = 3.46 sigma.
+TEST(Severity, APlaneExplainsWhatTheNoiseOfBothPointsDoes) {
+  const auto share = [](double distance_px) {
+    const Scene scene = FarAndNearScene(distance_px);
+    RandomStream rng({.seed = 1, .purpose = 94});
+    return MeasureSeverity(scene, ObserveTwoCameraScene(scene, 1.0, 0.0, 0), 1.0, rng).homography_share;
+  };
+  EXPECT_EQ(share(3.4), 1.0);
+  EXPECT_LT(share(3.6), 1.0);
 }
 
 // Uniform mismatches against the true motion, by the estimators' own distance: |g| / |J| <= 1.96 sigma. The

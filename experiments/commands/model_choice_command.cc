@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "experiments/base/file_output.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/model_choice/choice_output.h"
+
+namespace rcme {
+namespace {
+
+struct ModelChoiceArguments {
+  std::string study, out;
+  StudyChanges changes;
+  std::vector<std::string> by;
+  int trials = 0;  // 0: the study's own
+  int threads = 0;
+};
+
+void RunModelChoice(const ModelChoiceArguments& arguments) {
+  const StopOnSignals stop;
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
+  if (arguments.trials > 0) study.trials = arguments.trials;
+  const StudyPlan plan = PlanOf(study, arguments.study);
+  MakeResultFolder(arguments.out);
+  const ChoiceCounts counts = CountChoices(plan, arguments.by, arguments.threads);
+  const std::filesystem::path folder(arguments.out);
+  const std::string table = ChoicesAsTable(plan, counts);
+  WriteFileWhole((folder / "model_choice.txt").string(), table);
+  WriteFileWhole((folder / "model_choice.csv").string(), ChoicesAsCsv(plan, counts));
+  WriteFileWhole((folder / "model_choice.json").string(), ChoicesAsJson(plan, counts));
+  fmt::print("{}", table);
+}
+
+}  // namespace
+
+void AddModelChoiceCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "model-choice", "Do criteria of model choice recognise planes, rotations and too little parallax?");
+  command->footer(
+      "Every criterion (the values of the option model_choice) gives its verdict on every trial of a study,\n"
+      "which is scored by the exact scene: a confusion matrix per criterion, a row per truth. The "
+      "estimators\n"
+      "of the study are not asked. The truth of a trial:\n"
+      "  rotation_only        the baseline is zero\n"
+      "  too_little_parallax  of the right matches at most 5 % would show parallax beyond a rotation's "
+      "noise\n"
+      "  planar               one homography carries at least 95 % of the exact points to within sqrt(2) "
+      "sigma\n"
+      "  general              at most 75 % of them, whichever homography\n"
+      "  borderline           between these, with parallax of 5 to 20 %, or fewer than eight right matches\n"
+      "\n"
+      "Examples:\n"
+      "  rcme model-choice experiments/studies/model_choice.yaml --out choice\n"
+      "  rcme model-choice experiments/studies/model_choice.yaml --by outlier_ratio --out choice\n"
+      "  rcme plot heat_map choice/model_choice.csv --x verdict --y truth --quantities share --out matrix "
+      "\\\n"
+      "      --where outlier_ratio=0.2");
+  auto arguments = std::make_shared<ModelChoiceArguments>();
+  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("-o,--out", arguments->out,
+                   "folder for model_choice.txt, .csv and .json; made if it is missing")
+      ->required();
+  command
+      ->add_option("--by", arguments->by,
+                   "factor, repeatable: matrices for each of its levels; default: one for all")
+      ->allow_extra_args(false);
+  command->add_option("--trials", arguments->trials, "trials per condition; default: the study's")
+      ->transform(WholeNumberIn(1, 100'000'000));
+  AddStudyOptions(command, &arguments->changes);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The results do not depend on it")
+      ->transform(WholeNumberIn(0, 1024));
+  command->callback([arguments] { RunModelChoice(*arguments); });
+}
+
+}  // namespace rcme
