@@ -4,8 +4,11 @@
 
 #include <algorithm>
 
+#include "estimator/estimators/local_ransac.h"
+#include "estimator/estimators/m_estimator.h"
 #include "estimator/estimators/rcme.h"
 #include "estimator/estimators/rcme_calibrated.h"
+#include "estimator/estimators/robust_score.h"
 #include "estimator/estimators/standard.h"
 #include "estimator/model_choice/gate.h"
 #include "parameters/input_error.h"
@@ -33,6 +36,16 @@ std::vector<EstimatorEntry>& Table() {
        "RCME that estimates the noise, keeps several explanations and states the probability that it is "
        "wrong",
        RcmeCalibratedModel},
+      {"msac", "RANSAC by truncated squared distances (MSAC), then refinement", MsacModel, false, false},
+      {"mlesac", "RANSAC by the likelihood of a mixture of right and wrong matches (MLESAC), then refinement",
+       MlesacModel, false, false},
+      {"lo_ransac", "RANSAC by inlier count, its best hypotheses optimised by inner refits (LO-RANSAC)",
+       LoRansacModel, false, false},
+      {"cov_ransac",
+       "RANSAC by inlier count, its best hypotheses refitted within their uncertainty (Cov-RANSAC)",
+       CovRansacModel, false, false},
+      {"m_estimator", "M-estimation over all matches (Huber, Tukey) from the best MSAC hypothesis",
+       MEstimatorModel, false, false},
   });
   return registry;
 }

@@ -16,7 +16,8 @@ struct EstimatorEntry {
   std::string name;
   std::string doc;
   std::function<std::unique_ptr<EstimatorModel>()> make;  // with default options
-  bool is_peer = false;  // another library's: `rcme audit` asks it nothing unless a study names it
+  bool is_peer = false;    // another library's: `rcme audit` asks it nothing unless a study names it
+  bool is_audited = true;  // of the project's own: whether `rcme audit` asks it without a study that names it
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 

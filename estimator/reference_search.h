@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
 #include "estimator/hypothesis.h"
 #include "estimator/point_consistency.h"
@@ -31,6 +32,13 @@ InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, co
   }
   return score;
 }
+
+// A pipeline may score all squared distances of a hypothesis together (robust_scores.h): `RobustScore`, whose
+// cost takes the place of the likelihood.
+template <typename Pipeline>
+concept HasRobustScore = requires {
+  typename Pipeline::RobustScore;
+};
 
 template <typename Pipeline, typename Solver>
 class ReferenceSearch {
@@ -67,11 +75,15 @@ class ReferenceSearch {
   }
 
   InlierScore Score() {
+    if constexpr (HasRobustScore<Pipeline>) return ScoreDistances();
     if constexpr (kScoresTheRest<Solver, PointTest>) {
       return ScoreInliers(problem_, *test_, thresholds_, hypotheses_.models[0].id.sample);
     }
     return ScoreInliers(problem_, *test_, thresholds_);
   }
+
+  // Of the last proposal, which is not degenerate.
+  const Hypothesis<Solver>& LastHypothesis() const { return hypotheses_.models[static_cast<size_t>(model_)]; }
 
   std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id) const {
     return InstantiateModel<Solver>(problem_, id);
@@ -91,6 +103,18 @@ class ReferenceSearch {
   }
 
  private:
+  InlierScore ScoreDistances() requires HasRobustScore<Pipeline> {
+    InlierScore score;
+    distances_.clear();
+    for (const Correspondence& match : problem_.matches) {
+      PointResidual residual;
+      distances_.push_back(test_->Distance(match, &residual));
+      if (distances_.back() <= thresholds_.point) score.AddInlier(test_->Entropy(residual));
+    }
+    score.negative_log_likelihood = Pipeline::RobustScore::Cost(distances_, thresholds_);
+    return score;
+  }
+
   // Sigma_p propagated and the point test built on it; nothing if the covariance is not finite.
   std::optional<PointTest> MakePointTest(Hypothesis<Solver>* hypothesis) const {
     if constexpr (!PointTest::kNeedsCovariance) {
@@ -109,6 +133,7 @@ class ReferenceSearch {
   ModelList<Hypothesis<Solver>, Solver::kMaxModels> hypotheses_;  // of the last sample
   int model_ = 0;                                                 // of the last proposal
   std::optional<PointTest> test_;
+  std::vector<double> distances_;  // of the last proposal, where they are scored together
 };
 
 }  // namespace rcme

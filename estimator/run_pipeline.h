@@ -54,14 +54,19 @@ MotionEstimate FinishLoop(const RansacOptions& options, int num_matches, const L
 }
 
 template <typename Pipeline, typename Engine>
-MotionEstimate RunPipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-  if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
-  Engine engine(problem, options, rng);
+MotionEstimate RunEngine(const MotionProblem& problem, const RansacOptions& options, Engine& engine) {
   const auto num_matches = static_cast<int>(problem.matches.size());
   const LoopResult loop = RunRansacLoop<Pipeline>(options, num_matches, engine.search);
   return FinishLoop(options, num_matches, loop, [&](const Candidate& candidate) {
     return RefineCandidate(engine, options, loop.counts, candidate);
   });
+}
+
+template <typename Pipeline, typename Engine>
+MotionEstimate RunPipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+  if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
+  Engine engine(problem, options, rng);
+  return RunEngine<Pipeline>(problem, options, engine);
 }
 
 template <typename Engine>

@@ -44,7 +44,7 @@ std::unique_ptr<RansacEstimator> MakePipelineEstimator(const RansacOptions& opti
   Validate(options);
   return VisitSolver(options.solver, [&]<typename Solver>(std::type_identity<Solver>) {
     std::unique_ptr<RansacEstimator> estimator;
-    if constexpr (kHasFast<Solver>) {
+    if constexpr (kHasFast<Solver> && !HasRobustScore<Pipeline>) {
       using Engine = FastEngine<Pipeline, Solver>;
       if (options.IsFast()) estimator = std::make_unique<PipelineEstimator<Pipeline, Engine>>(options);
     }

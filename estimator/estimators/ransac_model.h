@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "estimator/estimator_model.h"
 #include "estimator/ransac_options.h"
@@ -22,6 +26,22 @@ class RansacModel : public EstimatorModel {
 
  protected:
   RansacOptions options_;
+};
+
+// One without entropies, whose tests of the refined motion are off by default, as the methods of the
+// literature have none.
+class PlainRansacModel : public RansacModel {
+ protected:
+  PlainRansacModel() { options_.observability_significance_level = options_.chance_significance_level = 1.0; }
+  // The options of such estimators but those named.
+  std::vector<Parameter> ParametersWithout(const std::vector<std::string>& names) {
+    std::vector<Parameter> all = rcme::Parameters(options_);
+    for (Parameter& level : MotionTestParameters(options_, /*depend_on_reading=*/false)) {
+      all.push_back(std::move(level));
+    }
+    std::erase_if(all, [&](const Parameter& option) { return std::ranges::count(names, option.name()) > 0; });
+    return all;
+  }
 };
 
 }  // namespace rcme

@@ -1,30 +1,15 @@
 #include "estimator/estimators/standard.h"
 
+#include "estimator/estimators/inlier_count.h"
 #include "estimator/estimators/pipeline_estimator.h"
 #include "estimator/estimators/ransac_model.h"
 
 namespace rcme {
 namespace {
 
-struct StandardPipeline {
-  using PointTest = KnownPoseTest;
-  static constexpr bool kTestsSample = false;
-  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
-  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
-    return a.num_inliers > b.num_inliers;
-  }
-};
-
-class Standard : public RansacModel {
+class Standard : public PlainRansacModel {
  public:
-  Standard() { options_.observability_significance_level = options_.chance_significance_level = 1.0; }
-  std::vector<Parameter> Parameters() override {
-    std::vector<Parameter> all = rcme::Parameters(options_);
-    for (Parameter& level : MotionTestParameters(options_, /*depend_on_reading=*/false)) {
-      all.push_back(std::move(level));
-    }
-    return all;
-  }
+  std::vector<Parameter> Parameters() override { return ParametersWithout({}); }
   std::unique_ptr<MotionEstimator> Make() const override { return MakeStandard(options_); }
 };
 
@@ -33,7 +18,7 @@ class Standard : public RansacModel {
 std::unique_ptr<EstimatorModel> StandardModel() { return std::make_unique<Standard>(); }
 
 std::unique_ptr<RansacEstimator> MakeStandard(const RansacOptions& options) {
-  return MakePipelineEstimator<StandardPipeline>(options);
+  return MakePipelineEstimator<InlierCountPipeline>(options);
 }
 
 }  // namespace rcme

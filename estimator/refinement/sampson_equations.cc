@@ -8,37 +8,6 @@
 namespace rcme {
 namespace {
 
-// F at a motion and its derivatives along the five coordinates of the motion, px.
-struct LinearizedF {
-  Eigen::Matrix3d F;
-  std::array<Eigen::Matrix3d, 5> dF;
-
-  LinearizedF(const MotionProblem& problem, const RelativePose& pose) : dF(EssentialTangent(pose)) {
-    F = FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
-    for (Eigen::Matrix3d& d : dF) d = FundamentalFromEssential(d, problem.camera1, problem.camera2);
-  }
-};
-
-struct Residual {
-  double r;      // g / (sigma |J|)
-  double norm;   // sigma |J|
-  Vector5d g_p;  // derivatives of g
-  Vector5d r_p;  // derivatives of r
-};
-
-Residual EvaluateResidual(const LinearizedF& model, const Correspondence& match, double sigma_px) {
-  const EpipolarConstraint c = EvaluateConstraint(model.F, match);
-  const double length = c.gradient.norm();
-  Residual residual{.r = c.g / (sigma_px * length), .norm = sigma_px * length, .g_p = {}, .r_p = {}};
-  for (int k = 0; k < 5; ++k) {
-    const EpipolarConstraint d = EvaluateConstraint(model.dF[static_cast<size_t>(k)], match);
-    const double d_length = c.gradient.dot(d.gradient) / length;
-    residual.g_p(k) = d.g;
-    residual.r_p(k) = d.g / residual.norm - residual.r * d_length / length;
-  }
-  return residual;
-}
-
 // rho(r^2), rho' and max(psi', 0.7 rho') with psi = rho' r; see NormalEquations.
 struct LossTerms {
   double rho, weight, curvature;
@@ -53,13 +22,32 @@ LossTerms EvaluateLoss(double r, Loss loss) {
 
 }  // namespace
 
+SampsonLinearization::SampsonLinearization(const MotionProblem& problem, const RelativePose& pose)
+    : sigma_px_(problem.sigma_px),
+      F_(FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2)),
+      dF_(EssentialTangent(pose)) {
+  for (Eigen::Matrix3d& d : dF_) d = FundamentalFromEssential(d, problem.camera1, problem.camera2);
+}
+
+SampsonResidual SampsonLinearization::Evaluate(const Correspondence& match) const {
+  const EpipolarConstraint c = EvaluateConstraint(F_, match);
+  const double length = c.gradient.norm();
+  SampsonResidual residual{.r = c.g / (sigma_px_ * length), .norm = sigma_px_ * length, .g_p = {}, .r_p = {}};
+  for (int k = 0; k < 5; ++k) {
+    const EpipolarConstraint d = EvaluateConstraint(dF_[static_cast<size_t>(k)], match);
+    const double d_length = c.gradient.dot(d.gradient) / length;
+    residual.g_p(k) = d.g;
+    residual.r_p(k) = d.g / residual.norm - residual.r * d_length / length;
+  }
+  return residual;
+}
+
 NormalEquations LinearizeSampson(const MotionProblem& problem, std::span<const int> indices,
                                  const RelativePose& pose, Loss loss) {
-  const LinearizedF model(problem, pose);
+  const SampsonLinearization model(problem, pose);
   NormalEquations equations;
   for (const int i : indices) {
-    const Residual residual =
-        EvaluateResidual(model, problem.matches[static_cast<size_t>(i)], problem.sigma_px);
+    const SampsonResidual residual = model.Evaluate(problem.matches[static_cast<size_t>(i)]);
     const LossTerms terms = EvaluateLoss(residual.r, loss);
     equations.cost += 0.5 * terms.rho;
     equations.gradient += terms.weight * residual.r * residual.r_p;
@@ -70,11 +58,10 @@ NormalEquations LinearizeSampson(const MotionProblem& problem, std::span<const i
 
 Matrix5d SampsonInformation(const MotionProblem& problem, std::span<const int> indices,
                             const RelativePose& pose) {
-  const LinearizedF model(problem, pose);
+  const SampsonLinearization model(problem, pose);
   Matrix5d information = Matrix5d::Zero();
   for (const int i : indices) {
-    const Residual residual =
-        EvaluateResidual(model, problem.matches[static_cast<size_t>(i)], problem.sigma_px);
+    const SampsonResidual residual = model.Evaluate(problem.matches[static_cast<size_t>(i)]);
     const Vector5d row = residual.g_p / residual.norm;
     information += row * row.transpose();
   }

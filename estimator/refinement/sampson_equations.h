@@ -2,12 +2,31 @@
 // the fast implementation takes is kernels/sampson_equations.h; the two share no formula.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "estimator/motion_problem.h"
 #include "estimator/refinement/motion_search.h"
 
 namespace rcme {
+
+// The residual of one match at a motion and its derivatives along the five coordinates of the motion.
+struct SampsonResidual {
+  double r = 0.0;     // g / (sigma |J|)
+  double norm = 0.0;  // sigma |J|
+  Vector5d g_p;       // of g
+  Vector5d r_p;       // of r
+};
+class SampsonLinearization {
+ public:
+  SampsonLinearization(const MotionProblem& problem, const RelativePose& pose);
+  SampsonResidual Evaluate(const Correspondence& match) const;
+
+ private:
+  double sigma_px_;
+  Eigen::Matrix3d F_;
+  std::array<Eigen::Matrix3d, 5> dF_;  // px
+};
 
 // Of sum rho(r^2) / 2 over the matches `indices` at a motion, r = g / (sigma |J|). The derivative of r along
 // coordinate k of the motion is (g_k - r sigma J J_k' / |J|) / (sigma |J|), g_k and J_k those of g and J.

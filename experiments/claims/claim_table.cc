@@ -6,7 +6,9 @@ namespace rcme {
 
 std::vector<Claim> AllClaims(const std::vector<EstimatorEntry>& registry) {
   std::vector<EstimatorEntry> estimators, peers;
-  for (const EstimatorEntry& entry : registry) (entry.is_peer ? peers : estimators).push_back(entry);
+  for (const EstimatorEntry& entry : registry) {
+    if (entry.is_audited) (entry.is_peer ? peers : estimators).push_back(entry);
+  }
   std::vector<Claim> all;
   for (const std::vector<Claim>& family :
        {SigmaFClaims(), SigmaPClaims(), MleClaims(), SampsonClaims(), InlierClaims(), SampleTestClaims(),

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include "estimator/estimator_model.h"
+#include "estimator/ransac_estimator.h"
+#include "estimator/ransac_options.h"
+
+namespace rcme {
+
+// `standard` with another score in the loop (robust_scores.h): its options but the implementation, since
+// there is one, that of the reference.
+std::unique_ptr<EstimatorModel> MsacModel();
+std::unique_ptr<EstimatorModel> MlesacModel();
+
+// The same from options in the code. Throws InputError if they contradict each other.
+std::unique_ptr<RansacEstimator> MakeMsac(const RansacOptions& options);
+std::unique_ptr<RansacEstimator> MakeMlesac(const RansacOptions& options);
+
+}  // namespace rcme

@@ -1,0 +1,88 @@
+#include "estimator/refinement/m_estimation.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/refinement/sampson_equations.h"
+
+namespace rcme {
+namespace {
+
+// The weight in the place of psi' is iteratively reweighted least squares as it stands; of 100 problems with
+// 30 % wrong matches it reached Huber's optimum within 50 steps in 38. Between the two the optimum is the
+// same: with a tenth of the weight at least 91, with none 79, with 0.3 of it 87.
+constexpr double kLeastCurvature = 0.1;
+
+RobustTerms Huber(double r, double c) {
+  const double size = std::abs(r);
+  if (size <= c) return {0.5 * r * r, r, 1.0, 1.0};
+  return {c * size - 0.5 * c * c, std::copysign(c, r), c / size, 0.0};
+}
+
+RobustTerms Tukey(double r, double c) {
+  const double u = r * r / (c * c);
+  if (u >= 1.0) return {c * c / 6.0, 0.0, 0.0, 0.0};
+  const double v = 1.0 - u;
+  return {c * c / 6.0 * (1.0 - v * v * v), r * v * v, v * v, v * (1.0 - 5.0 * u)};
+}
+
+NormalEquations Linearize(const MotionProblem& problem, const RelativePose& pose,
+                          const MEstimation& options) {
+  const SampsonLinearization model(problem, pose);
+  NormalEquations equations;
+  for (const Correspondence& match : problem.matches) {
+    const SampsonResidual residual = model.Evaluate(match);
+    const RobustTerms terms = EvaluateRobustLoss(options, residual.r);
+    if (!std::isfinite(terms.rho)) continue;  // at both epipoles every line agrees
+    equations.cost += terms.rho;
+    if (terms.weight == 0.0) continue;
+    equations.gradient += terms.psi * residual.r_p;
+    const double curvature = std::max(terms.slope, kLeastCurvature * terms.weight);
+    equations.hessian += curvature * residual.r_p * residual.r_p.transpose();
+  }
+  return equations;
+}
+
+// The inverse of the sandwich, A B^-1 A; NaN where A is not positive definite.
+Matrix5d Information(const MotionProblem& problem, const RelativePose& pose, const MEstimation& options) {
+  const SampsonLinearization model(problem, pose);
+  Matrix5d A = Matrix5d::Zero(), B = Matrix5d::Zero();
+  for (const Correspondence& match : problem.matches) {
+    const SampsonResidual residual = model.Evaluate(match);
+    const RobustTerms terms = EvaluateRobustLoss(options, residual.r);
+    if (!std::isfinite(terms.rho)) continue;
+    const Vector5d row = residual.g_p / residual.norm;
+    const Matrix5d square = row * row.transpose();
+    A += terms.slope * square;
+    B += terms.psi * terms.psi * square;
+  }
+  const Eigen::LLT<Matrix5d> llt_A(A), llt_B(B);
+  if (llt_A.info() != Eigen::Success || llt_B.info() != Eigen::Success) {
+    return Matrix5d::Constant(std::numeric_limits<double>::quiet_NaN());
+  }
+  const Matrix5d information = A * llt_B.solve(A);
+  return 0.5 * (information + information.transpose());
+}
+
+}  // namespace
+
+double MEstimation::TuningConstantOrDefault() const {
+  if (tuning_constant > 0.0) return tuning_constant;
+  return loss == RobustLoss::kHuber ? 1.345 : 4.685;
+}
+
+RobustTerms EvaluateRobustLoss(const MEstimation& options, double r) {
+  const double c = options.TuningConstantOrDefault();
+  return options.loss == RobustLoss::kHuber ? Huber(r, c) : Tukey(r, c);
+}
+
+RefinedMotion RefineByMEstimation(const MotionProblem& problem, const RelativePose& start,
+                                  const MEstimation& options) {
+  return MinimizeOverMotion(
+      start, {[&](const RelativePose& pose) { return Linearize(problem, pose, options); },
+              [&](const RelativePose& pose) { return Information(problem, pose, options); }, 1e-6});
+}
+
+}  // namespace rcme

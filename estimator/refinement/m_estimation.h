@@ -1,0 +1,37 @@
+// M-estimation of the motion over all matches, wrong ones among them (Huber 1964, 1981; Zhang 1997 for
+// epipolar geometry): the least sum rho(r) of the Sampson residuals r = g / (sigma |J|), by iteratively
+// reweighted least squares from a start that is near already.
+//
+//   huber   rho = r^2 / 2 for |r| <= c, c |r| - c^2 / 2 beyond    weight 1, c / |r|
+//   tukey   rho = c^2 / 6 (1 - (1 - r^2 / c^2)^3), c^2 / 6 beyond  weight (1 - r^2 / c^2)^2, 0
+//
+// The noise level is known, so r needs no scale of its own. With c = 1.345 and 4.685 each has 95 % of the
+// efficiency of least squares where all noise is Gaussian.
+#pragma once
+
+#include "estimator/motion_problem.h"
+#include "estimator/refinement/motion_search.h"
+
+namespace rcme {
+
+enum class RobustLoss { kHuber, kTukey };
+
+struct MEstimation {
+  RobustLoss loss = RobustLoss::kTukey;
+  double tuning_constant = 0.0;  // c, in standard deviations; 0: that of 95 % efficiency
+  double TuningConstantOrDefault() const;
+};
+
+// rho(r), psi = rho', psi / r and psi'.
+struct RobustTerms {
+  double rho = 0.0, psi = 0.0, weight = 0.0, slope = 0.0;
+};
+RobustTerms EvaluateRobustLoss(const MEstimation& options, double r);
+
+// From `start` to the optimum. pose_cov is the sandwich A^-1 B A^-1, A = sum psi' r_p' r_p, B = sum psi^2
+// r_p' r_p, to first order (Huber 1981, section 6.3): what the matches themselves say of the spread of psi.
+// Not converged where A is not positive definite.
+RefinedMotion RefineByMEstimation(const MotionProblem& problem, const RelativePose& start,
+                                  const MEstimation& options);
+
+}  // namespace rcme
