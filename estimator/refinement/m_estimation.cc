@@ -45,21 +45,27 @@ NormalEquations Linearize(const MotionProblem& problem, const RelativePose& pose
   return equations;
 }
 
-// The inverse of the sandwich, A B^-1 A; NaN where A is not positive definite.
+// Five matches determine a motion exactly.
+constexpr int kLeastFitted = 6;
+
+// The inverse of the sandwich, A B^-1 A; NaN where A is not positive definite, or too few matches have a
+// weight.
 Matrix5d Information(const MotionProblem& problem, const RelativePose& pose, const MEstimation& options) {
   const SampsonLinearization model(problem, pose);
   Matrix5d A = Matrix5d::Zero(), B = Matrix5d::Zero();
+  int num_fitted = 0;
   for (const Correspondence& match : problem.matches) {
     const SampsonResidual residual = model.Evaluate(match);
     const RobustTerms terms = EvaluateRobustLoss(options, residual.r);
     if (!std::isfinite(terms.rho)) continue;
+    num_fitted += terms.weight > 0.0;
     const Vector5d row = residual.g_p / residual.norm;
     const Matrix5d square = row * row.transpose();
     A += terms.slope * square;
     B += terms.psi * terms.psi * square;
   }
   const Eigen::LLT<Matrix5d> llt_A(A), llt_B(B);
-  if (llt_A.info() != Eigen::Success || llt_B.info() != Eigen::Success) {
+  if (num_fitted < kLeastFitted || llt_A.info() != Eigen::Success || llt_B.info() != Eigen::Success) {
     return Matrix5d::Constant(std::numeric_limits<double>::quiet_NaN());
   }
   const Matrix5d information = A * llt_B.solve(A);

@@ -1,5 +1,5 @@
 // M-estimation of the motion over all matches, wrong ones among them (Huber 1964, 1981; Zhang 1997 for
-// epipolar geometry): the least sum rho(r) of the Sampson residuals r = g / (sigma |J|), by iteratively
+// epipolar geometry): the least sum rho(r) of the Sampson residuals r = g / (sigma |J|), by
 // reweighted least squares from a start that is near already.
 //
 //   huber   rho = r^2 / 2 for |r| <= c, c |r| - c^2 / 2 beyond    weight 1, c / |r|
@@ -30,7 +30,7 @@ RobustTerms EvaluateRobustLoss(const MEstimation& options, double r);
 
 // From `start` to the optimum. pose_cov is the sandwich A^-1 B A^-1, A = sum psi' r_p' r_p, B = sum psi^2
 // r_p' r_p, to first order (Huber 1981, section 6.3): what the matches themselves say of the spread of psi.
-// Not converged where A is not positive definite.
+// Not converged where A is not positive definite, or fewer than six matches have a weight.
 RefinedMotion RefineByMEstimation(const MotionProblem& problem, const RelativePose& start,
                                   const MEstimation& options);
 
