@@ -8,6 +8,10 @@
 namespace rcme {
 namespace {
 
+// Of the observed curvature over that without the residuals' second derivatives. Less is noise: there the
+// likelihood has no optimum along that direction.
+constexpr double kLeastCurvature = 0.1;
+
 Vector5d DerivativeOf(const MatchTermLists& terms, size_t i) {
   Vector5d J;
   for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = terms.derivative[k][i];
@@ -26,7 +30,8 @@ Matrix5d GreaterOf(const Matrix5d& a, const Matrix5d& b) {
   return root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose();
 }
 
-// The Hessian by central differences of the gradient, a tenth of a standard deviation either way.
+}  // namespace
+
 Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode) {
   const Matrix5d root = mode.inverse_hessian.llt().matrixL();
   Matrix5d whitened;
@@ -40,12 +45,10 @@ Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode) {
   const Matrix5d symmetric = 0.5 * (whitened + whitened.transpose());
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(symmetric);
   const Matrix5d back = root * eigen.eigenvectors();
-  return back * eigen.eigenvalues().cwiseMax(0.1).cwiseInverse().asDiagonal() * back.transpose();
+  return back * eigen.eigenvalues().cwiseMax(kLeastCurvature).cwiseInverse().asDiagonal() * back.transpose();
 }
 
-}  // namespace
-
-Matrix5d SandwichCovariance(const MatchBlocks& matches, const Mode& mode, const Explanation& e) {
+Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix5d& inverse) {
   const MixtureParameters& m = mode.mixture;
   Matrix5d scores = Matrix5d::Zero(), geometry = Matrix5d::Zero();
   double sum_squares = 0.0, num_right = 0.0;
@@ -64,44 +67,48 @@ Matrix5d SandwichCovariance(const MatchBlocks& matches, const Mode& mode, const 
   const double freedom = std::max(num_right - 5.0, 1.0);
   const Matrix5d equal = sum_squares / freedom * geometry;
   scores = GreaterOf(scores, equal);
-  const Matrix5d inverse = InverseOfObserved(matches, mode);
   const Matrix5d covariance = freedom / std::max(freedom - 2.0, 1.0) * inverse * scores * inverse;
   return covariance.allFinite() ? covariance : mode.inverse_hessian;
 }
 
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
-                              const Mode& mode) {
+                              const Mode& mode, const Matrix5d& inverse_of_observed) {
   Matrix5d sum = Matrix5d::Zero();
   const auto gradient_of = [&](const MotionProblem& changed) {
     return SumMixture(MatchBlocks(changed), mode.used, mode.pose, mode.mixture).gradient;
   };
   const Vector5d base = gradient_of(problem);
-  const auto add = [&](const std::function<void(MotionProblem&)>& change) {
+  // By a step that moves the points by little of their noise, scaled to one standard deviation.
+  const auto add = [&](double sd, double step, const std::function<void(MotionProblem&, double)>& change) {
     MotionProblem changed = problem;
-    change(changed);
-    const Vector5d moved = -mode.inverse_hessian * (gradient_of(changed) - base);
+    change(changed, step);
+    const Vector5d moved = -(sd / step) * (inverse_of_observed * (gradient_of(changed) - base));
     sum += moved * moved.transpose();
   };
-  const auto scale_focal = [&](Camera& camera) {
-    camera.fx *= 1.0 + options.focal_sd;
-    camera.fy *= 1.0 + options.focal_sd;
+  const auto scale_focal = [](Camera& camera, double by) {
+    camera.fx *= 1.0 + by;
+    camera.fy *= 1.0 + by;
   };
   const bool is_one_camera = problem.camera1.K() == problem.camera2.K();
-  if (options.focal_sd > 0.0 && is_one_camera) {
-    add([&](MotionProblem& p) { scale_focal(p.camera1), scale_focal(p.camera2); });
-  } else if (options.focal_sd > 0.0) {
-    add([&](MotionProblem& p) { scale_focal(p.camera1); });
-    add([&](MotionProblem& p) { scale_focal(p.camera2); });
+  if (options.focal_sd > 0.0) {
+    const double step = 0.01 * problem.sigma_px / problem.camera1.fx;
+    add(options.focal_sd, step, [&](MotionProblem& p, double by) {
+      scale_focal(p.camera1, by);
+      if (is_one_camera) scale_focal(p.camera2, by);
+    });
+    if (!is_one_camera)
+      add(options.focal_sd, step, [&](MotionProblem& p, double by) { scale_focal(p.camera2, by); });
   }
-  const double shift = options.principal_point_sd_px;
-  if (!(shift > 0.0)) return sum;
+  if (!(options.principal_point_sd_px > 0.0)) return sum;
+  const double step = 0.01 * problem.sigma_px;
   for (double Camera::*coordinate : {&Camera::cx, &Camera::cy}) {
-    if (is_one_camera) {
-      add([&](MotionProblem& p) { p.camera1.*coordinate += shift, p.camera2.*coordinate += shift; });
-    } else {
-      add([&](MotionProblem& p) { p.camera1.*coordinate += shift; });
-      add([&](MotionProblem& p) { p.camera2.*coordinate += shift; });
-    }
+    add(options.principal_point_sd_px, step, [&](MotionProblem& p, double by) {
+      p.camera1.*coordinate += by;
+      if (is_one_camera) p.camera2.*coordinate += by;
+    });
+    if (!is_one_camera)
+      add(options.principal_point_sd_px, step,
+          [&](MotionProblem& p, double by) { p.camera2.*coordinate += by; });
   }
   return sum;
 }

@@ -7,17 +7,24 @@
 
 namespace rcme {
 
-// H^-1 S H^-1 with H the Hessian of the likelihood at the optimum and S = sum (p psi / ((1 - h) s))^2 J'J,
-// psi = v u: the residuals give their own variances, and a residual with leverage h is smaller than its error
-// by 1 - h (HC3, MacKinnon and White 1985). 5x5 [rotation, direction], rad^2. The inverse information H^-1
-// where the sandwich is not finite.
-Matrix5d SandwichCovariance(const MatchBlocks& matches, const Mode& mode, const Explanation& explanation);
+// H^-1, H the Hessian of the likelihood at the optimum by central differences of its gradient, a tenth of a
+// standard deviation either way. Where the parallax is small the noise seems to determine the direction
+// (observability.h); the residuals' second derivatives, which this Hessian has, take that away again.
+Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode);
 
-// J_K Sigma_K J_K', what uncertain intrinsics add: J_K = -H^-1 dgradient / dK, by differences of one standard
-// deviation each of focal length and principal point of either camera. A focal error common to both cameras,
-// as that of one camera that took both images, is what `focal_sd` means where the two have the same
-// intrinsics.
+// H^-1 S H^-1 with S = sum (p psi / ((1 - h) s))^2 J'J, psi = v u: the residuals give their own variances,
+// and a residual with leverage h is smaller than its error by 1 - h (HC3, MacKinnon and White 1985). Where
+// along some direction the mean variance of all residuals gives a greater S, that one: few matches, that
+// decide, have a poor estimate of their own variance. Times k / (k - 2), k the degrees of freedom, as the
+// scale is estimated. 5x5 [rotation, direction], rad^2. The mode's inverse information where the result is
+// not finite.
+Matrix5d SandwichCovariance(const Mode& mode, const Explanation& explanation,
+                            const Matrix5d& inverse_of_observed);
+
+// J_K Sigma_K J_K', what uncertain intrinsics add: J_K = -H^-1 dgradient / dK, by differences, focal length
+// and principal point of either camera. Where both have the same intrinsics, as one camera that took both
+// images, an error is common to both.
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
-                              const Mode& mode);
+                              const Mode& mode, const Matrix5d& inverse_of_observed);
 
 }  // namespace rcme

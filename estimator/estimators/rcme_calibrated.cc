@@ -200,10 +200,11 @@ class RcmeCalibrated : public MotionEstimator {
       const double weight = weights.of_modes[i];
       const Mode& mode = modes[i].mode;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
-      success += weight * MassWithin(pose, Bounds(), mode.pose, mode.inverse_hessian, rng);
+      const Matrix5d curvature = InverseOfObserved(matches, mode);
+      success += weight * MassWithin(pose, Bounds(), mode.pose, curvature, rng);
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
-      verdict.pose_cov += weight * (CovarianceOf(problem, matches, modes[i]) + away * away.transpose());
+      verdict.pose_cov += weight * (CovarianceOf(problem, modes[i], curvature) + away * away.transpose());
       within += weight;
     }
     verdict.pose_cov /= within;
@@ -212,13 +213,13 @@ class RcmeCalibrated : public MotionEstimator {
     return verdict;
   }
 
-  Matrix5d CovarianceOf(const MotionProblem& problem, const MatchBlocks& matches,
-                        const ExplainedMode& mode) const {
+  Matrix5d CovarianceOf(const MotionProblem& problem, const ExplainedMode& mode,
+                        const Matrix5d& curvature) const {
     Matrix5d covariance = options_.covariance == CovarianceKind::kSandwich
-                              ? SandwichCovariance(matches, mode.mode, mode.explanation)
+                              ? SandwichCovariance(mode.mode, mode.explanation, curvature)
                               : mode.mode.inverse_hessian;
     if (options_.focal_sd > 0.0 || options_.principal_point_sd_px > 0.0) {
-      covariance += IntrinsicsCovariance(problem, options_, mode.mode);
+      covariance += IntrinsicsCovariance(problem, options_, mode.mode, curvature);
     }
     return covariance;
   }

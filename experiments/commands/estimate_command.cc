@@ -34,6 +34,22 @@ std::vector<double> RowMajor(const Eigen::MatrixXd& matrix) {
   return numbers;
 }
 
+// Of an estimator that states them; see motion_estimate.h.
+void AddProbabilities(const MotionEstimate& estimate, nlohmann::ordered_json* json) {
+  (*json)["failure_probability"] = estimate.failure_probability;
+  (*json)["sigma_estimated_px"] = estimate.sigma_estimated_px;
+  (*json)["sigma_estimated_sd_px"] = estimate.sigma_estimated_sd_px;
+  (*json)["inlier_probabilities"] = estimate.inlier_probabilities;
+  (*json)["other_modes"] = nlohmann::ordered_json::array();
+  for (const MotionMode& mode : estimate.other_modes) {
+    (*json)["other_modes"].push_back({{"weight", mode.weight},
+                                      {"explained_share", mode.explained_share},
+                                      {"R", RowMajor(mode.cam2_from_cam1.R)},
+                                      {"t", RowMajor(mode.cam2_from_cam1.t)},
+                                      {"pose_cov", RowMajor(mode.pose_cov)}});
+  }
+}
+
 nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord& record,
                               const std::string& estimator) {
   nlohmann::ordered_json json = {{"status", StatusName(estimate.status)},
@@ -54,6 +70,7 @@ nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord&
   json["t"] = RowMajor(estimate.cam2_from_cam1.t);
   json["pose_cov"] = RowMajor(estimate.pose_cov);
   json["failed_by_kappa"] = estimate.failed_by_kappa;
+  if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
   if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
   if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
   return json;
@@ -141,7 +158,9 @@ void AddEstimateCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("estimate", "Estimate the motion between two images from a file of matches");
   command->footer(
-      "Without a word about the estimator it is rcme with its default options. An estimator file (YAML)\n"
+      "Without a word about the estimator it is rcme_calibrated, which says how likely it is to be wrong; "
+      "the\n"
+      "paper's is --estimator rcme. An estimator file (YAML)\n"
       "holds a name, a label and options, so that an estimator that was tuned by simulation runs on a real\n"
       "pair with the very options that were validated; the answer goes by its label. It may be as short as\n"
       "  name: rcme\n"

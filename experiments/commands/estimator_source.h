@@ -11,7 +11,7 @@
 namespace rcme {
 
 struct EstimatorChoice {
-  std::string name = "rcme";
+  std::string name = "rcme_calibrated";
   std::optional<std::string> file;
   std::vector<std::string> overrides;  // option=value each
 };
