@@ -2,6 +2,10 @@
 
 namespace rcme {
 
+bool LimitsFailures(TuneTarget target) {
+  return target == TuneTarget::kFailure || target == TuneTarget::kAcceptedFailure;
+}
+
 std::vector<Parameter> Parameters(Tuning& t) {
   const std::string per_condition = "trials per condition ";
   return {
@@ -9,12 +13,14 @@ std::vector<Parameter> Parameters(Tuning& t) {
       Parameter::Choice<TuneTarget>("target", &t.target,
                                     {{"false_refusal", TuneTarget::kFalseRefusal},
                                      {"failure", TuneTarget::kFailure},
+                                     {"accepted_failure", TuneTarget::kAcceptedFailure},
                                      {"risk", TuneTarget::kRisk}},
                                     "what the tuned setting has to meet"),
       Parameter::Real("at_most", &t.at_most, {1e-6, 0.999}, "",
                       "greatest rate of false refusals, or of failures"),
-      Parameter::Real("max_refusal", &t.max_refusal, {1e-6, 1.0}, "",
-                      "target failure: greatest rate of refusals that still counts as an answer"),
+      Parameter::Real(
+          "max_refusal", &t.max_refusal, {1e-6, 1.0}, "",
+          "targets failure and accepted_failure: greatest rate of refusals that still counts as an answer"),
       Parameter::Real("cost_of_failure", &t.cost_of_failure, {0.0, 1e6}, "", "target risk: of a trial"),
       Parameter::Real("cost_of_refusal", &t.cost_of_refusal, {0.0, 1e6}, "", "target risk: of a trial"),
       Parameter::Real("delta", &t.delta, {1e-6, 0.5}, "",

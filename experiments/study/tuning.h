@@ -11,11 +11,15 @@
 namespace rcme {
 
 enum class TuneTarget {
-  kFalseRefusal,  // of the trials whose motion would be good without the limits (SettingPlan), at most so
-                  // many are refused; then the least failure
-  kFailure,       // at most so many trials fail; then the least refusal
-  kRisk,          // cost_of_failure * failure + cost_of_refusal * refusal is least
+  kFalseRefusal,     // of the trials whose motion would be good without the limits (SettingPlan), at most so
+                     // many are refused; then the least failure
+  kFailure,          // at most so many trials fail; then the least refusal
+  kAcceptedFailure,  // at most so many of the trials that are not refused fail; then the least refusal
+  kRisk,             // cost_of_failure * failure + cost_of_refusal * refusal is least
 };
+
+// Whether the target limits failures, of all trials or of those that are not refused, and with them refusals.
+bool LimitsFailures(TuneTarget target);
 
 // An option of the estimator and the values it may take, as text, in the order they are given.
 struct TunedOption {

@@ -84,7 +84,12 @@ std::int64_t DivideRoundingUp(std::int64_t numerator, std::int64_t denominator) 
 // What stands between a count and its limit: nothing, trials, or the rate itself.
 std::string Obstacle(const Tuning& tuning, const char* what, const ErrorCount& count, double at_most) {
   if (ExcessPValue(count, at_most) <= tuning.delta) return {};
-  if (count.n == 0) return fmt::format("{}: no trial would be good if nothing were refused", what);
+  if (count.n == 0) {
+    return fmt::format("{}: no trial {}", what,
+                       tuning.target == TuneTarget::kAcceptedFailure
+                           ? "is accepted"
+                           : "would be good if nothing were refused");
+  }
   const std::string figure = fmt::format("{} {}", what, RateInWords(count));
   if (ExactBinomialInterval(count.errors, count.n).lower > at_most) {
     return figure + fmt::format(": {:.3g} % is out of reach", 100.0 * at_most);
@@ -103,7 +108,7 @@ std::string Obstacle(const Tuning& tuning, const char* what, const ErrorCount& c
 std::string WhyNone(const Tuning& tuning, const std::vector<std::string>& settings,
                     const std::vector<SettingCount>& calibrated) {
   const size_t nearest = NearestSetting(tuning, calibrated);
-  const bool is_failure = tuning.target == TuneTarget::kFailure;
+  const bool is_failure = LimitsFailures(tuning.target);
   std::string why = Obstacle(tuning, is_failure ? "failure" : "false refusal",
                              TargetedCount(tuning, calibrated[nearest]), tuning.at_most);
   const std::string refusal =
@@ -148,11 +153,12 @@ Verdict VerdictOf(const ErrorCount& count, double at_most) {
 }  // namespace
 
 ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count) {
-  return tuning.target == TuneTarget::kFalseRefusal ? count.FalseRefusal() : count.Failure();
+  if (tuning.target == TuneTarget::kFalseRefusal) return count.FalseRefusal();
+  return tuning.target == TuneTarget::kAcceptedFailure ? count.AcceptedFailure() : count.Failure();
 }
 
 bool HasRefusalLimit(const Tuning& tuning) {
-  return tuning.target == TuneTarget::kFailure && tuning.max_refusal < 1.0;
+  return LimitsFailures(tuning.target) && tuning.max_refusal < 1.0;
 }
 
 Verdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
@@ -207,6 +213,11 @@ std::string TargetInWords(const Tuning& tuning) {
           "with "
           "probability {}; then the least failure",
           100.0 * tuning.at_most, tuning.delta);
+    case TuneTarget::kAcceptedFailure:
+      return fmt::format(
+          "at most {:.3g} % of the trials that are not refused fail and at most {:.3g} % are refused, except "
+          "with probability {}; then the least refusal",
+          100.0 * tuning.at_most, 100.0 * tuning.max_refusal, tuning.delta);
     case TuneTarget::kFailure:
       return fmt::format(
           "at most {:.3g} % of the trials fail and at most {:.3g} % are refused, except with "

@@ -27,7 +27,7 @@ struct Choice {
   std::string why;                // the nearest reachable figure, and how many trials would do
 };
 
-// What the target limits: false refusals or failures.
+// What the target limits: false refusals, failures, or failures of what is not refused.
 ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count);
 
 // Whether the target limits refusals, too.

@@ -17,6 +17,7 @@ struct SettingCount {
   std::int64_t n = 0, failures = 0, refusals = 0, good = 0, false_refusals = 0;
 
   ErrorCount Failure() const { return {failures, n}; }
+  ErrorCount AcceptedFailure() const { return {failures, n - refusals}; }
   ErrorCount Refusal() const { return {refusals, n}; }
   ErrorCount FalseRefusal() const { return {false_refusals, good}; }
   SettingCount& operator+=(const SettingCount& other);

@@ -296,7 +296,7 @@ std::string RateForTable(const ErrorCount& count) {
 
 Json TargetAsJson(const Tuning& tuning) {
   Tuning copy = tuning;
-  const bool is_risk = tuning.target == TuneTarget::kRisk, is_failure = tuning.target == TuneTarget::kFailure;
+  const bool is_risk = tuning.target == TuneTarget::kRisk, is_failure = LimitsFailures(tuning.target);
   return {{"kind", FindParameter(Parameters(copy), "target").Value()},
           {"at_most", is_risk ? Json(nullptr) : Json(tuning.at_most)},
           {"max_refusal", is_failure ? Json(tuning.max_refusal) : Json(nullptr)},

@@ -12,7 +12,7 @@ BORDERS = (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1)
 SCALE = BoundaryNorm(BORDERS, COLORS.N, clip=True)
 TARGET = style.VERMILLION  # of what the target allows, and of the setting that meets it
 QUANTITIES = {"failure": "Failure rate", "refusal": "Refusal rate", "false_refusal": "False-refusal rate",
-              "risk": "Risk"}
+              "accepted_failure": "Failure rate of accepted trials", "risk": "Risk"}
 
 
 def color_of(rate):

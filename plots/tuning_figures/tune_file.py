@@ -18,7 +18,8 @@ from common.number_text import number_text
 
 TUNING, TRANSFER = ("rcme tune", "rcme tuning 1"), ("rcme transfer", "rcme transfer 1")  # command, format
 FALSE_REFUSAL, VIOLATED, UNDECIDED = "false_refusal", "does not hold", "undecided"
-TARGETS, VERDICTS = (FALSE_REFUSAL, "failure", "risk"), ("holds", VIOLATED, UNDECIDED)
+TARGETS = (FALSE_REFUSAL, "failure", "accepted_failure", "risk")
+VERDICTS = ("holds", VIOLATED, UNDECIDED)
 SETTING_RATES = ("failure", "refusal", "false_refusal")
 SAMPLES, WINNERS = "samples", "winners"
 

@@ -148,7 +148,8 @@ TEST(TuneBlockErrors, Values) {
   EXPECT_TRUE(Refuses(Edited("estimator: ours", "estimator: theirs"),
                       {":11:", "estimator", "'theirs'", "no label", "standard, ours"}));
   EXPECT_TRUE(Refuses(Edited("estimator: ours", "estimator: ''"), {":11:", "estimator", "''"}));
-  EXPECT_TRUE(Refuses(Edited("false_refusal", "speed"), {":12:", "'speed'", "false_refusal, failure, risk"}));
+  EXPECT_TRUE(Refuses(Edited("false_refusal", "speed"),
+                      {":12:", "'speed'", "false_refusal, failure, accepted_failure, risk"}));
   EXPECT_TRUE(Refuses(Edited("at_most: 0.1", "at_most: 0"),
                       {":13:", "at_most", "'0'", "a number in [1e-06, 0.999]"}));
   EXPECT_TRUE(Refuses(Edited("at_most: 0.1", "at_most: .nan"), {":13:", "at_most", "'.nan'", "a number in"}));

@@ -56,6 +56,25 @@ testing::AssertionResult Says(const std::string& text, const std::vector<std::st
 const std::vector<SettingCount> kExplored = {Of(100, 0, 60), Of(100, 3, 40), Of(100, 6, 10),
                                              Of(100, 2, 40), Of(100, 6, 11), Of(100, 6, 10)};
 
+// Of limits on a stated probability: the strict one refuses 60 of 100 and none of its 40 fails, the middle
+// one refuses 20 and 1 of 80 fails, without a limit 6 fail.
+TEST(ChooseSetting, FailuresOfAcceptedTrialsAreOutOfThese) {
+  const Tuning tuning = TuningFor(TuneTarget::kAcceptedFailure, 0.05);
+  const std::vector<SettingCount> counts = {Of(1000, 0, 600), Of(1000, 10, 200), Of(1000, 60, 0)};
+  EXPECT_EQ(TargetedCount(tuning, counts[1]).n, 800);
+  EXPECT_EQ(TargetedCount(tuning, counts[1]).errors, 10);
+  const Choice choice = Choose(tuning, counts, counts);
+  EXPECT_EQ(choice.path, (Path{0, 1, 2}));
+  EXPECT_EQ(choice.num_certified, 2u);
+  EXPECT_EQ(choice.setting, 1u) << "the least refusal of those";
+  EXPECT_EQ(Choose(TuningFor(TuneTarget::kAcceptedFailure, 0.05, 0.1), counts, counts).num_certified, 0u);
+  // 40 of 1,000 trials fail: too many of the 500 that are accepted, not of all.
+  EXPECT_EQ(VerdictOf(tuning, Of(1000, 40, 500)), Verdict::kDoesNotHold);
+  EXPECT_NE(VerdictOf(TuningFor(TuneTarget::kFailure, 0.05), Of(1000, 40, 500)), Verdict::kDoesNotHold);
+  const std::vector<SettingCount> none = {Of(100, 0, 100)};
+  EXPECT_TRUE(Says(Choose(tuning, none, none).why, {"no trial is accepted", "that are not refused fail"}));
+}
+
 TEST(ChooseSetting, ThePathIsTheFrontInTheOrderOfSurety) {
   const Choice choice = Choose(TuningFor(TuneTarget::kFailure, 0.1), kExplored, kExplored);
   EXPECT_EQ(choice.path, (Path{0, 3, 4, 2, 5}));
