@@ -254,10 +254,10 @@ class Accumulator {
 
   // Its interval is of a number of trials that was fixed beforehand.
   static void FillMedian(const StreamMedian& median, SummaryRow* row) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     row->value = median.median();
     row->n = median.n();
-    row->interval = row->interval_kind == IntervalKind::kExact ? median.interval() : Interval{kNaN, kNaN};
+    row->interval =
+        row->interval_kind == IntervalKind::kExact ? median.interval() : Interval{std::nan(""), std::nan("")};
   }
 
   void FillWeighted(size_t q, SummaryRow* row) const {

@@ -20,7 +20,7 @@ bool HasKindOfInterval(const SummaryRow& row) {
 
 // "12.34 % [10.10, 14.80]", "1.23 +- 0.04" or "1.23 [1.20, 1.31]"; with its n where that is not all of the
 // trials, and a coverage with its verdict.
-std::string Cell(const SummaryRow& row, std::int64_t num_trials) {
+std::string CellText(const SummaryRow& row, std::int64_t num_trials) {
   if (row.n == 0) return "-";
   const std::string of = row.n == num_trials ? "" : fmt::format(" (n {})", row.n);
   if (row.interval_kind == IntervalKind::kWeighted) {
@@ -111,7 +111,7 @@ std::string SeverityAsTable(const Summary& summary) {
       rows.push_back(row.levels);
       num_measured += row.n;
     }
-    if (std::count(shown.begin(), shown.end(), row.quantity) > 0) rows.back().push_back(Cell(row, row.n));
+    if (std::count(shown.begin(), shown.end(), row.quantity) > 0) rows.back().push_back(CellText(row, row.n));
   }
   if (num_measured == 0) return "";
   return fmt::format("The problems themselves (impossible: Cramer-Rao bound beyond a failure bound)\n\n{}\n",
@@ -146,7 +146,7 @@ std::string EstimatorsAsTable(const Summary& summary, const std::vector<std::str
       rows.back().insert(rows.back().end(), {row.estimator, fmt::format("{}", row.n)});
     }
     if (std::count(shown.begin(), shown.end(), row.quantity) > 0 && row.estimator != kSceneLabel)
-      rows.back().push_back(Cell(row, num_trials));
+      rows.back().push_back(CellText(row, num_trials));
   }
   return FormatColumns(rows);
 }
@@ -180,7 +180,7 @@ std::string FlipsInWords(const Summary& summary) {
       place.push_back(summary.factor_names[f] + " " + row->levels[f]);
     text +=
         fmt::format("  {}: {}{}\n", row->estimator,
-                    row->value == 0.0 ? "no scene" : Cell(*row, row->n) + " of the scenes",
+                    row->value == 0.0 ? "no scene" : CellText(*row, row->n) + " of the scenes",
                     row->value == 0.0 || place.empty() ? "" : fmt::format(" at {}", fmt::join(place, ", ")));
   }
   return "Whether a motion fails depends on the sampler's seed, at most:\n" + text;

@@ -1,5 +1,7 @@
 #include "experiments/base/json_output.h"
 
+#include <nlohmann/json.hpp>
+
 namespace rcme {
 
 std::string JsonText(const char* format, const nlohmann::ordered_json& object) {

@@ -1,7 +1,7 @@
 // JSON as the program writes it: one object that begins with its format.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace rcme {

@@ -126,7 +126,7 @@ void ReportDamage(const CheckArguments& arguments, const InputError& error) {
              arguments.save_good, num_sound, arguments.save_good);
 }
 
-void Check(const CheckArguments& arguments) {
+void CheckFile(const CheckArguments& arguments) {
   try {
     const ResultStore store = ResultStore::OpenForReading(arguments.run);
     PrintSound(arguments.run, store);
@@ -165,7 +165,7 @@ void AddCheckCommand(CLI::App& app) {
   command->add_option("--study", arguments->study,
                       "study file (YAML) of the run, where what the file says of it is damaged too");
   AddStudyOptions(command, &arguments->changes);
-  command->callback([arguments] { Check(*arguments); });
+  command->callback([arguments] { CheckFile(*arguments); });
 }
 
 }  // namespace rcme

@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-struct CheckArguments {
+struct EstimatorCheckArguments {
   EstimatorChoice estimator;
   std::vector<std::string> only;
   std::string problem;
@@ -37,7 +37,8 @@ std::string InQuotes(const std::string& word) {
 }
 
 // The command that finds the same again.
-std::string Again(const CheckArguments& arguments, const std::string& check, const std::string& problem) {
+std::string Again(const EstimatorCheckArguments& arguments, const std::string& check,
+                  const std::string& problem) {
   const EstimatorChoice& choice = arguments.estimator;
   std::string command =
       "check-estimator " + (choice.file ? "--estimator-file " + InQuotes(*choice.file) : choice.name);
@@ -47,7 +48,8 @@ std::string Again(const CheckArguments& arguments, const std::string& check, con
   return command;
 }
 
-void Print(const CheckArguments& arguments, const ContractCheck& check, const ContractResult& result) {
+void Print(const EstimatorCheckArguments& arguments, const ContractCheck& check,
+           const ContractResult& result) {
   const std::string at = result.problem.empty() ? "" : fmt::format("on '{}': ", result.problem);
   fmt::print("{:<7} {:<12} {}{}\n", result.has_passed ? "ok" : "FAILED", check.name, at,
              Printable(result.finding));
@@ -58,7 +60,7 @@ void Print(const CheckArguments& arguments, const ContractCheck& check, const Co
   std::fflush(stdout);
 }
 
-void RunChecks(const CheckArguments& arguments) {
+void RunChecks(const EstimatorCheckArguments& arguments) {
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   const EstimatorMaker make = [&] { return Make(spec); };
   make();  // options that contradict each other are found here
@@ -101,7 +103,7 @@ void AddCheckEstimatorCommand(CLI::App& app) {
       "  rcme check-estimator rcme --set reading=rank_aware\n"
       "  own_rcme check-estimator opencv\n"
       "  gdb --args own_rcme check-estimator opencv --only bad_input --problem 'no match' --in-process");
-  auto arguments = std::make_shared<CheckArguments>();
+  auto arguments = std::make_shared<EstimatorCheckArguments>();
   arguments->estimator.name.clear();
   CLI::Option* name =
       command->add_option("estimator", arguments->estimator.name, "see `rcme list estimators`");

@@ -22,7 +22,7 @@ struct ReportArguments {
 };
 
 // What cannot be written at the end had better be known before the figures are drawn.
-void CheckOut(const std::string& out) {
+void CheckReportFolder(const std::string& out) {
   const std::filesystem::path parent = std::filesystem::path(out).parent_path();
   if (out.empty()) throw InputError("--out: '' is not allowed; give the path of a page");
   if (std::filesystem::is_directory(out)) throw InputError(fmt::format("{}: is a folder, not a page", out));
@@ -39,8 +39,8 @@ std::string PageFrom(const std::string& folder) {
   return text.str();
 }
 
-void RunReport(const ReportArguments& arguments) {
-  CheckOut(arguments.out);
+void WriteReport(const ReportArguments& arguments) {
+  CheckReportFolder(arguments.out);
   const ScratchFolder folder;
   for (size_t i = 0; i < arguments.runs.size(); ++i) {
     const std::string run_folder = fmt::format("{}/run_{:04}", folder.path(), i + 1);
@@ -71,7 +71,7 @@ void AddReportCommand(CLI::App& app) {
   command->add_option("--against", arguments->against,
                       "label of the reference estimator, in every run; default: the first of each study");
   command->add_option("-o,--out", arguments->out, "the page to write, whole or not at all")->required();
-  command->callback([arguments] { RunReport(*arguments); });
+  command->callback([arguments] { WriteReport(*arguments); });
 }
 
 }  // namespace rcme

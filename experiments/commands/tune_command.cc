@@ -11,6 +11,7 @@
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/tuning_source.h"
 #include "experiments/study/estimator_file.h"
+#include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
 #include "parameters/input_error.h"
 

@@ -16,19 +16,19 @@ namespace {
 
 constexpr double kPower = 0.9;  // of the number of trials that is called enough
 
-double RateOf(const ErrorCount& count) {
+double RateOrOne(const ErrorCount& count) {
   return count.n > 0 ? static_cast<double>(count.errors) / static_cast<double>(count.n) : 1.0;
 }
 
 std::string RateInWords(const ErrorCount& count) {
   const Interval interval = ExactBinomialInterval(count.errors, count.n);
-  return fmt::format("{:.3g} % [{:.3g}, {:.3g}] of {}", 100.0 * RateOf(count), 100.0 * interval.lower,
+  return fmt::format("{:.3g} % [{:.3g}, {:.3g}] of {}", 100.0 * RateOrOne(count), 100.0 * interval.lower,
                      100.0 * interval.upper, count.n);
 }
 
 // What is to be least among the settings that meet the target.
 double Objective(const Tuning& tuning, const SettingCount& count) {
-  return RateOf(tuning.target == TuneTarget::kFalseRefusal ? count.Failure() : count.Refusal());
+  return RateOrOne(tuning.target == TuneTarget::kFalseRefusal ? count.Failure() : count.Refusal());
 }
 
 // The p-value of "the setting violates the target".
@@ -42,7 +42,7 @@ double PValue(const Tuning& tuning, const SettingCount& count) {
 std::vector<size_t> Proposed(const Tuning& tuning, const std::vector<SettingCount>& counts) {
   std::vector<double> limited, objective;
   for (const SettingCount& count : counts) {
-    limited.push_back(RateOf(TargetedCount(tuning, count)));
+    limited.push_back(RateOrOne(TargetedCount(tuning, count)));
     objective.push_back(Objective(tuning, count));
   }
   return ParetoFront(limited, objective, TiesOfFirst::kStay);
@@ -66,8 +66,8 @@ size_t NearestSetting(const Tuning& tuning, const std::vector<SettingCount>& cal
   const auto key = [&](size_t s) {
     const SettingCount& count = calibrated[s];
     const double excess =
-        HasRefusalLimit(tuning) ? std::max(0.0, RateOf(count.Refusal()) - tuning.max_refusal) : 0.0;
-    return std::tuple(PValue(tuning, count), excess, RateOf(TargetedCount(tuning, count)),
+        HasRefusalLimit(tuning) ? std::max(0.0, RateOrOne(count.Refusal()) - tuning.max_refusal) : 0.0;
+    return std::tuple(PValue(tuning, count), excess, RateOrOne(TargetedCount(tuning, count)),
                       Objective(tuning, count));
   };
   size_t nearest = 0;
@@ -94,10 +94,10 @@ std::string Obstacle(const Tuning& tuning, const char* what, const ErrorCount& c
   if (ExactBinomialInterval(count.errors, count.n).lower > at_most) {
     return figure + fmt::format(": {:.3g} % is out of reach", 100.0 * at_most);
   }
-  if (RateOf(count) >= at_most) {
+  if (RateOrOne(count) >= at_most) {
     return figure + fmt::format(", which is not below {:.3g} %", 100.0 * at_most);
   }
-  const std::int64_t needed = TrialsToCertify(RateOf(count), at_most, tuning.delta, kPower);
+  const std::int64_t needed = TrialsToCertify(RateOrOne(count), at_most, tuning.delta, kPower);
   return figure + fmt::format(
                       ", too few trials: if that is the rate, {} certify {:.3g} % with probability {}: "
                       "calibrate: {} instead of {}",
@@ -168,7 +168,7 @@ Verdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
 }
 
 double Risk(const Tuning& tuning, const SettingCount& count) {
-  return tuning.cost_of_failure * RateOf(count.Failure()) + tuning.cost_of_refusal * RateOf(count.Refusal());
+  return tuning.cost_of_failure * RateOrOne(count.Failure()) + tuning.cost_of_refusal * RateOrOne(count.Refusal());
 }
 
 Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& settings,

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "experiments/base/columns.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/json_output.h"
-#include "experiments/tuning/tune_output.h"
+#include "experiments/tuning/rate_output.h"
+#include "experiments/tuning/tune_json.h"
 
 namespace rcme {
 namespace {

@@ -7,7 +7,7 @@ namespace rcme {
 namespace {
 
 // The farthest of the points beyond the street, times street_length_m.
-constexpr double kFarSpan = 5.0;
+constexpr double kStreetFarSpan = 5.0;
 
 struct StreetSize {
   double camera_height_m = 1.65;  // of a camera on the roof of a car (KITTI)
@@ -38,7 +38,7 @@ class StreetWorld : public PointwiseWorld {
 
   // Uniform in depth, across image 1, and in height up to that of the facades.
   Eigen::Vector3d DrawFarPoint(RandomStream& rng) const {
-    const double depth_m = rng.Uniform(size_.street_length_m, kFarSpan * size_.street_length_m);
+    const double depth_m = rng.Uniform(size_.street_length_m, kStreetFarSpan * size_.street_length_m);
     const double height_m = rng.Uniform(0.0, size_.facade_height_m);
     return {depth_m * DrawRay(camera_, rng).x(), size_.camera_height_m - height_m, depth_m};
   }

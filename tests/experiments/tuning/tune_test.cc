@@ -7,7 +7,7 @@
 #include <set>
 
 #include "experiments/trial/trial.h"
-#include "experiments/tuning/tune_output.h"
+#include "experiments/tuning/tune_json.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/temp_folder.h"
