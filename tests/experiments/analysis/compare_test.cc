@@ -277,6 +277,10 @@ TEST_F(CompareMeasuresTest, WhatLooksAgainAndAgainGetsTestsThatAreValidAtEveryLo
   ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_)).NoteStoppingRule("a reason");
   const Comparison stopped = ComparisonOf("run", "", all);
   EXPECT_TRUE(stopped.caution.empty());
+  ScoreMean difference({-1.0, 1.0});  // the concordant trials count as zero
+  difference.Add(1.0, 2);
+  difference.Add(-1.0, 12);
+  difference.Add(0.0, 36);
   for (const Comparison& comparison : {by_hand, stopped}) {
     const ComparisonRow failure = Row(comparison, "failure"), error = Row(comparison, "max_error_median_deg");
     EXPECT_TRUE(failure.is_anytime_valid && error.is_anytime_valid);
@@ -285,6 +289,8 @@ TEST_F(CompareMeasuresTest, WhatLooksAgainAndAgainGetsTestsThatAreValidAtEveryLo
     EXPECT_GT(failure.p_value, once.p_value);
     EXPECT_LT(failure.interval.lower, once.interval.lower);
     EXPECT_GT(failure.interval.upper, once.interval.upper);
+    EXPECT_EQ(failure.interval.lower, difference.Sequence().lower);
+    EXPECT_EQ(failure.interval.upper, difference.Sequence().upper);
     EXPECT_EQ(failure.holm_p_value, std::min(1.0, 2.0 * failure.p_value));
     EXPECT_EQ(error.p_value, AnytimeMcNemarPValue(error.counts));
     EXPECT_TRUE(std::isnan(error.interval.lower) && std::isnan(error.interval.upper));

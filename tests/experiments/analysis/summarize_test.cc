@@ -1,123 +1,24 @@
 #include "experiments/analysis/summarize.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "experiments/analysis/summary_output.h"
 #include "stats/confidence_sequence.h"
 #include "stats/score_mean.h"
-#include "stats/variance_split.h"
-#include "tests/test_support/add_records.h"
-#include "tests/test_support/small_study.h"
-#include "tests/test_support/temp_folder.h"
+#include "tests/test_support/summarized_run.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-TrialRecord Motion(std::uint32_t trial, double rotation_deg, double direction_deg, double nees) {
-  TrialRecord record;
-  record.trial = trial;
-  record.status = MotionStatus::kOk;
-  record.rotation_error_deg = rotation_deg;
-  record.direction_error_deg = direction_deg;
-  record.nees = nees;
-  record.inlier_precision = 0.5;
-  record.inlier_recall = 0.25;
-  record.num_matches = 40;
-  record.num_support = 10 + static_cast<int>(trial);
-  record.num_explained = 20;
-  record.mean_entropy = -4.0;
-  record.counts.num_candidates = 3;
-  record.seconds = 0.002;
-  return record;
-}
-
-TrialRecord NoMotion(std::uint32_t trial, MotionStatus status) {
-  TrialRecord record;
-  record.trial = trial;
-  record.status = status;
-  record.rotation_error_deg = record.direction_error_deg = record.nees = kNaN;
-  record.inlier_precision = record.inlier_recall = record.mean_entropy = record.z_statistic = kNaN;
-  record.seconds = 0.004;
-  return record;
-}
-
-// Condition 0, estimator 0 ("standard"), ten trials: four successes, two failures, four without a motion.
-std::vector<TrialRecord> HandMadeRecords() {
-  std::vector<TrialRecord> records = {
-      Motion(0, 1.0, 2.0, 4.0),
-      Motion(1, 2.0, 4.0, 6.0),
-      Motion(2, 3.0, 15.0, 20.0),  // at both bounds: a success; outside of the 95 % region (11.07)
-      Motion(3, 2.0, 3.0, 2.0),
-      Motion(4, 3.5, 1.0, 30.0),  // fails by its rotation
-      Motion(5, 1.0, 40.0, 3.0),  // fails by its direction
-      NoMotion(6, MotionStatus::kNoCandidate),
-      NoMotion(7, MotionStatus::kNoCandidate),
-      NoMotion(8, MotionStatus::kRefinementDiverged),
-      NoMotion(9, MotionStatus::kTooFewMatches),
-  };
-  records[5].failed_by_kappa = true;
-  records[3].inlier_precision = 1.0;
-  return records;
-}
-
-class SummarizeTest : public testing::Test {
- protected:
-  SummarizeTest() {
-    study_.estimators.resize(1);  // "standard"
-    Write("run", HandMadeRecords());
-  }
-
-  void Write(const std::string& name, const std::vector<TrialRecord>& records) {
-    ResultStore store = ResultStore::OpenForRun(folder_.Path(name), MakePlan(study_));
-    AddRecords(store, records);
-  }
-  Summary SummaryOf(const std::string& name, bool with_times = false) {
-    return Summarize(ResultStore::OpenForReading(folder_.Path(name)), with_times);
-  }
-  SummaryRow Row(const std::string& quantity, std::uint32_t condition = 0,
-                 const std::string& estimator = "standard") {
-    for (const SummaryRow& row : SummaryOf("run", true).rows) {
-      if (row.quantity == quantity && row.condition == condition && row.estimator == estimator) return row;
-    }
-    ADD_FAILURE() << "no row of " << quantity;
-    return {};
-  }
-  void ExpectRate(const std::string& quantity, std::int64_t count, std::int64_t n) {
-    const SummaryRow row = Row(quantity);
-    EXPECT_EQ(row.kind, SummaryRow::Kind::kRate) << quantity;
-    EXPECT_EQ(row.n, n) << quantity;
-    EXPECT_DOUBLE_EQ(row.value, static_cast<double>(count) / static_cast<double>(n)) << quantity;
-    EXPECT_EQ(row.interval.lower, ExactBinomialInterval(count, n).lower) << quantity;
-    EXPECT_EQ(row.interval.upper, ExactBinomialInterval(count, n).upper) << quantity;
-  }
-  void ExpectMean(const std::string& quantity, const std::vector<double>& values) {
-    double mean = 0.0, sum_squares = 0.0;
-    const double n = static_cast<double>(values.size());
-    for (const double value : values) mean += value / n;
-    for (const double value : values) sum_squares += (value - mean) * (value - mean);
-    const SummaryRow row = Row(quantity);
-    EXPECT_EQ(row.kind, SummaryRow::Kind::kMean) << quantity;
-    EXPECT_EQ(row.n, static_cast<std::int64_t>(values.size())) << quantity;
-    EXPECT_NEAR(row.value, mean, 1e-12) << quantity;
-    EXPECT_NEAR(row.standard_error, std::sqrt(sum_squares / (n - 1.0) / n), 1e-12) << quantity;
-  }
-
-  TempFolder folder_;
-  Study study_ = SmallStudy();
-};
+class SummarizeTest : public SummarizedRun {};
 
 TEST_F(SummarizeTest, RatesByHand) {
   ExpectRate("success", 4, 10);
@@ -230,28 +131,6 @@ TEST_F(SummarizeTest, ScoresAndMedianErrorsComeLast) {
   EXPECT_EQ((time + 8)->quantity, "maa_10_deg_answered");
   EXPECT_EQ((time + 14)->quantity, "max_error_median_deg_answered");
   EXPECT_EQ((time + 15)->estimator, kSceneLabel);
-}
-
-TEST_F(SummarizeTest, ScoresInEveryFormat) {
-  const Summary summary = SummaryOf("run");
-  const SummaryRow row = Row("auc_20_deg");
-  EXPECT_NE(SummaryAsCsv(summary).find(fmt::format(",auc_20_deg,score,0.3625,{:.8g},{:.8g},,10,betting,,\n",
-                                                   row.interval.lower, row.interval.upper)),
-            std::string::npos);
-  EXPECT_NE(SummaryAsCsv(summary).find(",auc_20_deg,score,,0,1,,0,betting,,\n"), std::string::npos)
-      << "no trials";
-  EXPECT_NE(SummaryAsCsv(summary).find(",max_error_median_deg,median,15,3,,,10,,,\n"), std::string::npos)
-      << "an infinite end is empty";
-  const std::string table = SummaryAsTable(summary);
-  for (const std::string part : {"auc_5_deg", "maa_10_deg", "max_error_median_deg", "36.25 % ["})
-    EXPECT_NE(table.find(part), std::string::npos) << part << table;
-  for (const auto& entry : nlohmann::json::parse(SummaryAsJson(summary))["rows"]) {
-    if (entry["quantity"] != "auc_20_deg" || entry["condition"] != 0) continue;
-    EXPECT_EQ(entry["kind"], "score");
-    EXPECT_NEAR(entry["value"], 0.3625, 1e-12);
-    EXPECT_EQ(entry["interval"][0], row.interval.lower);
-    EXPECT_EQ(entry["interval_kind"], "betting");
-  }
 }
 
 // A covariance that is not positive definite has an infinite NEES, which a median survives and a mean does
@@ -444,86 +323,6 @@ TEST_F(SummarizeTest, InvalidAnswersAreFailuresInEveryCount) {
   expect("rotation_error_deg", 0.5, 1);                               // of successes
 }
 
-std::vector<std::string> Lines(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-TEST_F(SummarizeTest, Csv) {
-  const std::vector<std::string> lines = Lines(SummaryAsCsv(SummaryOf("run")));
-  ASSERT_EQ(lines.size(), 1 + SummaryOf("run").rows.size());
-  EXPECT_EQ(lines[0],
-            "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n,"
-            "interval,verdict,"
-            "trials_to_decide");
-  EXPECT_EQ(lines[2], "small,0,0,standard,success,rate,0.4,0.12155226,0.73762192,,10,exact,,");
-  const auto has_line = [&](const std::string& line) {
-    return std::count(lines.begin(), lines.end(), line) == 1;
-  };
-  EXPECT_TRUE(has_line("small,0,0,standard,rotation_error_deg,mean,2,,,0.40824829,4,,,"));  // sqrt(2 / 3 / 4)
-  EXPECT_TRUE(has_line("small,1,0.3,standard,success,rate,,0,1,,0,exact,,"));
-  EXPECT_TRUE(has_line("small,1,0.3,standard,nees,mean,,,,,0,,,"));
-  for (const std::string& line : lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 13) << line;
-}
-
-TEST_F(SummarizeTest, CsvQuotesWhatNeedsIt) {
-  study_.name = "a, \"b\"";
-  study_.estimators[0].label = "line\nbreak";
-  Write("quoted", {});
-  const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
-  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"line\nbreak\",success,rate,,0,1,,0,exact,,\n"),
-            std::string::npos)
-      << csv;
-}
-
-TEST_F(SummarizeTest, JsonHoldsTheSameRows) {
-  const Summary summary = SummaryOf("run");
-  const nlohmann::json json = nlohmann::json::parse(SummaryAsJson(summary));
-  EXPECT_EQ(json["study"], "small");
-  EXPECT_EQ(json["trials_done"], 10);
-  EXPECT_EQ(json["trials_planned"], 12);
-  ASSERT_EQ(json["rows"].size(), summary.rows.size());
-  for (size_t i = 0; i < summary.rows.size(); ++i) {
-    const SummaryRow& row = summary.rows[i];
-    const nlohmann::json& entry = json["rows"][i];
-    EXPECT_EQ(entry["condition"], row.condition);
-    EXPECT_EQ(entry["levels"]["outlier_ratio"], row.levels[0]);
-    EXPECT_EQ(entry["estimator"], row.estimator);
-    EXPECT_EQ(entry["quantity"], row.quantity);
-    EXPECT_EQ(entry["n"], row.n);
-    EXPECT_EQ(entry["value"].is_null(), row.n == 0);
-    if (row.n > 0) {
-      EXPECT_EQ(entry["value"], row.value);
-    }
-    EXPECT_EQ(entry["kind"], KindName(row.kind));
-    EXPECT_EQ(entry.contains("verdict"), row.coverage_verdict.has_value());
-    if (row.kind == SummaryRow::Kind::kRate) {
-      EXPECT_EQ(entry["interval"], nlohmann::json({row.interval.lower, row.interval.upper}));
-    } else if (row.kind == SummaryRow::Kind::kMean) {
-      EXPECT_EQ(entry["standard_error"].is_null(), std::isnan(row.standard_error));
-    }
-  }
-}
-
-TEST_F(SummarizeTest, TableShowsIntervalsAndCounts) {
-  const std::string table = SummaryAsTable(SummaryOf("run"));
-  EXPECT_NE(table.find("Study small: 10 of 12 trials done"), std::string::npos) << table;
-  EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;  // failure, 2 of 10
-  EXPECT_NE(table.find("Clopper-Pearson"), std::string::npos) << table;
-}
-
-TEST_F(SummarizeTest, EqualDataGiveEqualBytesInWhateverOrderTheyCame) {
-  std::vector<TrialRecord> reversed = HandMadeRecords();
-  std::reverse(reversed.begin(), reversed.end());
-  for (TrialRecord& record : reversed) record.seconds *= 7.0;
-  Write("reversed", reversed);
-  EXPECT_EQ(SummaryAsCsv(SummaryOf("run")), SummaryAsCsv(SummaryOf("reversed")));
-  EXPECT_EQ(SummaryAsJson(SummaryOf("run")), SummaryAsJson(SummaryOf("reversed")));
-  EXPECT_EQ(SummaryAsTable(SummaryOf("run")), SummaryAsTable(SummaryOf("reversed")));
-}
-
 // Four problems of ten, the others were not measured: within the bounds, beyond the one of the rotation (3
 // deg), beyond the one of the direction (15 deg), and between the two numbers with each of its own.
 TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
@@ -554,38 +353,6 @@ TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
     }
   }
   EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [6.76, 93.24]"), std::string::npos);
-}
-
-// Three problems, the second without a bound: the matches do not determine its motion.
-TEST_F(SummarizeTest, AMeanWithInfiniteNumbersIsInfiniteEverywhere) {
-  std::vector<ProblemRecord> problems(3);
-  std::vector<TrialRecord> records;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    problems[i].trial = i;
-    problems[i].severity.crb_rotation_deg = i == 1 ? std::numeric_limits<double>::infinity() : 0.5;
-    records.push_back(Motion(i, 1.0, 1.0, 1.0));
-  }
-  {
-    ResultStore store = ResultStore::OpenForRun(folder_.Path("infinite"), MakePlan(study_));
-    store.Add(problems, records);
-  }
-  const Summary summary = SummaryOf("infinite");
-  const auto row = std::ranges::find_if(
-      summary.rows, [](const SummaryRow& r) { return r.condition == 0 && r.quantity == "crb_rotation_deg"; });
-  ASSERT_NE(row, summary.rows.end());
-  EXPECT_EQ(row->value, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(row->n, 3);
-  EXPECT_TRUE(std::isnan(row->standard_error));
-  EXPECT_NE(SummaryAsCsv(summary).find("small,0,0,scene,crb_rotation_deg,mean,inf,,,,3,,,\n"),
-            std::string::npos);
-  const std::string table = SummaryAsTable(summary);
-  EXPECT_NE(table.find("  inf"), std::string::npos) << table;
-  EXPECT_EQ(table.find("nan"), std::string::npos) << table;
-  const nlohmann::json entry =
-      nlohmann::json::parse(SummaryAsJson(summary))["rows"][row - summary.rows.begin()];
-  EXPECT_EQ(entry["quantity"], "crb_rotation_deg");
-  EXPECT_TRUE(entry["value"].is_null());  // JSON has no infinity
-  EXPECT_TRUE(entry["standard_error"].is_null());
 }
 
 TEST_F(SummarizeTest, TrialsThatStoppedByTheirOutcomesHaveAnytimeValidIntervals) {
@@ -625,102 +392,6 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
       EXPECT_EQ(row.n, 0) << row.quantity;  // a mean, or of a part of the trials
     }
   }
-}
-
-// Scenes of three trials each: s a success, f a failure, r a refusal, u a motion whose truth is not known. In
-// trial order; the last scene may be cut off.
-class RepeatedScenesTest : public SummarizeTest {
- protected:
-  void WriteScenes(const std::string& letters) {
-    study_.repeats_per_scene = 3;
-    std::vector<TrialRecord> records;
-    for (const char letter : letters) {
-      const auto trial = static_cast<std::uint32_t>(records.size());
-      const double error_deg = letter == 's' ? 1.0 : letter == 'f' ? 10.0 : kNaN;
-      records.push_back(letter == 'r' ? NoMotion(trial, MotionStatus::kNoCandidate)
-                                      : Motion(trial, error_deg, letter == 'u' ? kNaN : 1.0, 5.0));
-    }
-    Write("repeated", records);
-  }
-  SummaryRow RowOf(const std::string& quantity, const std::string& estimator = "standard") {
-    for (const SummaryRow& row : SummaryOf("repeated", true).rows) {
-      if (row.quantity == quantity && row.condition == 0 && row.estimator == estimator) return row;
-    }
-    ADD_FAILURE() << "no row of " << quantity;
-    return {};
-  }
-};
-
-TEST_F(RepeatedScenesTest, ASceneCountsOnceWithTheMeanOfItsTrials) {
-  WriteScenes(
-      "sss"
-      "sff"
-      "fff"
-      "rsr"
-      "ss");
-  const auto expect = [&](const std::string& quantity, const std::vector<double>& means) {
-    ScoreMean expected;
-    for (const double mean : means) expected.Add(mean);
-    const SummaryRow row = RowOf(quantity);
-    EXPECT_EQ(row.n, static_cast<std::int64_t>(means.size())) << quantity;
-    EXPECT_NEAR(row.value, expected.mean(), 1e-12) << quantity;
-    EXPECT_NEAR(row.interval.lower, expected.Sequence().lower, 1e-9) << quantity;
-    EXPECT_NEAR(row.interval.upper, expected.Sequence().upper, 1e-9) << quantity;
-    EXPECT_EQ(row.interval_kind, IntervalKind::kBetting) << quantity;
-  };
-  expect("failure", {0.0, 2.0 / 3.0, 1.0, 0.0, 0.0});
-  expect("no_candidate", {0.0, 0.0, 0.0, 2.0 / 3.0, 0.0});
-  expect("auc_20_deg", {0.95, (0.95 + 0.5 + 0.5) / 3.0, 0.5, 0.95 / 3.0, 0.95});
-  expect("auc_20_deg_answered", {0.95, (0.95 + 0.5 + 0.5) / 3.0, 0.5, 0.95, 0.95});
-  const SummaryRow rotation = RowOf("rotation_error_deg");  // of successes: 1 in every scene but one
-  EXPECT_EQ(rotation.n, 4);
-  EXPECT_EQ(rotation.value, 1.0);
-  EXPECT_EQ(RowOf("max_error_median_deg").n, 5) << "first trials";
-  EXPECT_EQ(RowOf("max_error_median_deg").value, 1.0);  // 1, 1, 10, refused, 1
-  EXPECT_EQ(RowOf("num_inliers_true", kSceneLabel).n, 5);
-  EXPECT_EQ(RowOf("not_scored").n, 5);
-}
-
-TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
-  // 12 scenes that never fail, 10 that always do, 14 of both kinds; one that is not scored, one cut off.
-  std::string letters;
-  for (int i = 0; i < 12; ++i) letters += "sss";
-  for (int i = 0; i < 10; ++i) letters += "fff";
-  for (int i = 0; i < 14; ++i) letters += i % 2 == 0 ? "sfs" : "ffs";
-  WriteScenes(letters + "suf" + "fs");
-  RepeatedEvents expected(3);
-  for (int i = 0; i < 12; ++i) expected.AddScene(0);
-  for (int i = 0; i < 10; ++i) expected.AddScene(3);
-  for (int i = 0; i < 14; ++i) expected.AddScene(1 + i % 2);
-  const VarianceSplit split = expected.Split();
-  const SummaryRow within = RowOf("failure_within_scenes"), between = RowOf("failure_between_scenes"),
-                   flips = RowOf("failure_flips");
-  EXPECT_EQ(within.kind, SummaryRow::Kind::kShare);
-  EXPECT_EQ(within.interval_kind, IntervalKind::kLogStudent);
-  EXPECT_EQ(within.n, 36);
-  EXPECT_EQ(within.value, split.within_share);
-  EXPECT_EQ(within.interval.lower, split.within_share_interval.lower);
-  EXPECT_EQ(between.value, 1.0 - split.within_share);
-  EXPECT_EQ(between.interval.upper, 1.0 - split.within_share_interval.lower);
-  EXPECT_EQ(flips.value, 14.0 / 36.0);
-  EXPECT_EQ(flips.n, 36);
-  EXPECT_EQ(flips.interval_kind, IntervalKind::kExact);
-  EXPECT_EQ(flips.interval.upper, ExactBinomialInterval(14, 36).upper);
-  EXPECT_EQ(RowOf("refusal_flips").value, 0.0);
-  EXPECT_EQ(RowOf("refusal_flips").n, 37) << "a refusal needs no truth";
-  EXPECT_EQ(RowOf("refusal_within_scenes").n, 0) << "nothing varies";
-  const std::string table = SummaryAsTable(SummaryOf("repeated"));
-  for (const std::string part :
-       {"3 trials per scene", "failure_between_scenes", "depends on the sampler's seed",
-        "standard: 38.89 % [23.14, 56.54] of the scenes at outlier_ratio 0", "n is of scenes"})
-    EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
-  EXPECT_EQ(nlohmann::json::parse(SummaryAsJson(SummaryOf("repeated")))["repeats_per_scene"], 3);
-}
-
-TEST_F(RepeatedScenesTest, WithoutRepeatsNothingOfThisIsThere) {
-  for (const SummaryRow& row : SummaryOf("run").rows)
-    EXPECT_EQ(row.quantity.find("_flips"), std::string::npos);
-  EXPECT_EQ(SummaryAsTable(SummaryOf("run")).find("sampler"), std::string::npos);
 }
 
 }  // namespace
