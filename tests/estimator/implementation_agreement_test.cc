@@ -14,443 +14,20 @@
 #include <mutex>
 #include <thread>
 
-#include "estimator/estimator_registry.h"
-#include "estimator/geometry/triangulation.h"
-#include "estimator/kernels/block_matches.h"
-#include "estimator/kernels/block_search.h"
-#include "estimator/reference_matches.h"
-#include "estimator/reference_search.h"
-#include "estimator/refine_winner.h"
-#include "estimator/sample_consistency.h"
-#include "simulator/noise/noise_laws.h"
-#include "simulator/observe.h"
-#include "simulator/scene_generator.h"
-#include "simulator/scene_registry.h"
-#include "stats/distributions.h"
 #include "stats/intervals.h"
-#include "tests/test_support/make_ransac.h"
+#include "tests/estimator/agreement/difference.h"
+#include "tests/estimator/agreement/loop_replay.h"
+#include "tests/estimator/agreement/refinement_replay.h"
+#include "tests/estimator/agreement/variant.h"
 
-namespace rcme {
+namespace rcme::agreement {
 namespace {
 
 // At most this share of the trials may differ.
 constexpr double kAllowedRate = 0.001;
+constexpr double kAllowedExempt = 0.3;
 // False alarm of a test against it: at most 5e-5 a variant.
 constexpr double kConfidence = 0.9999;
-
-struct Variant {
-  std::string label, estimator;
-  Reading reading;
-  MinimalSolver solver;
-
-  RansacOptions Options() const {
-    RansacOptions options;
-    options.reading = reading;
-    options.solver = solver;
-    if (solver != MinimalSolver::kEightPoint) options.num_iterations = 16;  // 75 hypotheses, one by one
-    return options;
-  }
-};
-
-std::vector<Variant> VariantsOf(MinimalSolver solver) {
-  return {{"standard", "standard", Reading::kAsPrinted, solver},
-          {"prcme_as_printed", "prcme", Reading::kAsPrinted, solver},
-          {"rcme_as_printed", "rcme", Reading::kAsPrinted, solver},
-          {"prcme_rank_aware", "prcme", Reading::kRankAware, solver},
-          {"rcme_rank_aware", "rcme", Reading::kRankAware, solver}};
-}
-
-// Five points have no sample test, so that rcme is prcme.
-const std::vector<Variant>& Variants() {
-  static const std::vector<Variant> variants = [] {
-    std::vector<Variant> all = VariantsOf(MinimalSolver::kEightPoint);
-    for (Variant variant : VariantsOf(MinimalSolver::kFivePoint)) {
-      if (variant.estimator == "prcme") continue;
-      variant.label = "five_point_" + variant.label;
-      all.push_back(variant);
-    }
-    return all;
-  }();
-  return variants;
-}
-
-// All combinations of scene, outlier ratio, noise and number of matches, in turn.
-MotionProblem MakeProblem(std::uint32_t trial) {
-  constexpr double kOutlierRatios[] = {0.0, 0.2, 0.4, 0.6}, kSigmasPx[] = {0.1, 0.5, 1.0};
-  constexpr int kNumMatches[] = {50, 150, 500};
-  size_t turn = trial;
-  const auto next = [&turn](size_t n) {
-    const size_t index = turn % n;
-    turn /= n;
-    return index;
-  };
-  const double outlier_ratio = kOutlierRatios[next(4)], sigma_px = kSigmasPx[next(3)];
-  const int num_matches = kNumMatches[next(3)];
-  SceneGenerator model(SceneRegistry()[next(SceneRegistry().size())].name);
-  FindParameter(model.Parameters(), "num_matches").SetFromText(std::to_string(num_matches));
-  RandomStream scene_rng({1, 7, trial, 1}), noise_rng({1, 7, trial, 2}), outlier_rng({1, 7, trial, 3});
-  const Scene scene = model.Generate(scene_rng);
-  return {Observe(scene, *MakeGaussianNoise(sigma_px), OutlierModel(outlier_ratio), noise_rng, outlier_rng)
-              .matches,
-          scene.camera1, scene.camera2, sigma_px};
-}
-
-RandomStream SamplingStream(std::uint32_t trial) { return RandomStream({1, 7, trial, 4}); }
-
-MotionEstimate Estimate(const Variant& variant, RansacOptions options, Implementation implementation,
-                        const MotionProblem& problem, std::uint32_t trial) {
-  options.reading = variant.reading;
-  options.solver = variant.solver;
-  options.num_iterations = variant.Options().num_iterations;
-  options.implementation = implementation;
-  RandomStream rng = SamplingStream(trial);
-  return MakeRansac(variant.estimator, options)->Estimate(problem, rng);
-}
-
-double RelativeDifference(double a, double b) {
-  return a == b ? 0.0 : std::abs(a - b) / std::max(std::abs(a), std::abs(b));
-}
-
-bool HaveSameCounts(const LoopCounts& a, const LoopCounts& b) {
-  return a.num_hypotheses == b.num_hypotheses && a.num_degenerate_samples == b.num_degenerate_samples &&
-         a.num_inconsistent_samples == b.num_inconsistent_samples &&
-         a.num_poor_inlier_sets == b.num_poor_inlier_sets &&
-         a.num_too_small_inlier_sets == b.num_too_small_inlier_sets && a.num_candidates == b.num_candidates;
-}
-
-// Whether both implementations find the same models in a sample.
-bool AreSame(const ModelList<Hypothesis<FivePoint>, FivePoint::kMaxModels>& models, int num_models,
-             const MotionProblem& problem, const MatchBlocks& matches) {
-  if (models.count != num_models) return false;
-  BlockSource<FivePoint> source;
-  for (const Hypothesis<FivePoint>& model : models) {
-    const auto other = source.FindHypothesis(problem, matches, model.id);
-    if (!other) return false;
-    const Vector9d &f = model.model.f, &g = other->model.f;
-    if (!(std::min((f - g).norm(), (f + g).norm()) < 1e-6)) return false;
-  }
-  return true;
-}
-
-// Whether both implementations find the same models in all samples of a trial. Eight points always have one;
-// the block solver of five points misses some solutions that nearly coincide, and the scalar one others.
-bool HaveSameModels(const Variant& variant, const MotionProblem& problem, std::uint32_t trial) {
-  if (variant.solver != MinimalSolver::kFivePoint) return true;
-  const MatchBlocks matches(problem);
-  BlockSource<FivePoint> source;
-  HypothesisBlock block;
-  ProposalBlock proposals;
-  RandomStream rng = SamplingStream(trial);
-  int num_samples = 0;
-  for (size_t lane = kBlockSize; num_samples < variant.Options().num_iterations; ++lane) {
-    if (lane >= kBlockSize) {
-      source.FillNext(matches, RequestedOutputs::kNone, rng, &block, &proposals);
-      lane = 0;
-    }
-    if (!proposals[lane].is_last) continue;
-    ++num_samples;
-    const HypothesisId& last = proposals[lane].id;
-    const int num_models = block.is_model >> lane & 1 ? last.model + 1 : last.model;
-    if (!AreSame(InstantiateModels<FivePoint>(problem, last.sample), num_models, problem, matches)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-// What may differ. A winner of eight points that is the same sample and the same one of its four motions is
-// the same to the bit. Where the solvers find different models, the winner alone is compared: it may be the
-// one that was missed.
-enum class Difference { kLoop, kEstimate, kEntropy, kMissedModel };
-
-struct Differing {
-  Difference kind;
-  std::string what;
-};
-bool HaveSameWinner(const MotionEstimate& a, const MotionEstimate& b) {
-  if (a.initial_pose.R == b.initial_pose.R && a.initial_pose.t == b.initial_pose.t) return true;
-  return a.hypothesis.sample == b.hypothesis.sample && a.hypothesis.sample.size() == 5 &&
-         LocalCoordinates(a.initial_pose, b.initial_pose).norm() < 1e-9;
-}
-
-std::optional<Differing> FindDifference(const MotionEstimate& a, const MotionEstimate& b,
-                                        bool have_same_models) {
-  const bool is_other_winner = !HaveSameWinner(a, b);
-  if (!have_same_models) {
-    if (is_other_winner) return Differing{Difference::kMissedModel, "winner"};
-  } else if (!HaveSameCounts(a.counts, b.counts)) {
-    return Differing{Difference::kLoop, "counts"};
-  }
-  if (a.num_support != b.num_support) return Differing{Difference::kLoop, "support"};
-  if (is_other_winner) return Differing{Difference::kLoop, "winner"};
-  if (a.status != b.status) return Differing{Difference::kEstimate, "status"};
-  if (a.inliers != b.inliers) return Differing{Difference::kEstimate, "final inliers"};
-  if (RelativeDifference(a.mean_entropy, b.mean_entropy) > 1e-9)
-    return Differing{Difference::kEntropy, "entropy"};
-  return std::nullopt;
-}
-
-// Why two implementations part, and how far from a tie: the greatest |quantity / threshold - 1|.
-struct Cause {
-  std::string kind;
-  double margin = 0.0;
-};
-void KeepGreater(const std::string& kind, double margin, std::optional<Cause>* cause) {
-  if (!*cause || !(margin <= (*cause)->margin)) *cause = {kind, margin};
-}
-
-template <typename PointTest>
-constexpr BlockReading ReadingOf() {
-  if (std::is_same_v<PointTest, KnownPoseTest>) return BlockReading::kKnownPose;
-  return std::is_same_v<PointTest, RankAwareTest> ? BlockReading::kRankAware : BlockReading::kAsPrinted;
-}
-
-// One hypothesis of the reference with all that it decides.
-template <typename Solver, typename PointTest>
-struct Judged {
-  Hypothesis<Solver> hypothesis;
-  PointTest test;
-
-  static std::optional<Judged> From(const MotionProblem& problem,
-                                    std::optional<Hypothesis<Solver>> hypothesis) {
-    if (!hypothesis) return std::nullopt;
-    if constexpr (!PointTest::kNeedsCovariance) {
-      return Judged{*hypothesis, PointTest(hypothesis->F, problem.sigma_px)};
-    } else {
-      PropagateCovariance(problem, &*hypothesis);
-      const auto model = UncertainModelOf(problem, *hypothesis);
-      if (!model) return std::nullopt;
-      return Judged{*hypothesis, PointTest(*model, problem.sigma_px)};
-    }
-  }
-
-  double Distance(const Correspondence& match) const {
-    PointResidual residual;
-    return test.Distance(match, &residual);
-  }
-
-  // Statistic of the sample test over its threshold.
-  double SampleStatistic(const MotionProblem& problem, const Thresholds& thresholds) const {
-    if constexpr (Solver::kSampleTestDof == 0) {
-      return 0.0;
-    } else if constexpr (std::is_same_v<PointTest, RankAwareTest>) {
-      return JointSampleStatistic(hypothesis) / thresholds.sample;
-    } else {
-      double greatest = 0.0;
-      for (const int i : hypothesis.id.sample) {
-        greatest = std::max(greatest, Distance(problem.matches[static_cast<size_t>(i)]));
-      }
-      return greatest / thresholds.point;
-    }
-  }
-};
-
-template <typename Solver, typename PointTest>
-class Replay {
- public:
-  Replay(const MotionProblem& problem, const RansacOptions& options, bool tests_sample, std::uint32_t trial)
-      : problem_(problem),
-        matches_(problem),
-        tests_{ReadingOf<PointTest>(), tests_sample, false},
-        fast_rng_(SamplingStream(trial)),
-        reference_rng_(SamplingStream(trial)),
-        fast_(problem, matches_, options, tests_, fast_rng_),
-        fast_support_(problem, matches_, options, tests_, fast_rng_),
-        num_iterations_(options.num_iterations) {}
-
-  std::optional<Cause> FindCause() {
-    std::optional<Cause> cause;
-    for (int j = 0; j < num_iterations_;) j += CompareNext(&cause);
-    return cause;
-  }
-
- private:
-  // Returns whether that was the sample's last model.
-  bool CompareNext(std::optional<Cause>* cause) {
-    const Proposal fast = fast_.Next();
-    if (is_first_) sample_ = DrawSample(Solver::kSampleSize, matches_.num_matches(), reference_rng_);
-    if (sample_ != fast.id.sample) KeepGreater("other sample", 1.0, cause);
-    is_first_ = fast.is_last;
-    if (sample_ == fast.id.sample) CompareModel(fast, cause);
-    return fast.is_last;
-  }
-
-  void CompareModel(const Proposal& fast, std::optional<Cause>* cause) {
-    const Thresholds& thresholds = fast_.thresholds();
-    const auto judged = Judged<Solver, PointTest>::From(problem_, fast_support_.FindHypothesis(fast.id));
-    const bool is_fast_model = fast.verdict != SampleVerdict::kDegenerate;
-    if (judged.has_value() != is_fast_model) return KeepGreater("degenerate sample", std::nan(""), cause);
-    if (!judged) return;
-    const double statistic = tests_.tests_sample ? judged->SampleStatistic(problem_, thresholds) : 0.0;
-    if ((statistic <= 1.0) != (fast.verdict == SampleVerdict::kConsistent)) {
-      return KeepGreater("sample test", std::abs(statistic - 1.0), cause);
-    }
-    if (statistic <= 1.0) CompareScores(*judged, fast_.Score(), cause);
-  }
-
-  void CompareScores(const Judged<Solver, PointTest>& judged, const InlierScore& fast,
-                     std::optional<Cause>* cause) {
-    const double threshold = fast_.thresholds().point;
-    const MatchMask& support = fast_support_.FindSupport(judged.hypothesis.id);
-    bool is_same_set = true;
-    for (int i = 0; i < matches_.num_matches(); ++i) {
-      const double d2 = judged.Distance(problem_.matches[static_cast<size_t>(i)]);
-      const bool is_in_fast = support[static_cast<size_t>(i / kBlockSize)] >> (i % kBlockSize) & 1;
-      if ((d2 <= threshold) == is_in_fast) continue;
-      is_same_set = false;
-      KeepGreater("inlier of a hypothesis", std::abs(d2 / threshold - 1.0), cause);
-    }
-    if (!is_same_set) return;
-    const InlierScore reference =
-        ScoreInliers(problem_, judged.test, fast_.thresholds(),
-                     kScoresTheRest<Solver, PointTest> ? judged.hypothesis.id.sample : Sample());
-    const double difference = RelativeDifference(fast.mean_entropy, reference.mean_entropy);
-    if (difference > 1e-9) KeepGreater("entropy of a hypothesis", difference, cause);
-  }
-
-  const MotionProblem& problem_;
-  MatchBlocks matches_;
-  BlockTests tests_;
-  RandomStream fast_rng_, reference_rng_;
-  BlockSearch<Solver> fast_, fast_support_;
-  int num_iterations_;
-  Sample sample_;
-  bool is_first_ = true;  // the next model is the first of a sample
-};
-
-BlockTests TestsOf(const Variant& variant) {
-  const BlockReading reading = variant.estimator == "standard"          ? BlockReading::kKnownPose
-                               : variant.reading == Reading::kRankAware ? BlockReading::kRankAware
-                                                                        : BlockReading::kAsPrinted;
-  return {reading, variant.estimator == "rcme", false};
-}
-
-// The inliers of the loop's winner in the fast implementation.
-template <typename Solver>
-MatchMask FindWinnersSupport(const Variant& variant, const MotionProblem& problem,
-                             const HypothesisId& winner) {
-  const MatchBlocks matches(problem);
-  RandomStream no_samples({0, 0, 0, 0});
-  return BlockSearch<Solver>(problem, matches, variant.Options(), TestsOf(variant), no_samples)
-      .FindSupport(winner);
-}
-
-// How far a match is from changing sides in the fit set or in the final inliers: the least distance of its
-// squared residual from its bound (over that of sigma^2 alone: a fit to five matches leaves both at zero),
-// and of its leverage, its parallax and its depths from theirs.
-double DistanceFromTie(const MotionProblem& problem, const RefinedMotion& motion, const Correspondence& match,
-                       bool is_fitted, double significance_level, double max_leverage) {
-  const auto model =
-      UncertainFundamental::From(motion.cam2_from_cam1, motion.pose_cov, problem.camera1, problem.camera2);
-  const MatchResidual residual = EvaluateResidual(model.value(), match);
-  const double sigma2 = problem.sigma_px * problem.sigma_px;
-  const double variance = sigma2 + (is_fitted ? -1.0 : 1.0) * residual.motion_variance;
-  const double threshold = ChiSquareQuantile(1, 1.0 - significance_level);
-  const Eigen::Vector3d ray1 = motion.cam2_from_cam1.R * problem.camera1.Ray(match.x1_px);
-  const double parallax_px = (problem.camera2.Project(ray1) - match.x2_px).norm();
-  const double inverse_depth =
-      InverseDepth(motion.cam2_from_cam1, problem.camera1.Ray(match.x1_px), problem.camera2.Ray(match.x2_px));
-  return std::min({std::abs(residual.squared_distance - threshold * variance) / (threshold * sigma2),
-                   std::abs(residual.motion_variance / (max_leverage * sigma2) - 1.0),
-                   std::abs(parallax_px / (6.0 * problem.sigma_px) - 1.0), std::abs(inverse_depth),
-                   std::abs((ray1 + inverse_depth * motion.cam2_from_cam1.t).z())});
-}
-
-constexpr const char* kCheiralityTie = "tie of the cheirality";
-
-// Follows FitRobustly in both implementations from the same support: as long as the sets agree, the motions
-// are the same to rounding, so that the first sets that differ are the cause.
-class RefinementReplay {
- public:
-  explicit RefinementReplay(const MotionProblem& problem)
-      : problem_(problem),
-        matches_(problem),
-        fast_(problem, matches_, RefinementError::kSampson),
-        reference_(problem, RefinementError::kSampson) {}
-
-  std::optional<Cause> FindCause(const MatchMask& support, const RelativePose& fast_start,
-                                 const RelativePose& reference_start) const {
-    std::vector<int> fitted = IndicesOf(support);
-    Motions motions = Refine(fitted, {fast_start, reference_start}, Loss::kCauchy);
-    if (!motions.AreSame()) return Cause{"robust fit", std::nan("")};
-    if (motions.fast.converged) {
-      motions = {DecideCheiralityAgain(fast_, support, motions.fast),
-                 DecideCheiralityAgain(reference_, fitted, motions.reference)};
-      if (!motions.AreSame()) return CheiralityCause(fitted, motions);
-    }
-    for (int refit = 0; refit < kMaxRefits && motions.fast.converged; ++refit) {
-      const std::vector<int> selected = reference_.SelectFitSet(motions.reference, fitted);
-      const double max_leverage = MaxLeverage(static_cast<int>(fitted.size()));
-      const std::vector<int> in_fast = IndicesOf(fast_.SelectFitSet(motions.fast, fast_.SetOf(fitted)));
-      if (auto cause = Compare("fit set", motions.reference, fitted, kFitSignificance, max_leverage, in_fast,
-                               selected)) {
-        return cause;
-      }
-      if (refit > 0 && selected == fitted) break;
-      fitted = selected;
-      if (fitted.size() <= 5) return std::nullopt;
-      motions =
-          Refine(fitted, {motions.fast.cam2_from_cam1, motions.reference.cam2_from_cam1}, Loss::kSquared);
-      if (!motions.AreSame()) return Cause{"refit", std::nan("")};
-    }
-    if (!motions.fast.converged) return std::nullopt;
-    const double alpha = RansacOptions().significance_level;
-    return Compare("final inlier", motions.reference, fitted, alpha, std::numeric_limits<double>::infinity(),
-                   IndicesOf(fast_.FindAgreeing(motions.fast, fast_.SetOf(fitted), alpha)),
-                   reference_.FindAgreeing(motions.reference, fitted, alpha));
-  }
-
- private:
-  struct Motions {
-    RefinedMotion fast, reference;
-    bool AreSame() const {
-      return fast.converged == reference.converged &&
-             LocalCoordinates(fast.cam2_from_cam1, reference.cam2_from_cam1).norm() < 1e-9;
-    }
-  };
-  struct Starts {
-    RelativePose fast, reference;
-  };
-  Motions Refine(const std::vector<int>& fitted, const Starts& starts, Loss loss) const {
-    return {fast_.Refine(fast_.SetOf(fitted), starts.fast, loss),
-            reference_.Refine(fitted, starts.reference, loss)};
-  }
-
-  // Of the four motions of E two may have as many matches in front of the cameras. The first is taken, and
-  // which is first depends on the signs of a singular value decomposition.
-  Cause CheiralityCause(const std::vector<int>& support, const Motions& motions) const {
-    const auto count = [&](const RelativePose& pose) {
-      return std::ranges::count_if(support, [&](int i) {
-        const Correspondence& match = problem_.matches[static_cast<size_t>(i)];
-        return IsInFrontOfBothCameras(pose, problem_.camera1.Ray(match.x1_px),
-                                      problem_.camera2.Ray(match.x2_px));
-      });
-    };
-    const bool is_tie = count(motions.fast.cam2_from_cam1) == count(motions.reference.cam2_from_cam1);
-    return {is_tie ? kCheiralityTie : "cheirality", is_tie ? 0.0 : std::nan("")};
-  }
-
-  std::optional<Cause> Compare(const std::string& kind, const RefinedMotion& motion,
-                               const std::vector<int>& fitted, double significance_level, double max_leverage,
-                               const std::vector<int>& a, const std::vector<int>& b) const {
-    std::vector<int> differing;
-    std::ranges::set_symmetric_difference(a, b, std::back_inserter(differing));
-    std::optional<Cause> cause;
-    for (const int i : differing) {
-      const bool is_fitted = std::ranges::binary_search(fitted, i);
-      KeepGreater(kind,
-                  DistanceFromTie(problem_, motion, problem_.matches[static_cast<size_t>(i)], is_fitted,
-                                  significance_level, max_leverage),
-                  &cause);
-    }
-    return cause;
-  }
-
-  const MotionProblem& problem_;
-  MatchBlocks matches_;
-  BlockMatches fast_;
-  ReferenceMatches reference_;
-};
 
 // Of two estimates whose hypotheses agree.
 template <typename Solver>
@@ -468,7 +45,10 @@ Cause CauseAfterTheLoop(const Variant& variant, const MotionProblem& problem, co
 template <typename Solver>
 Cause FindCauseOf(const Variant& variant, const MotionProblem& problem, std::uint32_t trial,
                   Difference difference, const MotionEstimate& fast, const MotionEstimate& reference) {
-  if (difference == Difference::kMissedModel) return {"missed model", 0.0};
+  if (difference == Difference::kMissedModel) {
+    const bool is_missed = IsMissedModel(problem, fast.hypothesis, reference.hypothesis);
+    return {is_missed ? "missed model" : "no missed model", is_missed ? 0.0 : std::nan("")};
+  }
   const RansacOptions options = variant.Options();
   const bool tests_sample = variant.estimator == "rcme" && Solver::kSampleTestDof > 0;
   std::optional<Cause> cause;
@@ -495,10 +75,16 @@ struct Disagreement {
   Cause cause;
 };
 
-// Disagreements of every variant over `num_trials` trials, on all cores.
-std::vector<std::vector<Disagreement>> CompareImplementations(std::uint32_t num_trials,
-                                                              const RansacOptions& fast_options) {
-  std::vector<std::vector<Disagreement>> found(Variants().size());
+// A variant's disagreements, and its trials of whose loop the winner alone was compared, because the solvers
+// found different models.
+struct Compared {
+  std::vector<Disagreement> found;
+  std::int64_t num_exempt = 0;
+};
+
+// Of every variant over `num_trials` trials, on all cores.
+std::vector<Compared> CompareImplementations(std::uint32_t num_trials, const RansacOptions& fast_options) {
+  std::vector<Compared> compared(Variants().size());
   std::mutex mutex;
   std::atomic<std::uint32_t> next = 0;
   const auto work = [&] {
@@ -509,19 +95,29 @@ std::vector<std::vector<Disagreement>> CompareImplementations(std::uint32_t num_
         const Variant& variant = Variants()[a];
         const MotionEstimate fast = Estimate(variant, fast_options, Implementation::kFast, problem, trial);
         const MotionEstimate reference = Estimate(variant, {}, Implementation::kReference, problem, trial);
-        const std::optional<Differing> difference =
-            FindDifference(fast, reference, HaveSameModels(variant, problem, trial));
-        if (!difference) continue;
-        const Cause cause = FindCause(variant, problem, trial, difference->kind, fast, reference);
+        const bool have_same_models = HaveSameModels(variant, problem, trial);
+        const std::optional<Differing> difference = FindDifference(fast, reference, have_same_models);
+        std::optional<Cause> cause;
+        if (difference) cause = FindCause(variant, problem, trial, difference->kind, fast, reference);
         const std::lock_guard lock(mutex);
-        found[a].push_back({trial, *difference, cause});
+        if (!have_same_models) ++compared[a].num_exempt;
+        if (difference) compared[a].found.push_back({trial, *difference, *cause});
       }
     }
   };
   std::vector<std::jthread> threads;
   for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) threads.emplace_back(work);
   threads.clear();
-  return found;
+  return compared;
+}
+
+Compared Together(const std::vector<Compared>& compared) {
+  Compared all;
+  for (const Compared& one : compared) {
+    all.found.insert(all.found.end(), one.found.begin(), one.found.end());
+    all.num_exempt += one.num_exempt;
+  }
+  return all;
 }
 
 std::int64_t Count(const std::vector<Disagreement>& found, Difference kind) {
@@ -541,7 +137,8 @@ std::string RateText(std::int64_t count, std::int64_t n) {
   return fmt::format("{} [{:.4f}, {:.4f}] %", count, 100.0 * interval.lower, 100.0 * interval.upper);
 }
 
-void PrintRow(const std::string& label, std::int64_t n, const std::vector<Disagreement>& found) {
+void PrintRow(const std::string& label, std::int64_t n, const Compared& compared) {
+  const std::vector<Disagreement>& found = compared.found;
   struct Kind {
     int count = 0;
     double margin = 0.0;
@@ -560,24 +157,20 @@ void PrintRow(const std::string& label, std::int64_t n, const std::vector<Disagr
     text += fmt::format("{}{} {}, at most {:.1e} (trial {})", text.empty() ? "" : "; ", kind.count, name,
                         kind.margin, kind.trial);
   }
-  fmt::print("| {} | {} | {} | {} | {} | {} | {} |\n", label, n, RateText(Count(found, Difference::kLoop), n),
-             RateText(Count(found, Difference::kEstimate), n),
-             RateText(Count(found, Difference::kEntropy), n),
+  fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, n,
+             RateText(Count(found, Difference::kLoop), n), RateText(Count(found, Difference::kEstimate), n),
+             RateText(Count(found, Difference::kEntropy), n), RateText(compared.num_exempt, n),
              RateText(Count(found, Difference::kMissedModel), n), text);
 }
 
-void PrintTable(std::int64_t num_trials, const std::vector<std::vector<Disagreement>>& found) {
+void PrintTable(std::int64_t num_trials, const std::vector<Compared>& compared) {
   fmt::print(
       "| variant | trials | loop differs | status or final inliers alone | entropy by more than 1e-9 alone | "
-      "another winner where models differ | what, why, distance to the tie |\n"
-      "|---|---|---|---|---|---|---|\n");
-  std::vector<Disagreement> all;
-  for (size_t a = 0; a < found.size(); ++a) {
-    PrintRow(Variants()[a].label, num_trials, found[a]);
-    all.insert(all.end(), found[a].begin(), found[a].end());
-  }
-  const std::int64_t n = num_trials * static_cast<std::int64_t>(found.size());
-  PrintRow("all", n, all);
+      "models differ | another winner there | what, why, distance to the tie |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  for (size_t a = 0; a < compared.size(); ++a) PrintRow(Variants()[a].label, num_trials, compared[a]);
+  const std::int64_t n = num_trials * std::ssize(compared);
+  PrintRow("all", n, Together(compared));
   fmt::print("Found with probability 0.99: a rate of {:.2f} % in one variant, {:.2f} % overall.\n",
              100.0 * DetectableRate(num_trials), 100.0 * DetectableRate(n));
 }
@@ -604,6 +197,15 @@ void ExpectAgreement(const std::string& label, std::int64_t n, const std::vector
   }
 }
 
+// Eight points always have one model. Of five points' trials, of 16 samples each, so many hold a sample in
+// which one solver finds a solution that the other does not: XXX
+void ExpectFewExempt(const Variant& variant, std::int64_t n, std::int64_t num_exempt) {
+  if (variant.solver == MinimalSolver::kEightPoint) {
+    EXPECT_EQ(num_exempt, 0) << variant.label;
+  }
+  EXPECT_LE(ExactBinomialInterval(num_exempt, n, kConfidence).lower, kAllowedExempt) << variant.label;
+}
+
 std::uint32_t NumTrials() {
   const char* text = std::getenv("RCME_AGREEMENT_TRIALS");
   const size_t one_of_every_condition = 36 * SceneRegistry().size();
@@ -613,27 +215,26 @@ std::uint32_t NumTrials() {
 TEST(Implementations, AgreeOnWholeEstimates) {
   const std::uint32_t num_trials = NumTrials();
   ASSERT_GT(num_trials, 0u);
-  const auto found = CompareImplementations(num_trials, {});
-  PrintTable(num_trials, found);
-  std::vector<Disagreement> all;
-  for (size_t a = 0; a < found.size(); ++a) {
-    ExpectAgreement(Variants()[a].label, num_trials, found[a]);
-    all.insert(all.end(), found[a].begin(), found[a].end());
+  const std::vector<Compared> compared = CompareImplementations(num_trials, {});
+  PrintTable(num_trials, compared);
+  for (size_t a = 0; a < compared.size(); ++a) {
+    ExpectAgreement(Variants()[a].label, num_trials, compared[a].found);
+    ExpectFewExempt(Variants()[a], num_trials, compared[a].num_exempt);
   }
-  ExpectAgreement("all", static_cast<std::int64_t>(num_trials) * static_cast<std::int64_t>(found.size()),
-                  all);
+  ExpectAgreement("all", num_trials * std::ssize(compared), Together(compared).found);
 }
 
 TEST(Implementations, ASmallFaultIsSeen) {
   // One part in a hundred more significance moves the thresholds by 0.3 %.
   RansacOptions faulty;
   faulty.significance_level *= 1.01;
-  const auto found = CompareImplementations(36, faulty);
-  for (size_t a = 0; a < found.size(); ++a) {
-    const std::int64_t count = Count(found[a], Difference::kLoop) + Count(found[a], Difference::kEstimate);
+  const std::vector<Compared> compared = CompareImplementations(36, faulty);
+  for (size_t a = 0; a < compared.size(); ++a) {
+    const std::vector<Disagreement>& found = compared[a].found;
+    const std::int64_t count = Count(found, Difference::kLoop) + Count(found, Difference::kEstimate);
     EXPECT_GT(ExactBinomialInterval(count, 36, kConfidence).lower, kAllowedRate) << Variants()[a].label;
   }
 }
 
 }  // namespace
-}  // namespace rcme
+}  // namespace rcme::agreement
