@@ -51,7 +51,17 @@ class Recipe:
         """What the commands need and what is not there."""
         names = {shlex.split(command)[0] for command in self.commands + self.digest}
         found = [name for name in sorted(names) if "/" not in name and not (programs / name).exists()]
-        return found + [each for each in self.needs if "/" in each and not (ROOT / each).exists()]
+        found += [each for each in self.needs if "/" in each and not (ROOT / each).exists()]
+        wanted = [each.removeprefix("estimator ") for each in self.needs if each.startswith("estimator ")]
+        there = estimators_of(programs / "rcme") if wanted and "rcme" not in found else wanted
+        return found + [f"estimator {name} in rcme (its library was not there when rcme was built)"
+                        for name in wanted if name not in there]
+
+
+def estimators_of(program):
+    """The names of a program's estimators."""
+    listed = subprocess.run([str(program), "list", "estimators"], text=True, check=True, capture_output=True)
+    return {line.split()[0] for line in listed.stdout.splitlines() if line}
 
 
 def read_recipes(path=RECIPES):
