@@ -81,8 +81,8 @@ double ExpectedCalibrationError(std::span<const CalibrationBin> bins) {
   return error / n;
 }
 
-CalibrationError MeasureCalibrationError(std::span<const Forecast> forecasts, Binning binning, int num_bins,
-                                         int num_samples, RandomStream& rng) {
+MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forecasts, Binning binning,
+                                                 int num_bins, int num_samples, RandomStream& rng) {
   if (num_samples < 1) throw std::invalid_argument("calibration error: at least one sample is needed");
   const std::vector<size_t> numbers = BinNumbers(forecasts, binning, num_bins);
   const double n = static_cast<double>(forecasts.size());
@@ -90,7 +90,7 @@ CalibrationError MeasureCalibrationError(std::span<const Forecast> forecasts, Bi
   for (size_t i = 0; i < forecasts.size(); ++i) bins[numbers[i]].sum += forecasts[i].probability;
   SetOutcomes(
       numbers, [&](size_t i) { return forecasts[i].happened; }, &bins);
-  CalibrationError error;
+  MeasuredCalibrationError error;
   error.value = ErrorOf(bins, n);
   const std::vector<std::int64_t> clusters = NumberedClusters(forecasts);
   std::vector<double> errors;

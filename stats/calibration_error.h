@@ -31,12 +31,12 @@ double ExpectedCalibrationError(std::span<const CalibrationBin> bins);
 
 // The error is above 0 for right probabilities too: chance alone moves every share. So it comes with what
 // right probabilities would give in the same bins, by drawn outcomes (DrawOutcomes).
-struct CalibrationError {
+struct MeasuredCalibrationError {
   double value = 0.0;
   double mean_if_calibrated = 0.0, upper_if_calibrated = 0.0;  // mean, and the 95 % quantile
   double p_value = 1.0;  // the share of drawn samples with as great an error, as in reliability.h
 };
-CalibrationError MeasureCalibrationError(std::span<const Forecast> forecasts, Binning binning, int num_bins,
-                                         int num_samples, RandomStream& rng);
+MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forecasts, Binning binning,
+                                                 int num_bins, int num_samples, RandomStream& rng);
 
 }  // namespace rcme

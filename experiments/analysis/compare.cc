@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <cmath>
 
 #include "experiments/analysis/scenes_of_run.h"
 #include "parameters/input_error.h"
@@ -12,8 +12,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 size_t IndexOf(const std::string& label, const RunDescription& run) {
   if (label.empty()) return 0;
@@ -59,7 +57,7 @@ class Pairs {
     } else {
       FillError(row);
     }
-    if (row->n == 0) row->p_value = kNaN;
+    if (row->n == 0) row->p_value = std::nan("");
     row->holm_p_value = row->p_value;
   }
 
@@ -74,7 +72,7 @@ class Pairs {
 
   void FillEvent(ComparisonRow* row) const {
     row->n = counts_.n();
-    row->difference = row->n > 0 ? counts_.RiskDifference() : kNaN;
+    row->difference = row->n > 0 ? counts_.RiskDifference() : std::nan("");
     row->p_value = PValueOfCounts(row->is_anytime_valid);
     row->interval = row->is_anytime_valid ? AnytimeRiskDifferenceInterval() : RiskDifferenceInterval(counts_);
   }
@@ -90,8 +88,8 @@ class Pairs {
     row->n = error_difference_.n();
     row->difference = error_difference_.median();
     row->p_value = PValueOfCounts(row->is_anytime_valid);
-    row->interval =
-        row->is_anytime_valid || row->n == 0 ? Interval{kNaN, kNaN} : error_difference_.interval();
+    row->interval = row->is_anytime_valid || row->n == 0 ? Interval{std::nan(""), std::nan("")}
+                                                         : error_difference_.interval();
   }
 
   Interval AnytimeRiskDifferenceInterval() const {

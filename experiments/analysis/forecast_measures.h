@@ -29,9 +29,9 @@ struct ForecastMeasures {
   BrierDecomposition parts;            // stats/reliability.h
   CalibrationCheck check;              // likewise, with the band at BandProbabilities()
   std::vector<ReliabilityStep> curve;  // likewise
-  CalibrationError error_of_equal_width, error_of_equal_mass;  // in kNumCalibrationBins bins
-  std::vector<CalibrationBin> bins;                            // of equal width
-  std::vector<std::int64_t> histogram;                         // of the probabilities: HistogramEdges()
+  MeasuredCalibrationError error_of_equal_width, error_of_equal_mass;  // in kNumCalibrationBins bins
+  std::vector<CalibrationBin> bins;                                    // of equal width
+  std::vector<std::int64_t> histogram;  // of the probabilities: HistogramEdges()
   CalibrationLine line;
   // P(a failure has the greater probability): NaN where nothing failed, or everything.
   AreaUnderCurve area;

@@ -38,7 +38,7 @@ std::string Rate(std::int64_t count, std::int64_t n, const Interval& interval) {
 
 std::vector<std::string> CellsOf(const ForecastMeasures& m) {
   if (m.n == 0) return {"0", fmt::format("{}", m.num_refused), "-", "-", "-", "-", "-", "-", "-", "-", "-"};
-  const CalibrationError& error = m.error_of_equal_width;
+  const MeasuredCalibrationError& error = m.error_of_equal_width;
   return {fmt::format("{}", m.n),
           fmt::format("{}", m.num_refused),
           fmt::format("{:.4f}", m.mean_probability),
@@ -61,7 +61,7 @@ Json AsJson(double value, double standard_error, const Interval& interval) {
 }
 Json AsJson(const ClusteredEstimate& e) { return AsJson(e.value, e.standard_error, e.interval); }
 
-Json AsJson(const CalibrationError& error) {
+Json AsJson(const MeasuredCalibrationError& error) {
   return {{"value", JsonNumber(error.value)},
           {"mean_if_calibrated", JsonNumber(error.mean_if_calibrated)},
           {"upper_if_calibrated", JsonNumber(error.upper_if_calibrated)},

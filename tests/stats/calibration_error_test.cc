@@ -70,7 +70,7 @@ TEST(CalibrationError, ComesWithWhatChanceGives) {
   for (int repetition = 0; repetition < 2000; ++repetition) {
     const std::vector<Forecast> right = UniformForecasts(
         200, [](double p) { return p; }, rng);
-    const CalibrationError error = MeasureCalibrationError(right, Binning::kEqualMass, 10, 99, rng);
+    const MeasuredCalibrationError error = MeasureCalibrationError(right, Binning::kEqualMass, 10, 99, rng);
     alarms.Add(error.p_value <= 0.05);
     above.Add(error.value > error.upper_if_calibrated);
     difference.Add(error.value - error.mean_if_calibrated);
