@@ -97,8 +97,9 @@ def verdicts(spec):
     rows = {row["claim"]: row for row in reversed(read_table(spec.argument))}
     body = []
     for row in reversed(rows.values()):
-        up_to_px = row["holds_up_to_sigma_px"]
-        words = f"limit only, up to {float(up_to_px):g} px" if up_to_px else row["claim_verdict"]
+        words = row["claim_verdict"]
+        if "limit" in words:
+            words = f"limit only, up to {float(row['holds_up_to_sigma_px']):g} px"
         body.append([row["claim"], row["reading"], words])
     return markdown(["claim", "reading", "verdict"], body)
 
