@@ -25,7 +25,7 @@ namespace {
 
 // At most this share of the trials may differ.
 constexpr double kAllowedRate = 0.001;
-constexpr double kAllowedExempt = 0.3;
+constexpr double kAllowedExempt = 0.25;
 // False alarm of a test against it: at most 5e-5 a variant.
 constexpr double kConfidence = 0.9999;
 
@@ -42,12 +42,16 @@ Cause CauseAfterTheLoop(const Variant& variant, const MotionProblem& problem, co
   return cause.value_or(Cause{"unknown", std::nan("")});
 }
 
+constexpr const char* kMissedModel = "missed model";
+// Of a trial in which the solvers find different models, but both find both winners.
+constexpr const char* kOtherWinner = "another choice among the same models";
+
 template <typename Solver>
 Cause FindCauseOf(const Variant& variant, const MotionProblem& problem, std::uint32_t trial,
                   Difference difference, const MotionEstimate& fast, const MotionEstimate& reference) {
   if (difference == Difference::kMissedModel) {
-    const bool is_missed = IsMissedModel(problem, fast.hypothesis, reference.hypothesis);
-    return {is_missed ? "missed model" : "no missed model", is_missed ? 0.0 : std::nan("")};
+    if (IsMissedModel(problem, fast.hypothesis, reference.hypothesis)) return {kMissedModel, 0.0};
+    return {kOtherWinner, RelativeDifference(fast.mean_entropy, reference.mean_entropy)};
   }
   const RansacOptions options = variant.Options();
   const bool tests_sample = variant.estimator == "rcme" && Solver::kSampleTestDof > 0;
@@ -175,15 +179,18 @@ void PrintTable(std::int64_t num_trials, const std::vector<Compared>& compared) 
              100.0 * DetectableRate(num_trials), 100.0 * DetectableRate(n));
 }
 
-// Decisions differ in at most 0.1 % of the trials, each a tie within rounding. Rarer than 1 % are exact ties
-// of the cheirality after the robust fit, which motions of few or far matches have. Printed entropies beyond
-// 1e-9 belong to hypotheses near the singular set of the printed test (score_test.cc), which is where the
-// least mean entropy finds its winner: 96 of 10^5, all but two of prcme_as_printed, the greatest 1.9e-5.
+// Decisions differ in at most 0.1 % of the trials, each a tie within rounding; but for one of 432 trials (386
+// of five_point_rcme_rank_aware), in which the winners differ, and their entropies by 76 %, though both
+// solvers find both: unexplained. Rarer than 1 % are exact ties of the cheirality after the robust fit, which
+// motions of few or far matches have. Printed entropies beyond 1e-9 belong to hypotheses near the singular
+// set of the printed test (score_test.cc), which is where the least mean entropy finds its winner: 96 of
+// 10^5, all but two of prcme_as_printed, the greatest 1.9e-5.
 void ExpectAgreement(const std::string& label, std::int64_t n, const std::vector<Disagreement>& found) {
   const std::int64_t num_entropies = Count(found, Difference::kEntropy);
   const std::int64_t num_ties =
       std::ranges::count(found, kCheiralityTie, [](const Disagreement& d) { return d.cause.kind; });
-  const std::int64_t num_missed = Count(found, Difference::kMissedModel);
+  const std::int64_t num_missed =
+      std::ranges::count(found, kMissedModel, [](const Disagreement& d) { return d.cause.kind; });
   const std::int64_t num_decisions =
       static_cast<std::int64_t>(found.size()) - num_entropies - num_ties - num_missed;
   EXPECT_LE(ExactBinomialInterval(num_decisions, n, kConfidence).lower, kAllowedRate) << label;
@@ -191,14 +198,15 @@ void ExpectAgreement(const std::string& label, std::int64_t n, const std::vector
     EXPECT_LE(ExactBinomialInterval(count, n, kConfidence).lower, 10.0 * kAllowedRate) << label;
   }
   for (const Disagreement& d : found) {
+    if (d.cause.kind == kOtherWinner) continue;  // a decision, bounded above
     const double greatest = d.difference.kind == Difference::kEntropy ? 1e-3 : 1e-8;
     EXPECT_LE(d.cause.margin, greatest)
         << label << ", trial " << d.trial << ": " << d.difference.what << " by " << d.cause.kind;
   }
 }
 
-// Eight points always have one model. Of five points' trials, of 16 samples each, so many hold a sample in
-// which one solver finds a solution that the other does not: XXX
+// Eight points always have one model. Of five points' trials 80 of 432 (18.5 [15.0, 22.5] %) hold a sample,
+// of 16, in which one solver finds a solution that the other does not.
 void ExpectFewExempt(const Variant& variant, std::int64_t n, std::int64_t num_exempt) {
   if (variant.solver == MinimalSolver::kEightPoint) {
     EXPECT_EQ(num_exempt, 0) << variant.label;
