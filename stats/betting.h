@@ -1,5 +1,5 @@
-// The capital of a gambler who bets on the mean of numbers in [0, 1]: what intervals of bounded means are
-// made of (stats/bounded_mean.h, stats/score_mean.h).
+// The capital of a gambler who bets on the mean of numbers in [0, 1]: what the intervals of bounded means
+// are made of (stats/score_mean.h).
 #pragma once
 
 #include <functional>

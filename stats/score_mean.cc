@@ -42,6 +42,10 @@ void ScoreMean::Add(double score, std::int64_t count) {
 
 double ScoreMean::mean() const { return sum_ / static_cast<double>(n_); }
 
+double ScoreMean::standard_deviation() const {
+  return (range_.upper - range_.lower) * InUnitRange(false).standard_deviation;
+}
+
 ScoreMean::UnitScores ScoreMean::InUnitRange(bool is_mirrored) const {
   UnitScores scores;
   double sum = 0.0, squares = 0.0;
@@ -54,8 +58,8 @@ ScoreMean::UnitScores ScoreMean::InUnitRange(bool is_mirrored) const {
   }
   const double n = static_cast<double>(n_);
   scores.mean = sum / n;
-  const double standard_deviation = std::sqrt(std::max(0.0, squares / n - scores.mean * scores.mean));
-  scores.distance = std::max((standard_deviation + 1.0 / kNumSteps) / std::sqrt(n), 1e-6);
+  scores.standard_deviation = std::sqrt(std::max(0.0, squares / n - scores.mean * scores.mean));
+  scores.distance = std::max((scores.standard_deviation + 1.0 / kNumSteps) / std::sqrt(n), 1e-6);
   return scores;
 }
 

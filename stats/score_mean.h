@@ -4,7 +4,7 @@
 // Scores are mostly a mixture: many at exactly 0 (failed), the others near the top. Student's interval misses
 // the mean of such a law far too often as long as few or no failures have been seen: where a score is 0 with
 // probability 0.01 and 0.9 else, 100 scores hold no zero in 37 % of the samples, and their interval is a
-// point. So the mean is bounded by betting (stats/bounded_mean.h, Waudby-Smith & Ramdas 2024). A gambler who
+// point. So the mean is bounded by betting (Waudby-Smith & Ramdas 2024). A gambler who
 // stakes a share f of what he can on "the mean exceeds m" has, after scores x_1..x_n in [0, 1],
 //   K_n(m) = mean over f of prod_i (1 + f (x_i / m - 1)),
 // a non-negative martingale of mean 1 where m is the mean: P(K_n(m) >= 1 / a for any n) <= a (Ville). The
@@ -37,6 +37,8 @@ class ScoreMean {
   std::int64_t n() const { return n_; }
   // NaN without scores.
   double mean() const;
+  // Of the scores on the grid: a variance that exceeds theirs by at most a quarter of its squared step.
+  double standard_deviation() const;
 
   // Confidence sequence: holds the mean at all n together. Two-sided, either bound has half of 1 -
   // confidence. The range without scores.
@@ -51,7 +53,7 @@ class ScoreMean {
   // The scores moved to [0, 1], mirrored if asked for, with the spread of the search for a bound.
   struct UnitScores {
     std::vector<CountedNumber> numbers;
-    double mean = 0.0, distance = 0.0;
+    double mean = 0.0, standard_deviation = 0.0, distance = 0.0;
   };
   UnitScores InUnitRange(bool is_mirrored) const;
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "experiments/base/for_each_index.h"
-#include "stats/bounded_mean.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
+#include "stats/score_mean.h"
 
 namespace rcme {
 namespace {
@@ -19,23 +19,24 @@ bool HasSequenceOfMean(const Target& target) {
   return target.kind == Target::Kind::kMeanPit || target.kind == Target::Kind::kBoundedMean;
 }
 
-double InUnitRange(const Target& target, double value) {
-  if (target.kind == Target::Kind::kBoundedMean) {
-    return (value - target.range.lower) / (target.range.upper - target.range.lower);
-  }
+// What is averaged of a statistic, in the target's range.
+double BoundedNumber(const Target& target, double value) {
+  if (target.kind == Target::Kind::kBoundedMean) return value;
   return value >= 0.0 && std::isfinite(value) ? ChiSquareCdf(target.degrees_of_freedom, value) : 1.0;
 }
 
 // The trials of one target, counted.
 struct Tally {
-  Moments moments;      // of the statistic; of an indicator for rates
-  BoundedMean bounded;  // where its sequence is asked for
+  explicit Tally(const Target& target) : bounded(target.range) {}
+
+  Moments moments;    // of the statistic; of an indicator for rates
+  ScoreMean bounded;  // where its sequence is asked for
   std::int64_t num_successes = 0;
 
   void Add(const Target& target, double value) {
     if (std::isnan(value)) return;
     if (HasSequenceOfMean(target)) {
-      bounded.Add(InUnitRange(target, value));
+      bounded.Add(BoundedNumber(target, value));
       return;
     }
     if (target.kind == Target::Kind::kCoverage) value = value >= 0.0 && value <= target.threshold;
@@ -50,11 +51,9 @@ struct Tally {
 TargetResult Measure(const Target& target, const Tally& tally, double confidence) {
   TargetResult result;
   if (HasSequenceOfMean(target)) {
-    const Interval sequence = tally.bounded.Sequence(confidence);
-    const double low = target.range.lower, size = target.range.upper - low;
     result.n = tally.bounded.n();
-    result.measured = low + size * tally.bounded.mean();
-    result.interval = {low + size * sequence.lower, low + size * sequence.upper};
+    result.measured = tally.bounded.mean();
+    result.interval = tally.bounded.Sequence(confidence);
     return result;
   }
   const bool is_mean = target.kind == Target::Kind::kMean;
@@ -129,7 +128,7 @@ CheckResult DecideCheck(const Check& check, const CheckRun& run) {
   if (!check.not_possible.empty()) return {};
   constexpr std::int64_t kFirstLook = 64, kMaxBatch = 100'000;
   const std::int64_t max_trials = check.limits.Max(run.budget);
-  std::vector<Tally> tallies(check.targets.size());
+  std::vector<Tally> tallies(check.targets.begin(), check.targets.end());
   const bool claims_mean = std::any_of(check.targets.begin(), check.targets.end(), [](const Target& target) {
     return target.kind == Target::Kind::kMean && target.IsClaimed();
   });

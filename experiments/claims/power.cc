@@ -9,10 +9,10 @@
 #include <mutex>
 #include <utility>
 
-#include "stats/bounded_mean.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
 #include "stats/equivalence.h"
+#include "stats/score_mean.h"
 
 namespace rcme {
 namespace {
@@ -99,22 +99,21 @@ struct MeanLaw {
 
 // The values F(x / c), x chi-square distributed, c = (assumed sigma / true sigma)^2, that n trials are
 // expected to give.
-BoundedMean ExpectedPits(int degrees_of_freedom, double sigma_error, double n) {
+ScoreMean ExpectedPits(int degrees_of_freedom, double sigma_error, double n) {
+  constexpr int kNumBins = 128;
   const double c = (1.0 + sigma_error) * (1.0 + sigma_error);
-  BoundedMean expected;
-  double below = 0.0;
-  for (int b = 0; b < BoundedMean::kNumBins; ++b) {
-    const double end = (b + 1.0) / BoundedMean::kNumBins;
+  ScoreMean expected;
+  for (int b = 0; b < kNumBins; ++b) {
+    const double end = (b + 1.0) / kNumBins;
     const double up_to =
         end < 1.0 ? ChiSquareCdf(degrees_of_freedom, c * ChiSquareQuantile(degrees_of_freedom, end)) : 1.0;
-    expected.AddToBin(b, n * (up_to - below));
-    below = up_to;
+    expected.Add((b + 0.5) / kNumBins, std::llround(n * up_to) - expected.n());
   }
   return expected;
 }
 
 MeanLaw MeanPitLaw(int degrees_of_freedom, double sigma_error, double n, double confidence) {
-  const BoundedMean expected = ExpectedPits(degrees_of_freedom, sigma_error, n);
+  const ScoreMean expected = ExpectedPits(degrees_of_freedom, sigma_error, n);
   const Interval sequence = expected.Sequence(confidence);
   const double mean = expected.mean();
   return {mean, expected.standard_deviation() / std::sqrt(n), mean - sequence.lower, sequence.upper - mean};
@@ -138,9 +137,10 @@ TargetPower PowerOfMeanPit(const Target& target, std::int64_t num_trials, double
 // with the price of looking.
 TargetPower PowerOfMean(const Target& target, std::int64_t num_trials, double confidence) {
   const double n = target.planned_share * static_cast<double>(num_trials);
+  constexpr double kNumStakes = 14.0;  // that share the first capital (stats/score_mean.cc)
   const double standard_error = target.planned_spread / std::sqrt(n), tail = 0.5 * (1.0 - confidence);
   const double reach = standard_error * (target.kind == Target::Kind::kBoundedMean
-                                             ? std::sqrt(2.0 * std::log(16.0 / tail))
+                                             ? std::sqrt(2.0 * std::log(2.0 * kNumStakes / tail))
                                              : StudentQuantile(static_cast<int>(n) - 1, 1.0 - tail));
   const double beyond = reach + NormalQuantile(kPowerOfDesign) * standard_error;
   Interval allowed = target.allowed;  // a border at the end of what is possible is never crossed

@@ -115,14 +115,26 @@ TEST(DecideCheck, MeanPitCountsWhatIsNoNumberOfTheLawAsBeyondIt) {
     return {values[name.trial], name.trial == 0 ? -1.0 : 1.0};
   };
   const CheckResult result = DecideCheck(check, {});
-  constexpr double kHalfBin = 1.0 / 256.0;
   EXPECT_EQ(result.targets[0].n, 5);
   EXPECT_NEAR(result.targets[0].measured,
-              (0.0 + 1.0 - std::exp(-0.5) + 1.0 - std::exp(-1.0) + 1.0 + 1.0) / 5.0, kHalfBin);
+              (0.0 + 1.0 - std::exp(-0.5) + 1.0 - std::exp(-1.0) + 1.0 + 1.0) / 5.0, 1e-12);
   EXPECT_EQ(result.targets[1].n, 6);
-  EXPECT_NEAR(result.targets[1].measured, 4.0 / 6.0, 2.0 * kHalfBin);
+  EXPECT_NEAR(result.targets[1].measured, 4.0 / 6.0, 1e-12);
   EXPECT_GE(result.targets[1].interval.lower, -1.0);
   EXPECT_LT(result.targets[1].interval.lower, result.targets[1].measured);
+}
+
+TEST(DecideCheck, ABoundedMeanOfZerosIsZero) {
+  Check check;
+  check.limits = {0, 500, 500};
+  check.trial = [](const StreamName&) -> Outcome { return {0.0}; };
+  Target difference = ClaimedMean("difference", 0.0, {-0.05, 0.05});
+  difference.kind = Target::Kind::kBoundedMean;
+  difference.range = {-1.0, 1.0};
+  check.targets = {difference};
+  const CheckResult result = DecideCheck(check, {});
+  EXPECT_EQ(result.targets[0].measured, 0.0);
+  EXPECT_NEAR(result.targets[0].interval.lower, -result.targets[0].interval.upper, 1e-3);
 }
 
 TEST(DecideCheck, MeansAreLookedAtOnceAtTheEnd) {
