@@ -7,7 +7,7 @@
 
 namespace rcme {
 
-std::vector<CaseClaim> SigmaFCalibration();      // coverage of f: eight points, then five
+std::vector<CaseClaim> SigmaFCalibration();      // coverage of f, for every solver of any motion
 std::vector<CaseClaim> SigmaPCalibration();      // of the motion of eight points
 std::vector<CaseClaim> InlierCalibration();      // of a point: the known motion, a fresh point, an own point
 std::vector<CaseClaim> SampleTestCalibration();  // size of the sample test

@@ -15,13 +15,13 @@ constexpr double kSignificanceLevel = 0.05;
 const char* const kLabel = "eq::sample-p-test";
 
 Outcome JointStatistic(Case& made) {
-  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
   return {hypothesis ? JointSampleStatistic(*hypothesis) : kInfinity};
 }
 
 // Whether every point of the sample passes on its own.
 bool EveryPointPasses(const MotionProblem& problem) {
-  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(problem);
   if (!hypothesis) return false;
   const std::optional<UncertainFundamental> model =
       UncertainFundamental::From(hypothesis->pose, hypothesis->pose_cov, problem.camera1, problem.camera2);

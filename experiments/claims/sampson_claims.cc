@@ -21,7 +21,7 @@ struct ExactFit {
 
 std::optional<ExactFit> MakeExactFit(const Case& made) {
   const MotionProblem& problem = made.problem();
-  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(problem);
   if (!hypothesis) return std::nullopt;
   const std::optional<UncertainFundamental> model =
       UncertainFundamental::From(made.pose_true(), hypothesis->pose_cov, problem.camera1, problem.camera2);

@@ -1,12 +1,13 @@
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 
-#include "estimator/solvers/five_point.h"
+#include "estimator/solvers/solver_table.h"
 #include "estimator/uncertainty/as_printed.h"
 #include "experiments/claims/calibration.h"
 #include "experiments/claims/design.h"
 #include "experiments/claims/families.h"
 #include "experiments/claims/sample_statistics.h"
-#include "experiments/trial/covariance_score.h"
 
 namespace rcme {
 namespace {
@@ -15,15 +16,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Settings kSample = {{"num_matches", "8"}};
 const char* const kLabel = "Sec. model_instantiate, Sigma_f";
 
-Outcome NeesStatistic(Case& made) {
-  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
-  return {hypothesis ? NeesOfF(*hypothesis, made.pose_true()) : kInfinity};
-}
-
 // Largest deviation of the printed formula from G D G', over the largest entry.
 Outcome PrintedFormulaStatistic(Case& made) {
   const MotionProblem& problem = made.problem();
-  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(problem);
   if (!hypothesis) return {kInfinity};
   const LinearModel& linear = hypothesis->model;
   const Matrix9d information =
@@ -35,27 +31,11 @@ Outcome PrintedFormulaStatistic(Case& made) {
 // Largest |A'f| of the first eight columns of the Householder matrix that reflects f onto an axis.
 Statistic NormalBasisStatistic(int onto) {
   return [onto](Case& made) -> Outcome {
-    const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
+    const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
     if (!hypothesis) return {kInfinity};
     const Vector9d& f = hypothesis->model.f;
     return {(HouseholderColumns(f, onto).transpose() * f).cwiseAbs().maxCoeff()};
   };
-}
-
-// NEES of the exact case with H^-1 D H^-T, for the five-point solution nearest to the truth.
-Outcome ExactNeesStatistic(Case& made) {
-  const MotionProblem& problem = made.problem();
-  double nearest = kInfinity;  // squared length of the error
-  Outcome nees = {kInfinity};
-  for (Hypothesis<FivePoint> hypothesis : InstantiateModels<FivePoint>(problem, {0, 1, 2, 3, 4})) {
-    hypothesis.pose = NearestPose(PosesFromEssential(hypothesis.projection), made.pose_true());
-    const double squared_error = LocalCoordinates(hypothesis.pose, made.pose_true()).squaredNorm();
-    if (squared_error >= nearest) continue;
-    nearest = squared_error;
-    PropagateCovariance(problem, &hypothesis);
-    nees[0] = NormalizedErrorOfPose(hypothesis.pose, hypothesis.pose_cov, made.pose_true());
-  }
-  return nees;
 }
 
 // Whether the printed J_Omega' Sigma_X^-1 J_Omega (9x9) of five matches has an inverse.
@@ -68,37 +48,52 @@ Outcome ExactInverseStatistic(Case& made) {
   return {eigenvalues(0) > 1e-12 * eigenvalues(8) ? 1.0 : 0.0};
 }
 
+// Coverage of f by the covariance of a solver's model. One claim for each solver that there is.
+CaseClaim CoverageOf(const std::string& name, MinimalSolver solver) {
+  const auto [num_matches, is_exact] = VisitSolver(solver, []<typename Solver>(std::type_identity<Solver>) {
+    return std::pair(Solver::kSampleSize, Solver::kCase == SolverCase::kExact);
+  });
+  return {
+      {"sigma_f." + name,
+       kLabel,
+       fmt::format("{}, {}-point", is_exact ? "exact" : "overdetermined", num_matches),
+       is_exact
+           ? "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T, in as many coordinates as the solver's models "
+             "have, is the covariance of f"
+           : "Sigma_f = A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' is the covariance of f",
+       fmt::format("NEES of f, chi2_{}", num_matches),
+       "sigma_px",
+       {}},
+      [solver](Case& made) -> Outcome { return {NeesOfNearestF(solver, made.problem(), made.pose_true())}; },
+      CoverageTargets(num_matches),
+      kSampleCoverage.limits,
+      {.num_true_matches = num_matches}};
+}
+
+// One point knows the motion of a car alone.
+Settings SampleOf(const CaseClaim& claim, MinimalSolver solver) {
+  Settings settings = {{"num_matches", fmt::format("{}", claim.needs.num_true_matches)}};
+  if (solver == MinimalSolver::kOnePoint) settings.emplace_back("motion", "ackermann");
+  return settings;
+}
+
 }  // namespace
 
 std::vector<CaseClaim> SigmaFCalibration() {
-  return {{{"sigma_f.coverage",
-            kLabel,
-            "overdetermined, 8-point",
-            "Sigma_f = A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' is the covariance of f",
-            "NEES of f in the complement of f, chi2_8",
-            "sigma_px",
-            {}},
-           NeesStatistic,
-           CoverageTargets(8),
-           kSampleCoverage.limits,
-           {}},
-          {{"sigma_f.exact",
-            kLabel,
-            "exact, 5-point, in the motion's five coordinates",
-            "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T is the covariance of the exact case",
-            "NEES of the motion, chi2_5",
-            "sigma_px",
-            {}},
-           ExactNeesStatistic,
-           CoverageTargets(5),
-           kSampleCoverage.limits,
-           {.num_true_matches = 5}}};
+  std::vector<CaseClaim> claims;
+  for (const auto& [name, solver] : SolverNames()) {
+    if (solver != MinimalSolver::kOnePoint) claims.push_back(CoverageOf(name, solver));
+  }
+  return claims;
 }
 
 std::vector<Claim> SigmaFClaims() {
-  const std::vector<CaseClaim> calibration = SigmaFCalibration();
-  return {
-      AtNoiseLevels(calibration[0], kNoiseLevelsPx, kSample),
+  std::vector<Claim> claims;
+  for (const auto& [name, solver] : SolverNames()) {
+    const CaseClaim claim = CoverageOf(name, solver);
+    claims.push_back(AtNoiseLevels(claim, kNoiseLevelsPx, SampleOf(claim, solver)));
+  }
+  const std::vector<Claim> others = {
       {"sigma_f.formula",
        kLabel,
        "overdetermined, 8-point",
@@ -123,7 +118,6 @@ std::vector<Claim> SigmaFClaims() {
        "",
        {MakeCheck(kSample, NormalBasisStatistic(8), {IdentityTarget("share within 1e-12", 1e-12)},
                   kIdentity.limits)}},
-      AtNoiseLevels(calibration[1], kNoiseLevelsPx, {{"num_matches", "5"}}),
       {"sigma_f.exact_inverse",
        kLabel,
        "exact, 5-point, in f as printed",
@@ -133,6 +127,8 @@ std::vector<Claim> SigmaFClaims() {
        {MakeCheck({{"num_matches", "5"}}, ExactInverseStatistic,
                   {PlannedRate("share that has an inverse", 1.0, kIdentity)}, kIdentity.limits)}},
   };
+  claims.insert(claims.end(), others.begin(), others.end());
+  return claims;
 }
 
 }  // namespace rcme

@@ -20,7 +20,7 @@ const Settings kSample = {{"num_matches", "8"}};
 using Jacobian = Eigen::Matrix<double, 5, 9>;
 Statistic NeesStatistic(Jacobian (*motion_jacobian)(const EssentialProjection&, const RelativePose&)) {
   return [motion_jacobian](Case& made) -> Outcome {
-    const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
+    const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
     if (!hypothesis) return {kInfinity};
     const RelativePose pose = NearestPose(PosesFromEssential(hypothesis->projection), made.pose_true());
     const Jacobian J_p = motion_jacobian(hypothesis->projection, pose);
@@ -33,7 +33,7 @@ Jacobian ThetaJacobian(const EssentialProjection&, const RelativePose& pose) { r
 
 // Whether the 7x7 covariance of p = [q; t] has five eigenvalues above rounding, and whether it has seven.
 Outcome RankStatistic(Case& made) {
-  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
   if (!hypothesis) return {0.0, 0.0};
   const Eigen::Matrix<double, 7, 7> covariance =
       CovarianceOfQuaternionAndTranslation(hypothesis->pose, hypothesis->pose_cov);

@@ -75,7 +75,7 @@ double DrawWithGrossErrors(RandomStream& rng) {  // 2 % with five times the spre
 Statistic FreshPointWith(Matrix5d (*mutate)(const Matrix5d&)) {
   return [mutate](Case& made) -> Outcome {
     const MotionProblem& problem = made.problem();
-    const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
+    const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(problem);
     if (!hypothesis) return {kInfinity};
     const auto model = UncertainFundamental::From(hypothesis->pose, mutate(hypothesis->pose_cov),
                                                   problem.camera1, problem.camera2);
@@ -86,7 +86,7 @@ Statistic FreshPointWith(Matrix5d (*mutate)(const Matrix5d&)) {
 // NEES of f where the constraints' variances leave out the noise of one image.
 Outcome NeesOfFFromOneImage(Case& made) {
   const MotionProblem& problem = made.problem();
-  std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(problem);
+  std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(problem);
   if (!hypothesis) return {kInfinity};
   const Eigen::Matrix3d F =
       FundamentalFromEssential(Matricize(hypothesis->model.f), problem.camera1, problem.camera2);
@@ -97,12 +97,12 @@ Outcome NeesOfFFromOneImage(Case& made) {
         problem.sigma_px * problem.sigma_px * EvaluateConstraint(F, match).gradient.head<2>().squaredNorm();
   }
   hypothesis->f_cov = CovarianceOfF(hypothesis->model.G, variances);
-  return {NeesOfF(*hypothesis, made.pose_true())};
+  return {NeesOfF(hypothesis->model.f, hypothesis->f_cov, made.pose_true(), 8)};
 }
 
 Outcome SoundNeesOfF(Case& made) {
-  const std::optional<Hypothesis<EightPoint>> hypothesis = FitSample(made.problem());
-  return {hypothesis ? NeesOfF(*hypothesis, made.pose_true()) : kInfinity};
+  const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
+  return {hypothesis ? NeesOfF(hypothesis->model.f, hypothesis->f_cov, made.pose_true(), 8) : kInfinity};
 }
 
 // Distance of one match from the maximum-likelihood motion of the first ten of eleven.

@@ -72,7 +72,7 @@ TEST(StudyClaims, OnTheBuiltInSceneYieldTheBuiltInNumbers) {
 // than its sample's into its covariance would be far off.
 TEST(StudyClaims, OfSamplesHoldInTheSmallNoiseLimit) {
   const std::vector<Claim> claims = StudyClaims(PlanWith("num_matches: 40, sigma_px: 0.000001"));
-  for (const char* id : {"sigma_f.coverage", "sigma_f.exact", "sigma_p.theta",
+  for (const char* id : {"sigma_f.eight_point", "sigma_f.seven_point", "sigma_f.five_point", "sigma_p.theta",
                          "inlier.fresh_point.rank_aware", "mle.sampson"}) {
     Check check = Find(claims, id).checks[0];
     check.limits = {600, 600, 600};
@@ -118,14 +118,14 @@ TEST(StudyClaims, SayWhichConditionCannotGiveAStatistic) {
   const std::string few = "fewer than 8 true matches",
                     still = "the true motion has no direction of translation";
   using Texts = std::vector<std::string>;
-  EXPECT_EQ(reasons("sigma_f.coverage"), (Texts{"", few, still, still}));
+  EXPECT_EQ(reasons("sigma_f.eight_point"), (Texts{"", few, still, still}));
   EXPECT_EQ(reasons("inlier.true_pose.rank_aware"), (Texts{"", "", still, still}));
   EXPECT_EQ(reasons("sample_test.size.joint"), (Texts{"", few, "", few}));
 }
 
 TEST(StudyClaims, ATrialWithTooFewTrueMatchesIsNotInTheN) {
   const StudyPlan plan = PlanWith("num_matches: 16, outlier_ratio: 0.5, outlier_count: bernoulli");
-  Check check = Find(StudyClaims(plan), "sigma_f.coverage").checks[0];  // 60 % of the trials have eight
+  Check check = Find(StudyClaims(plan), "sigma_f.eight_point").checks[0];  // 60 % of the trials have eight
   check.limits = {200, 200, 200};
   const CheckResult result = DecideCheck(check, {});
   EXPECT_EQ(result.num_trials, 200);
