@@ -21,7 +21,7 @@ struct NoiseLaw {
   double peak = 0.3796066898;  // C = Gamma(k) / (sqrt(pi (2k - 1)) Gamma(k - 1/2))
   // The scale that maximum likelihood finds in Gaussian noise of standard deviation 1: the root of
   // E[2k x^2 / ((2k - 1) s^2 + x^2)] = 1.
-  double scale_of_gaussian = 0.8739;
+  double scale_of_gaussian = 0.8566;
 
   double dof() const { return 2.0 * power - 1.0; }
 };

@@ -67,7 +67,12 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
   const double freedom = std::max(num_right - 5.0, 1.0);
   const Matrix5d equal = sum_squares / freedom * geometry;
   scores = GreaterOf(scores, equal);
-  const Matrix5d covariance = freedom / std::max(freedom - 2.0, 1.0) * inverse * scores * inverse;
+  // From a root of the middle: few matches leave a direction so uncertain that rounding would make the
+  // product indefinite.
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(freedom / std::max(freedom - 2.0, 1.0) * scores);
+  const Matrix5d root =
+      inverse * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Matrix5d covariance = root * root.transpose();
   return covariance.allFinite() ? covariance : mode.inverse_hessian;
 }
 

@@ -88,6 +88,10 @@ void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, co
     Vec sums[kNumMixtureSums], product = one;
     for (Vec& sum : sums) sum = zero;
     for (int b = 0; b < matches.num_blocks(); ++b) {
+      if (b % 8 == 0) {
+        sums[0] = sums[0] + LogOf(Tag(), product);
+        product = one;
+      }
       const unsigned bits = mask[static_cast<size_t>(b)];
       if (bits == 0) continue;
       const Mask is_used = MaskFromBits(bits >> lane);
@@ -97,10 +101,6 @@ void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, co
       const MixtureTerms terms = EvaluateMixture(residual.r, z, parameters);
       const Vec right = hn::IfThenElseZero(is_used, terms.right);
       product = product * hn::IfThenElse(is_used, terms.total, one);
-      if (b % 8 == 7) {
-        sums[0] = sums[0] + LogOf(Tag(), product);
-        product = one;
-      }
       const Vec weight = right * terms.weight;
       const Vec pull = weight * residual.r;
       sums[1] = sums[1] + right;

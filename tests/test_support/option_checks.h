@@ -17,8 +17,16 @@
 
 namespace rcme {
 
+// Two bodies that move differently.
+inline MotionProblem TwoBodies() {
+  MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1);
+  const MotionProblem object = TwoCameraProblem(40, 0.5, 0.0, 2);
+  problem.matches.insert(problem.matches.end(), object.matches.begin(), object.matches.end());
+  return problem;
+}
+
 // 30 % wrong matches; so many that samples without one are rare; nearly all wrong; most on a plane; a camera
-// that only turns.
+// that only turns; an object that moves.
 inline std::vector<MotionProblem> Problems() {
   const Scene turn = TwoCameraScene(60, 0, /*baseline_m=*/0.0);
   const Observation observed = ObserveTwoCameraScene(turn, 0.5, 0.0, 0);
@@ -26,7 +34,8 @@ inline std::vector<MotionProblem> Problems() {
           TwoCameraProblem(150, 0.5, 0.6, 0),
           TwoCameraProblem(100, 0.5, 0.98, 0),
           ProblemFamily("plane_and_parallax", "general", 100, 0.0).Make(0),
-          {observed.matches, turn.camera1, turn.camera2, 0.5}};
+          {observed.matches, turn.camera1, turn.camera2, 0.5},
+          TwoBodies()};
 }
 
 // All that an estimate says, as numbers; NaN is its own equal.
@@ -39,7 +48,7 @@ inline std::vector<double> NumbersOf(const MotionEstimate& e) {
   const LoopCounts& c = e.counts;
   for (const double x : {1.0 * static_cast<int>(e.status), 1.0 * e.num_support, 1.0 * e.failed_by_kappa,
                          1.0 * c.num_hypotheses, 1.0 * c.num_inconsistent_samples,
-                         1.0 * c.num_poor_inlier_sets, 1.0 * c.num_candidates}) {
+                         1.0 * c.num_poor_inlier_sets, 1.0 * c.num_candidates, e.failure_probability}) {
     numbers.push_back(x);
   }
   for (double& x : numbers) x = std::isnan(x) ? 1e300 : x;

@@ -152,6 +152,16 @@ TEST_F(MixtureSumsOf, MatchesOutsideTheMaskAddNothing) {
   });
 }
 
+// The logarithm is taken of products of densities, which must not run on where blocks of eight are empty:
+// here every eighth one is, and each density is some 1e-3.
+TEST_F(MixtureSumsOf, EmptyBlocksDoNotLetProductsVanish) {
+  Case c = MakeCase(2000);
+  std::erase_if(c.used, [](int i) { return i / 8 % 8 == 7; });
+  c.parameters.inlier_ratio = 0.01;
+  const double expected = ScalarSums(c).log_likelihood;
+  Run([&] { EXPECT_NEAR(c.Sum(c.pose).log_likelihood, expected, 1e-6); });
+}
+
 // c(z) is held fixed by the gradient: here it is one for every match, at every pose near by.
 TEST_F(MixtureSumsOf, TheGradientIsThatOfTheLogLikelihood) {
   Case c = MakeCase(65);

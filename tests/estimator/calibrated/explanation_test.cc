@@ -1,0 +1,71 @@
+#include "estimator/calibrated/explanation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "estimator/calibrated/match_terms.h"
+#include "tests/test_support/calibrated_mode.h"
+
+namespace rcme {
+namespace {
+
+TEST(Explanation, OfEveryMatchIsThatOfTheScalarTwin) {
+  for (const int n : {7, 50, 61}) {
+    const FittedMode f = FitScene(n, 0.5, 0.2, static_cast<std::uint32_t>(n));
+    const MixtureParameters& m = f.mode.mixture;
+    const Explanation e = Explain(f.matches, f.mode);
+    ASSERT_EQ(e.probability.size(), static_cast<size_t>(n));
+    int num_explained = 0;
+    for (size_t i = 0; i < e.probability.size(); ++i) {
+      const MatchTerms terms = EvaluateMatch(f.problem, f.mode.pose, f.problem.matches[i]);
+      const MatchDensity d = EvaluateDensity(terms.residual, terms.depth, m);
+      const double u = terms.residual / m.scale;
+      EXPECT_NEAR(e.probability[i], d.right, 1e-9);
+      EXPECT_NEAR(m.inlier_ratio * e.inlier_density[i], d.right * d.density, 1e-9);
+      num_explained += d.right > 0.5;
+      // The motion fitted without the match would leave r / (1 - h), of standard deviation s / sqrt(1 - h).
+      if (d.right < 1e-3) continue;
+      const double h = d.right * d.weight / (m.scale * m.scale) *
+                       terms.derivative.dot(f.mode.inverse_hessian * terms.derivative);
+      EXPECT_NEAR(e.leverage[i], std::min(h, 1.0), 1e-9);
+      if (h > 0.99) continue;
+      const double sd = 1.0 / std::sqrt(1.0 - h), left = u / (1.0 - h);
+      const double expected =
+          NoiseDensity(m.noise, left / sd) / sd * CheiralityFactor(terms.depth / m.scale) / m.scale;
+      EXPECT_NEAR(e.left_out_density[i], expected, 1e-9);
+    }
+    EXPECT_EQ(e.num_explained, num_explained);
+  }
+}
+
+// sum p v J' H^-1 J / s^2 is the trace of H^-1 times the information of all; H has between 0.6 of that and
+// all of it (mixture_sums.h).
+TEST(Explanation, LeveragesAddUpToTheFiveThatAMotionTakes) {
+  for (const int n : {20, 100, 500}) {
+    for (std::uint32_t trial = 0; trial < 5; ++trial) {
+      const FittedMode f = FitScene(n, 0.5, 0.3, trial);
+      const Explanation e = Explain(f.matches, f.mode);
+      const double sum = std::accumulate(e.leverage.begin(), e.leverage.end(), 0.0);
+      EXPECT_GE(sum, 4.0) << n;
+      EXPECT_LE(sum, 5.0 / 0.6) << n;
+    }
+  }
+}
+
+TEST(Explanation, AMatchThatTheModeDoesNotUseHasNoInfluence) {
+  FittedMode f = FitScene(30, 0.5, 0.0, 1);
+  const Explanation with = Explain(f.matches, f.mode);
+  f.mode.used[1] = 0b11111011;  // without match 10
+  const Explanation without = Explain(f.matches, f.mode);
+  ASSERT_GT(with.leverage[10], 0.0);
+  EXPECT_EQ(without.leverage[10], 0.0);
+  EXPECT_EQ(without.left_out_density[10], without.inlier_density[10]);
+  EXPECT_EQ(without.probability[10], with.probability[10]);
+  EXPECT_EQ(without.leverage[11], with.leverage[11]);
+}
+
+}  // namespace
+}  // namespace rcme

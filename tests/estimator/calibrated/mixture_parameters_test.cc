@@ -1,0 +1,57 @@
+// The constants of the noise law against the equations that define them.
+#include "estimator/calibrated/mixture_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "estimator/calibrated/explanation.h"
+
+namespace rcme {
+namespace {
+
+// Of a smooth function over the whole line, x = sinh(y) by the trapezoid rule.
+double IntegralOf(const std::function<double(double)>& f) {
+  constexpr double kStep = 1e-2;
+  double sum = 0.0;
+  for (int i = -1500; i <= 1500; ++i) sum += f(std::sinh(kStep * i)) * std::cosh(kStep * i) * kStep;
+  return sum;
+}
+
+TEST(NoiseLaw, IsADensityOfStudentsLaw) {
+  const NoiseLaw noise;
+  EXPECT_NEAR(IntegralOf([&](double u) { return NoiseDensity(noise, u); }), 1.0, 1e-8);
+  EXPECT_EQ(noise.dof(), 5.0);
+  EXPECT_NEAR(noise.peak, std::tgamma(3.0) / (std::sqrt(noise.dof() * std::numbers::pi) * std::tgamma(2.5)),
+              1e-9);
+  // The variance of Student's law is dof / (dof - 2).
+  EXPECT_NEAR(IntegralOf([&](double u) { return u * u * NoiseDensity(noise, u); }), 5.0 / 3.0, 1e-5);
+}
+
+TEST(NoiseLaw, TheWeightIsTheSlopeOfTheLogDensityOverTheResidual) {
+  const NoiseLaw noise;
+  for (const double u : {0.1, 1.0, 4.0}) {
+    constexpr double h = 1e-5;
+    const double slope =
+        (std::log(NoiseDensity(noise, u - h)) - std::log(NoiseDensity(noise, u + h))) / (2.0 * h);
+    EXPECT_NEAR(NoiseWeight(noise, u), slope / u, 1e-8);
+  }
+}
+
+TEST(NoiseLaw, TheScaleOfGaussianNoiseIsThatOfMaximumLikelihood) {
+  const NoiseLaw noise;
+  const auto expected_weighted_square = [&](double s) {
+    return IntegralOf([&](double x) {
+      const double normal = std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+      return 2.0 * noise.power * x * x / (noise.dof() * s * s + x * x) * normal;
+    });
+  };
+  // It falls with s; the constant has four digits.
+  EXPECT_GT(expected_weighted_square(noise.scale_of_gaussian - 1e-4), 1.0);
+  EXPECT_LT(expected_weighted_square(noise.scale_of_gaussian + 1e-4), 1.0);
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,116 @@
+#include "estimator/calibrated/twisted_pair.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "estimator/geometry/essential_matrix.h"
+#include "tests/test_support/random_problem.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kSigmaPx = 0.5;
+
+// Matches of points within `thickness` (share of the depth) of a plane that is seen obliquely.
+struct PlaneCase {
+  RandomProblem random;
+  Eigen::Vector3d plane;  // n'X = 1, baselines^-1
+};
+PlaneCase MakePlane(std::uint32_t trial, double thickness, double sigma_px = kSigmaPx) {
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2730});
+  PlaneCase c;
+  c.random = MakeRandomProblem(rng, {.num_matches = 120});
+  c.plane = Eigen::Vector3d(rng.Uniform(-0.1, 0.1), rng.Uniform(-0.1, 0.1), 0.2);
+  MotionProblem& problem = c.random.problem;
+  for (size_t i = 0; i < problem.matches.size(); ++i) {
+    const Eigen::Vector3d ray = c.random.points_in_cam1[i] / c.random.points_in_cam1[i].z();
+    const double depth = (1.0 + thickness * rng.Uniform(-1.0, 1.0)) / c.plane.dot(ray);
+    problem.matches[i] = ProjectToBoth(depth * ray, c.random.pose_true, problem.camera1, problem.camera2);
+  }
+  AddNoise(sigma_px, rng, &problem);
+  problem.sigma_px = kSigmaPx;
+  return c;
+}
+
+double MiddleSingularValue(const Eigen::Matrix3d& H) {
+  return Eigen::JacobiSVD<Eigen::Matrix3d>(H).singularValues()(1);
+}
+
+// With R' + t' n'' = lambda H, lambda = +-1 / the middle singular value: t' n'' = lambda H - R' has rank one,
+// and its columns are multiples of t'.
+TEST(OtherMotionOfPlane, HasTheSameHomography) {
+  RandomStream rng({.seed = 1, .purpose = 2731});
+  for (int trial = 0; trial < 200; ++trial) {
+    const RelativePose pose = RandomPose(rng, 30.0);
+    const Eigen::Vector3d plane = rng.Uniform(0.05, 0.5) * RandomDirection(rng);
+    const Eigen::Matrix3d H0 = pose.R + pose.t * plane.transpose();
+    const std::optional<RelativePose> other = OtherMotionOfPlane(pose, plane);
+    ASSERT_TRUE(other);
+    EXPECT_NEAR(other->t.norm(), 1.0, 1e-12);
+    EXPECT_LT((other->R * other->R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+    EXPECT_NEAR(other->R.determinant(), 1.0, 1e-9);
+    const Eigen::Matrix3d H = H0 / MiddleSingularValue(H0);
+    const double sign = (H - other->R).norm() < (H + other->R).norm() ? 1.0 : -1.0;
+    const Eigen::Matrix3d rest = sign * H - other->R;
+    const Eigen::Matrix3d beside_t = (Eigen::Matrix3d::Identity() - other->t * other->t.transpose()) * rest;
+    EXPECT_LT(beside_t.norm(), 1e-7) << trial;
+    EXPECT_GT(LocalCoordinates(pose, *other).norm(), 1e-6) << trial;
+    // The twist of the other one is the first again, up to the direction's sign.
+    const std::optional<RelativePose> back = OtherMotionOfPlane(*other, rest.transpose() * other->t);
+    ASSERT_TRUE(back);
+    EXPECT_LT((back->R - pose.R).norm(), 1e-6) << trial;
+    EXPECT_LT(back->t.cross(pose.t).norm(), 1e-6) << trial;
+  }
+}
+
+TEST(OtherMotionOfPlane, OfAPureRotationIsNone) {
+  EXPECT_FALSE(OtherMotionOfPlane({RotationFromVector({0.1, 0.2, 0.3}), Eigen::Vector3d::UnitX()},
+                                  Eigen::Vector3d::Zero()));
+}
+
+// Matches of the plane follow both motions without a residual, and lie in front of the cameras in both.
+TEST(OtherMotionOfPlane, ExplainsTheMatchesOfThePlane) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const PlaneCase c = MakePlane(trial, 0.0, 0.0);
+    const std::optional<RelativePose> other = OtherMotionOfPlane(c.random.pose_true, c.plane);
+    ASSERT_TRUE(other);
+    const Eigen::Matrix3d E = EssentialFromPose(*other);
+    const MotionProblem& problem = c.random.problem;
+    for (const Correspondence& match : problem.matches) {
+      EXPECT_NEAR(problem.camera2.Ray(match.x2_px).dot(E * problem.camera1.Ray(match.x1_px)), 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(FindPlane, FindsThePlaneOfNoisyMatches) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    PlaneCase c = MakePlane(trial, 0.0);
+    // A tenth of them, said to be right, lies far from it.
+    for (size_t i = 0; i < 12; ++i) {
+      const Eigen::Vector3d ray = c.random.problem.camera1.Ray(c.random.problem.matches[i].x1_px);
+      c.random.problem.matches[i] =
+          ProjectToBoth(2.0 * ray, c.random.pose_true, c.random.problem.camera1, c.random.problem.camera2);
+    }
+    const std::vector<double> right(c.random.problem.matches.size(), 0.99);
+    const std::optional<Eigen::Vector3d> plane = FindPlane(c.random.problem, c.random.pose_true, right, 0.6);
+    ASSERT_TRUE(plane) << trial;
+    EXPECT_LT((*plane - c.plane).norm(), 0.02) << trial;
+    EXPECT_FALSE(FindPlane(c.random.problem, c.random.pose_true, right, 0.97)) << trial;
+  }
+}
+
+TEST(FindPlane, FindsNoneInAVolumeOrAmongFewMatches) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const PlaneCase c = MakePlane(trial, 0.8);
+    std::vector<double> right(c.random.problem.matches.size(), 0.99);
+    EXPECT_FALSE(FindPlane(c.random.problem, c.random.pose_true, right, 0.6)) << trial;
+    std::fill(right.begin() + 4, right.end(), 0.1);
+    EXPECT_FALSE(FindPlane(c.random.problem, c.random.pose_true, right, 0.0)) << trial;
+  }
+}
+
+}  // namespace
+}  // namespace rcme
