@@ -20,7 +20,7 @@ namespace rcme {
 // Two bodies that move differently.
 inline MotionProblem TwoBodies() {
   MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1);
-  const MotionProblem object = TwoCameraProblem(40, 0.5, 0.0, 2);
+  const MotionProblem object = TwoCameraProblem(60, 0.5, 0.0, 2);
   problem.matches.insert(problem.matches.end(), object.matches.begin(), object.matches.end());
   return problem;
 }
