@@ -201,7 +201,9 @@ class RcmeCalibrated : public MotionEstimator {
       const Mode& mode = modes[i].mode;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
       const Matrix5d curvature = InverseOfObserved(matches, mode);
-      success += weight * MassWithin(pose, Bounds(), mode.pose, curvature, rng);
+      // What the noise seems to know of the direction, it knows wrongly: its part counts twice.
+      const Matrix5d reach = curvature * mode.hessian * curvature;
+      success += weight * MassWithin(pose, Bounds(), mode.pose, reach, rng);
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
       verdict.pose_cov += weight * (CovarianceOf(problem, modes[i], curvature) + away * away.transpose());
