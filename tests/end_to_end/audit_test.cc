@@ -31,7 +31,7 @@ TEST(Audit, PrintsTheTableAndWritesPageDataAndFigures) {
   EXPECT_THAT(result.out, HasSubstr("sampson.dof_1 "));
   EXPECT_THAT(result.err, HasSubstr("at most"));
   const auto json = nlohmann::json::parse(Contents(out + "/audit.json"));
-  ASSERT_EQ(json["claims"].size(), 3);
+  ASSERT_EQ(json["claims"].size(), 4);
   for (const auto& claim : json["claims"]) {
     EXPECT_EQ(claim["verdict"], claim["id"] == "sampson.dof_1" ? "holds" : "does not hold") << claim["id"];
   }
@@ -67,10 +67,10 @@ TEST(Audit, OnAStudySpeaksOfItsConditions) {
   const auto json = nlohmann::json::parse(Contents(out + "/audit.json"));
   EXPECT_EQ(json["study"], "mine");
   EXPECT_EQ(json["default_conditions"]["sigma_px"], "0.05");
-  ASSERT_EQ(json["claims"].size(), 3);
+  ASSERT_EQ(json["claims"].size(), 4);
   EXPECT_EQ(json["claims"][0]["evidence"][1]["not_possible"], "fewer than 8 true matches");
-  EXPECT_EQ(json["claims"][2]["id"], "inlier.true_pose.rank_aware");
-  EXPECT_NE(json["claims"][2]["verdict"], "does not hold");
+  EXPECT_EQ(json["claims"][3]["id"], "inlier.true_pose.rank_aware");
+  EXPECT_NE(json["claims"][3]["verdict"], "does not hold");
   EXPECT_THAT(Contents(out + "/audit.md"), HasSubstr("# Claim audit on study mine"));
   EXPECT_GT(std::filesystem::file_size(out + "/audit_inlier.png"), 10'000);
 }

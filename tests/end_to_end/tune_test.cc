@@ -113,7 +113,7 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(refuses("max_refusal=0", {"max_refusal", "'0'", "a number in"}));
   EXPECT_TRUE(refuses("delta=1", {"delta", "'1'", "a number in"}));
   EXPECT_TRUE(refuses("calibrate=0", {"calibrate", "'0'", "a whole number"}));
-  EXPECT_TRUE(refuses("target=speed", {"target", "'speed'", "false_refusal, failure, risk"}));
+  EXPECT_TRUE(refuses("target=speed", {"target", "'speed'", "false_refusal, failure, accepted_failure, risk"}));
   EXPECT_TRUE(refuses("estimator=theirs", {"estimator", "'theirs'", "standard, ours"}));
   EXPECT_TRUE(IsRefused(Tune({}), {"--out"}));
   EXPECT_TRUE(IsRefused(Tune({"--out", out_, "--repeat", "3"}), {"--repeat", "--out"}));
