@@ -14,9 +14,10 @@ namespace rcme {
 //
 // n the mean number of matches that the two explain, Sigma without the scale of the noise. The Bayes factor
 // with Laplace's approximation would have the coefficients 1, 1 (of `shared` itself) and 1/2. These are of a
-// logistic regression on which of two modes is right, over planes, nearly planar scenes, rooms and few
-// matches (experiments/results/calibrated): the densities are not quite those of the model, so that evidence
-// is worth less than its nats, and the widths of modes of few matches are themselves uncertain.
+// logistic regression of failure on all rivals of an answer, over planes, nearly planar scenes, indoor and
+// outdoor scenes and few matches (seeds 7 to 13; what it gives on another seed:
+// experiments/results/calibrated). The densities are not quite those of the model, so that evidence is worth
+// less than its nats, and the widths of modes of few matches are themselves uncertain.
 double ModeLogOdds(const Contrast& a_against_b, double log_det_ratio, double num_explained);
 
 // Evidence of a motion against there being none, nats: log-likelihood of the matches with each match's

@@ -201,7 +201,8 @@ class RcmeCalibrated : public MotionEstimator {
       const Mode& mode = modes[i].mode;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
       const Matrix5d curvature = InverseOfObserved(matches, mode);
-      // What the noise seems to know of the direction, it knows wrongly: its part counts twice.
+      // Along a direction that the noise seems to determine (the observed curvature is below that of the
+      // residuals' first derivatives), the score varies as the latter says: H_obs^-1 H H_obs^-1.
       const Matrix5d reach = curvature * mode.hessian * curvature;
       success += weight * MassWithin(pose, Bounds(), mode.pose, reach, rng);
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
