@@ -139,10 +139,16 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
   for (Mode& mode : Distinct(AtScale(matches, refined, assumed_scale), (num_modes + 1) / 2)) {
     AddOptimum(matches, prior, std::move(mode), &optima);
   }
-  if (!prior.estimates_scale) return Distinct(std::move(optima), num_modes);
-  for (Mode& mode : Distinct(refined, num_modes / 2)) {
+  for (Mode& mode : Distinct(refined, prior.estimates_scale ? num_modes / 2 : 0)) {
     mode.mixture.scale = StartScale(matches, mode);
     AddOptimum(matches, prior, std::move(mode), &optima);
+  }
+  // Where c(z) pushes a fit back at every step there is no optimum: the best motion after a few steps.
+  for (Mode& mode : Distinct(refined, optima.empty() ? 1 : 0)) {
+    mode.used = matches.All();
+    mode.mixture.scale = prior.estimates_scale ? StartScale(matches, mode) : assumed_scale;
+    FitMode(matches, prior, kFewSteps, &mode);
+    if (mode.inverse_hessian.allFinite()) optima.push_back(std::move(mode));
   }
   return Distinct(std::move(optima), num_modes);
 }
