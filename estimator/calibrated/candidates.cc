@@ -14,9 +14,7 @@ namespace {
 constexpr int kFewSteps = 3, kMostSteps = 15;
 constexpr int kMatchesOfCandidates = 192;  // that refine and rank the candidates; a whole number of blocks
 constexpr int kFirstMatches = 128;         // that a first scale is estimated from
-constexpr int kCheiralityBlocks =
-    32;                             // matches that decide on which side the cameras are, in blocks of eight
-constexpr double kSameMode = 25.0;  // squared standard deviations
+constexpr int kCheiralityBlocks = 32;      // of matches: decide on which side the cameras are
 
 void SortByLikelihood(std::vector<Mode>* modes) {
   std::stable_sort(modes->begin(), modes->end(),

@@ -12,8 +12,11 @@ namespace rcme {
 // (SumCheirality).
 RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 
-// Every candidate is refined by a few steps; those that reach a known mode are dropped, and the best
-// `num_modes` go to their optimum. The most likely first; empty where none converges.
+// Every candidate is refined by a few steps at a wide scale on the first matches. The best distinct ones go
+// to their optimum by all matches, half of them as ranked at the assumed scale, half (where sigma is
+// estimated) as ranked at the wide one and begun at the scale that suits them; one that reaches a known mode
+// is dropped. Returned are at most `num_modes`, the most likely first; where none has an optimum, the best
+// after a few steps; none where no Hessian can be inverted.
 std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<ScoredEssential>& candidates, size_t num_modes);
 

@@ -10,9 +10,9 @@
 namespace rcme {
 namespace {
 
-constexpr int kMostSteps = 20;
-constexpr double kPlanarShare =
-    0.6;  // of a mode's right matches near one plane: its other motion is looked at
+constexpr int kFewSteps = 3, kMostSteps = 20;
+// Of a mode's right matches near one plane: its other motion is looked at.
+constexpr double kPlanarShare = 0.6;
 
 class ModeList {
  public:
@@ -54,6 +54,8 @@ class ModeList {
     Mode mode = modes_[i].mode;
     mode.pose = *other;
     mode.origin = ModeOrigin::kTwistedPair;
+    FitMode(matches_, prior_, kFewSteps, &mode);
+    if (Knows(mode)) return;
     if (FitMode(matches_, prior_, kMostSteps, &mode) && !Knows(mode)) Add(std::move(mode));
   }
   // The likelihood's optimum for the other sign of t is not sought: only c(z) tells the two apart.

@@ -15,9 +15,9 @@ struct ExplainedMode {
   Explanation explanation;
 };
 
-// Every mode with what it says of the matches, then, of those that explain at least half of what the best
-// does, the leverage branches, the other motion of its plane and each of these the other way; those only that
-// explain more than five matches.
+// Every mode with what it says of the matches. Three kinds are then added in turn, each for the modes so far
+// that explain at least half as many matches as the one that explains the most: leverage branches, the other
+// motion of a plane, and the other way along t. Only modes that explain more than five matches are kept.
 std::vector<ExplainedMode> ExplainMatches(const MotionProblem& problem, const MatchBlocks& matches,
                                           const MixturePrior& prior, std::vector<Mode> modes);
 

@@ -4,8 +4,7 @@
 //
 //   r   signed Sampson residual g / |J|, in units of the assumed sigma
 //   z   how far in front of both cameras the match lies, in standard deviations of its parallax; c lets
-//   matches
-//       behind a camera be explained as noise as far as they are within it
+//       matches behind a camera be explained as noise as far as they are within it
 //   f   Student's density with an odd number of degrees of freedom 2k - 1, C (1 + u^2 / (2k - 1))^-k
 //   s   scale of the right matches' residuals, in units of the assumed sigma
 //   w   share of right matches

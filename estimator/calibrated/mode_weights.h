@@ -28,9 +28,9 @@ double ModeLogOdds(const Contrast& a_against_b, double log_det_ratio, double num
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background);
 inline constexpr double kSearchNats = 22.0;
 
-// Whether b explains so many matches that a does not, that they are a motion of their own: an object that
-// moves, or the scene behind it. More than the five that any motion may explain, and the search, give by
-// chance.
+// Whether b is a motion of its own, an object that moves or the scene behind it: it explains more matches
+// that a does not than chance and the search give any motion, and the two share fewer matches than either
+// explains alone.
 bool IsSecondMotion(const Contrast& a_against_b);
 
 // Log-odds that a second motion is the camera's: log(odds (num_second / num_answer)^3), a prior; the

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kRefits = 5;
 constexpr size_t kMostSamples = 128;  // matches that the plane is sought in; their order means nothing
-constexpr double kPlaneBound =
-    3.0;  // standard deviations of the parallax within which a match is of the plane
+// Standard deviations of the parallax within which a match is of the plane.
+constexpr double kPlaneBound = 3.0;
 
 struct DepthSample {
   Eigen::Vector3d ray1;

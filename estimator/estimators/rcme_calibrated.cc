@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "estimator/calibrated/candidates.h"
+#include "estimator/calibrated/direction_posterior.h"
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/mode_covariance.h"
@@ -18,7 +19,13 @@ namespace rcme {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kNegligibleWeight = 1e-9;
+constexpr double kNegligibleWeight = 1e-5;
+// Of a mode whose observed curvature is not worth ten passes over the matches.
+constexpr double kSmallWeight = 0.01;
+// Parallax in standard deviations of its noise (UsualDepthInNoise) below which the direction is not normal.
+constexpr double kLowParallax = 6.0;
+constexpr int kMostSteps = 15;
+constexpr double kSettled = 0.8;  // a direction that is at least so likely to be within the bounds stays
 constexpr double kNotableWeight = 1e-4;  // of a mode that is reported
 
 // The matches in an order that means nothing: order[i] is the index of the i-th.
@@ -160,7 +167,7 @@ class RcmeCalibrated : public MotionEstimator {
     const HypothesisSearch search = SearchHypotheses(matches, score_matches, options_, rng);
     std::vector<Mode> found =
         FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
-    const std::vector<ExplainedMode> modes = ExplainMatches(shuffled, matches, prior, std::move(found));
+    std::vector<ExplainedMode> modes = ExplainMatches(shuffled, matches, prior, std::move(found));
     MotionEstimate estimate;
     estimate.counts = search.counts;
     const int num_solved = search.counts.num_hypotheses - search.counts.num_degenerate_samples;
@@ -172,7 +179,9 @@ class RcmeCalibrated : public MotionEstimator {
       return estimate;
     }
     const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
-    const Verdict verdict = Judge(shuffled, matches, modes, weights, rng);
+    const std::optional<double> direction_mass =
+        SettleDirection(shuffled, matches, prior, &modes[weights.answer]);
+    const Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, rng);
     FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
     FillMatches(modes[weights.answer].explanation, order, &estimate);
     FillOtherModes(modes, weights, &estimate);
@@ -189,22 +198,44 @@ class RcmeCalibrated : public MotionEstimator {
     return {kRadPerDeg * options_.max_rotation_error_deg, kRadPerDeg * options_.max_direction_error_deg};
   }
 
+  // Where the parallax is hardly more than the noise: moves the answer to where its direction is more
+  // probable; the probability that the direction is within the bounds of the answer's.
+  std::optional<double> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
+                                        const MixturePrior& prior, ExplainedMode* answer) const {
+    if (UsualDepthInNoise(answer->explanation) > kLowParallax) return std::nullopt;
+    const double bound = Bounds().direction_rad;
+    DirectionPosterior posterior = PosteriorOfDirection(problem, *answer, answer->mode.pose.t, bound);
+    if (posterior.mass_within > kSettled) return posterior.mass_within;
+    ExplainedMode moved{posterior.best, {}};
+    if (!FitMode(matches, prior, kMostSteps, &moved.mode)) return posterior.mass_within;
+    moved.explanation = Explain(matches, moved.mode);
+    if (moved.explanation.num_explained <= 5) return posterior.mass_within;
+    const double mass = PosteriorOfDirection(problem, moved, moved.mode.pose.t, bound).mass_within;
+    if (mass <= posterior.mass_within) return posterior.mass_within;
+    *answer = std::move(moved);
+    return mass;
+  }
+
   // The covariance is the second moment, about the answer, of the modes within the bounds.
   Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches,
                 const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
-                RandomStream& rng) const {
-    const RelativePose& pose = modes[weights.answer].mode.pose;
+                const std::optional<double>& direction_mass, RandomStream& rng) const {
+    const ExplainedMode& answer = modes[weights.answer];
+    const RelativePose& pose = answer.mode.pose;
     double within = 0.0, success = 0.0;
     Verdict verdict;
     for (size_t i = 0; i < modes.size(); ++i) {
       const double weight = weights.of_modes[i];
       const Mode& mode = modes[i].mode;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
-      const Matrix5d curvature = InverseOfObserved(matches, mode);
+      const bool is_exact = weight > kSmallWeight || i == weights.answer;
+      const Matrix5d curvature = is_exact ? InverseOfObserved(matches, mode) : mode.inverse_hessian;
       // Along a direction that the noise seems to determine (the observed curvature is below that of the
       // residuals' first derivatives), the score varies as the latter says: H_obs^-1 H H_obs^-1.
       const Matrix5d reach = curvature * mode.hessian * curvature;
-      success += weight * MassWithin(pose, Bounds(), mode.pose, reach, rng);
+      success += weight * (direction_mass && !weights.is_second_motion[i]
+                               ? *direction_mass
+                               : MassWithin(pose, Bounds(), mode.pose, reach, rng));
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
       verdict.pose_cov += weight * (CovarianceOf(problem, modes[i], curvature) + away * away.transpose());

@@ -1,16 +1,15 @@
 // rcme_calibrated: RCME with what its propagated uncertainty is for, the probability that the answer is
 // wrong.
 //
-//   1  hypotheses      calibrated/hypothesis_search.h    five-point samples, ranked by a soft score
-//   2  modes           calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h), the
-//   noise level
-//                                                        and the share of right matches among its parameters
-//   3  branches        calibrated/leverage_branches.h    fits without single matches of large influence
-//   4  twisted pair    calibrated/twisted_pair.h         the other motion of a plane; and every mode the
-//   other way 5  contrast        calibrated/contrast.h             which mode explains more where they
-//   differ: the answer 6  odds            calibrated/mode_weights.h         of every other mode, of a second
-//   motion, of none 7  P(fail)         calibrated/failure_probability.h  the mass of all modes beyond the
-//   failure bounds 8  covariance      calibrated/mode_covariance.h      of the modes within the bounds
+//   1  hypotheses    calibrated/hypothesis_search.h    five-point samples, ranked by a soft score
+//   2  modes         calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h)
+//   3  branches      calibrated/leverage_branches.h    fits without single matches of large influence
+//   4  twisted pair  calibrated/twisted_pair.h         the other motion of a plane; every mode the other way
+//   5  contrast      calibrated/contrast.h             which of two modes explains more where they differ
+//   6  odds          calibrated/mode_weights.h         of the other modes, a second motion, no motion
+//   7  P(fail)       calibrated/failure_probability.h  the mass of all modes beyond the failure bounds
+//                    calibrated/direction_posterior.h  where the parallax is hardly more than the noise
+//   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds
 #pragma once
 
 #include <memory>

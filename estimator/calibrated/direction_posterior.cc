@@ -1,0 +1,248 @@
+#include "estimator/calibrated/direction_posterior.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMostMatches = 256;
+// Axes about a centre: rings from 0 to 90 deg, with an edge at the bound.
+constexpr int kInnerRings = 4, kOuterRings = 6, kAzimuths = 10;
+constexpr int kSteps = 3;
+constexpr double kShareWrong = 0.02;                    // of the matches that the mode explains
+constexpr double kFirstNear = 0.1, kLeastNear = 0.005;  // share of matches with a parallax of any size
+constexpr double kBand = 6.0;  // standard deviations across that a mode's matches lie within
+constexpr double kRootTwoPi = 2.5066282746310002;
+
+struct Displacement {
+  size_t match;           // its index
+  Eigen::Vector3d a, d;   // unit ray of camera 1 in camera 2's frame; that of camera 2 less it, across a
+  double noise_variance;  // s^2 over the weight of its residual, rad^2
+};
+
+struct DisplacementSet {
+  std::vector<Displacement> matches;
+  double all_over_used = 1.0;  // of the matches
+  double image_rad = 1.0;      // extent of image 2, which a wrong match's displacement is uniform over
+};
+
+DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode& mode) {
+  const MixtureParameters& m = mode.mode.mixture;
+  DisplacementSet set;
+  const double sigma_px = problem.sigma_px * m.scale / m.noise.scale_of_gaussian;
+  const double inverse_f2 = 1.0 / (problem.camera2.fx * problem.camera2.fy);
+  const double inverse_f1 = 1.0 / (problem.camera1.fx * problem.camera1.fy);
+  const double noise_variance = sigma_px * sigma_px * (inverse_f1 + inverse_f2);
+  for (size_t i = 0; i < problem.matches.size() && set.matches.size() < kMostMatches; ++i) {
+    const Explanation& e = mode.explanation;
+    if (e.probability[i] < 0.5) continue;
+    const Eigen::Vector3d a = mode.mode.pose.R * problem.camera1.Ray(problem.matches[i].x1_px).normalized();
+    const Eigen::Vector3d b = problem.camera2.Ray(problem.matches[i].x2_px).normalized();
+    const double weight = std::min(NoiseWeight(m.noise, e.terms.residual[i] / m.scale), 1.0);
+    set.matches.push_back({i, a, b - a.dot(b) * a, noise_variance / (weight * e.probability[i])});
+  }
+  const auto used = static_cast<double>(set.matches.size());
+  set.all_over_used = std::max(mode.explanation.num_explained / std::max(used, 1.0), 1.0);
+  set.image_rad = std::sqrt(problem.camera2.width * problem.camera2.height * inverse_f2);
+  return set;
+}
+
+// A displacement's parts along and across the epipolar line of a direction.
+struct Parts {
+  Eigen::Vector3d unit_along, unit_across;
+  double sin, along, across;
+};
+Parts PartsOf(const Eigen::Vector3d& direction, const Displacement& match) {
+  const Eigen::Vector3d e = direction - direction.dot(match.a) * match.a;
+  Parts parts;
+  parts.sin = std::max(e.norm(), 1e-9);
+  parts.unit_along = e / parts.sin;
+  parts.unit_across = match.a.cross(parts.unit_along);
+  parts.along = parts.unit_along.dot(match.d);
+  parts.across = parts.unit_across.dot(match.d);
+  return parts;
+}
+
+double Quantile(double share, std::vector<double>* values) {
+  if (values->empty()) return 0.0;
+  const auto at = values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size()));
+  std::ranges::nth_element(*values, at);
+  return *at;
+}
+
+// The logarithm of a product of factors of at least one, without a logarithm of each.
+class LogProduct {
+ public:
+  void MultiplyBy(double factor) {
+    product_ *= factor;
+    if (product_ < 1e100) return;
+    log_ += std::log(product_);
+    product_ = 1.0;
+  }
+  double Log() const { return log_ + std::log(product_); }
+
+ private:
+  double log_ = 0.0, product_ = 1.0;
+};
+
+struct AxisFit {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  Eigen::Vector4d x = Eigen::Vector4d::Zero();  // w, m
+  double variance = 0.0;                        // v
+  double near = kFirstNear;
+  double log_likelihood = -std::numeric_limits<double>::infinity();
+  double mean_in_sd = 0.0;  // m / sd
+};
+
+// m by the median, v by the median deviation.
+AxisFit FirstFit(const std::vector<Parts>& parts) {
+  AxisFit fit;
+  std::vector<double> values;
+  for (const Parts& p : parts) values.push_back(p.along / p.sin);
+  fit.x(3) = Quantile(0.5, &values);
+  for (double& value : values) value = std::abs(value - fit.x(3));
+  fit.variance = std::pow(1.4826 * Quantile(0.5, &values), 2);
+  return fit;
+}
+
+// A displacement under a fit: what is left of it along the line, and its density if its inverse depth is of
+// the most (far), if it is of any size (near) and if the match is wrong; sum to the density of all.
+struct Rest {
+  double along, along_variance, far, near, wrong;
+  double All() const { return far + near + wrong; }
+};
+Rest RestOf(const DisplacementSet& set, const Parts& p, double noise_variance, const AxisFit& fit) {
+  Rest rest;
+  const double across = p.across + fit.x.head<3>().dot(p.unit_along);
+  rest.along = p.along - fit.x.head<3>().dot(p.unit_across) - fit.x(3) * p.sin;
+  rest.along_variance = noise_variance + fit.variance * p.sin * p.sin;
+  const double noise_rad = std::sqrt(noise_variance);
+  const double law_across = std::exp(-0.5 * across * across / noise_variance) / (kRootTwoPi * noise_rad);
+  const double law_along = std::exp(-0.5 * rest.along * rest.along / rest.along_variance) /
+                           (kRootTwoPi * std::sqrt(rest.along_variance));
+  rest.far = (1.0 - kShareWrong - fit.near) * law_across * law_along;
+  rest.near = fit.near * law_across / set.image_rad;
+  rest.wrong = kShareWrong / (kBand * noise_rad * set.image_rad);
+  return rest;
+}
+
+// One step of expectation-maximisation.
+AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const AxisFit& old) {
+  AxisFit fit;
+  fit.direction = old.direction;
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d moment = Eigen::Vector4d::Zero();
+  LogProduct likelihood;
+  double squares = 0.0, fourths = 0.0, sum_near = 0.0;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const Parts& p = parts[i];
+    const double noise = set.matches[i].noise_variance, sin2 = p.sin * p.sin;
+    const Rest rest = RestOf(set, p, noise, old);
+    const double all = rest.All(), far = rest.far / all, near = rest.near / all;
+    likelihood.MultiplyBy(all / rest.wrong);
+    sum_near += near;
+    Eigen::Vector4d by_across, by_along;
+    by_across << -p.unit_along, 0.0;
+    by_along << p.unit_across, p.sin;
+    const double w_across = (far + near) / noise, w_along = far / rest.along_variance;
+    information += w_across * by_across * by_across.transpose() + w_along * by_along * by_along.transpose();
+    moment += w_across * p.across * by_across + w_along * p.along * by_along;
+    const double share = far * sin2 / (rest.along_variance * rest.along_variance);
+    squares += share * (rest.along * rest.along - noise);
+    fourths += share * sin2;
+  }
+  const Eigen::LDLT<Eigen::Matrix4d> ldlt(information);
+  fit.x = ldlt.solve(moment);
+  if (!fit.x.allFinite()) return {};
+  fit.variance = fourths > 0.0 ? std::max(squares / fourths, 0.0) : 0.0;
+  fit.near = std::clamp(sum_near / static_cast<double>(parts.size()), kLeastNear, 1.0 - 2.0 * kShareWrong);
+  const double log_det = ldlt.vectorD().array().max(1e-300).log().sum();
+  fit.log_likelihood = set.all_over_used * likelihood.Log() - 0.5 * log_det;
+  const double variance_of_mean = ldlt.solve(Eigen::Vector4d::Unit(3))(3) / set.all_over_used;
+  fit.mean_in_sd = fit.x(3) / std::sqrt(std::max(variance_of_mean, 1e-300));
+  return fit;
+}
+
+// The model of the header at one direction, with a share of wrong matches, whose displacements are uniform.
+AxisFit FitAxis(const DisplacementSet& set, const Eigen::Vector3d& direction) {
+  std::vector<Parts> parts;
+  parts.reserve(set.matches.size());
+  for (const Displacement& match : set.matches) parts.push_back(PartsOf(direction, match));
+  AxisFit fit = FirstFit(parts);
+  fit.direction = direction;
+  for (int step = 0; step < kSteps; ++step) fit = Step(set, parts, fit);
+  return fit;
+}
+
+double NormalCdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+struct WeightedAxis {
+  double angle;     // from the centre to the axis, rad, at most pi / 2
+  double log_area;  // of its part of the sphere
+  AxisFit fit;
+};
+
+std::vector<WeightedAxis> FitAxes(const DisplacementSet& set, const Eigen::Vector3d& centre, double edge) {
+  const Eigen::Vector3d u = centre.unitOrthogonal(), v = centre.cross(u);
+  std::vector<WeightedAxis> axes;
+  const auto add_rings = [&](double from, double to, int count) {
+    for (int ring = 0; ring < count; ++ring) {
+      const double low = from + (to - from) * ring / count, high = from + (to - from) * (ring + 1) / count;
+      const double angle = 0.5 * (low + high);
+      for (int k = 0; k < kAzimuths; ++k) {
+        const double azimuth = 2.0 * std::numbers::pi * (k + 0.5 * (ring % 2)) / kAzimuths;
+        const Eigen::Vector3d direction =
+            std::cos(angle) * centre + std::sin(angle) * (std::cos(azimuth) * u + std::sin(azimuth) * v);
+        axes.push_back({angle, std::log(std::cos(low) - std::cos(high)), FitAxis(set, direction)});
+      }
+    }
+  };
+  add_rings(0.0, edge, kInnerRings);
+  add_rings(edge, 0.5 * std::numbers::pi, kOuterRings);
+  return axes;
+}
+
+}  // namespace
+
+double UsualDepthInNoise(const Explanation& explanation) {
+  std::vector<double> depths;
+  for (size_t i = 0; i < explanation.probability.size(); ++i) {
+    if (explanation.probability[i] > 0.5) depths.push_back(explanation.terms.depth[i]);
+  }
+  return Quantile(0.8, &depths);
+}
+
+DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const ExplainedMode& mode,
+                                        const Eigen::Vector3d& centre, double angle_rad) {
+  constexpr double kHalfPi = 0.5 * std::numbers::pi;
+  const double edge = angle_rad < kHalfPi ? angle_rad : std::max(std::numbers::pi - angle_rad, 1e-3);
+  const DisplacementSet set = Displacements(problem, mode);
+  const std::vector<WeightedAxis> axes = FitAxes(set, centre, std::min(edge, kHalfPi - 1e-3));
+  const auto by_likelihood = [](const WeightedAxis& a) { return a.fit.log_likelihood; };
+  const AxisFit& best = std::ranges::max_element(axes, {}, by_likelihood)->fit;
+  double within = 0.0, total = 0.0;
+  for (const WeightedAxis& axis : axes) {
+    const double weight = std::exp(axis.fit.log_likelihood - best.log_likelihood + axis.log_area);
+    const double ahead = weight * NormalCdf(axis.fit.mean_in_sd);
+    total += weight;
+    if (axis.angle <= angle_rad) within += ahead;
+    if (std::numbers::pi - axis.angle <= angle_rad) within += weight - ahead;
+  }
+  DirectionPosterior posterior{total > 0.0 ? within / total : 0.0, mode.mode};
+  posterior.best.pose = {RotationFromVector(best.x.head<3>()) * mode.mode.pose.R,
+                         best.x(3) < 0.0 ? Eigen::Vector3d(-best.direction) : best.direction};
+  for (const Displacement& match : set.matches) {
+    const Rest rest = RestOf(set, PartsOf(best.direction, match), match.noise_variance, best);
+    if (rest.far + rest.near > rest.wrong) continue;
+    posterior.best.used[match.match / kBlockSize] &=
+        static_cast<std::uint8_t>(~(1u << (match.match % kBlockSize)));
+  }
+  return posterior;
+}
+
+}  // namespace rcme
