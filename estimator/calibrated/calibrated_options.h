@@ -17,6 +17,17 @@ enum class CovarianceKind {
   kSandwich,     // HC3: the residuals themselves give their variances
 };
 
+// Steps that can be left out, to see what they are worth.
+enum class CalibratedStep {
+  kNone,
+  kSplit,
+  kInfluence,
+  kBranches,
+  kTwistedPair,
+  kOppositeWay,
+  kDirectionPosterior,
+};
+
 // Options of rcme_calibrated.
 struct CalibratedOptions {
   int min_samples = 64, max_samples = 10000;
@@ -32,6 +43,7 @@ struct CalibratedOptions {
   // Odds that a second motion which explains as many matches as the answer is the camera's; see
   // mode_weights.h.
   double second_motion_odds = 0.6;
+  CalibratedStep leave_out = CalibratedStep::kNone;
   // Standard deviations of the intrinsics, of both cameras independently.
   double focal_sd = 0.0;               // relative
   double principal_point_sd_px = 0.0;  // per coordinate

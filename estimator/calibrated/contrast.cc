@@ -39,27 +39,26 @@ struct Moments {
 
 Contrast CompareModes(const Explanation& a, const Explanation& b, double background) {
   Contrast contrast;
-  std::vector<size_t> only_one, only_b;
+  std::vector<size_t> only_one;
   Moments shared;
   for (size_t i = 0; i < a.probability.size(); ++i) {
     const bool by_a = a.probability[i] > 0.5, by_b = b.probability[i] > 0.5;
+    if (!by_a && !by_b) continue;
+    const double ratio = std::log(a.left_out_density[i] / b.left_out_density[i]);
+    contrast.num_better_a += by_a && ratio > 0.0;
+    contrast.num_better_b += by_b && ratio < 0.0;
+    contrast.num_clearly_a += by_a && ratio > kClearly;
+    contrast.num_clearly_b += by_b && ratio < -kClearly;
     if (by_a && by_b) {
-      ++contrast.num_shared;
-      shared.Add(std::log(a.left_out_density[i] / b.left_out_density[i]));
-    } else if (by_a || by_b) {
+      shared.Add(ratio);
+    } else {
       only_one.push_back(i);
-      if (by_b) only_b.push_back(i);
-      ++(by_a ? contrast.num_only_a : contrast.num_only_b);
     }
   }
   const double share_a = ShareAmong(only_one, a, background), share_b = ShareAmong(only_one, b, background);
   for (const size_t i : only_one) {
     contrast.exclusive += std::log((share_a * a.left_out_density[i] + (1.0 - share_a) * background) /
                                    (share_b * b.left_out_density[i] + (1.0 - share_b) * background));
-  }
-  const double share = ShareAmong(only_b, b, background);
-  for (const size_t i : only_b) {
-    contrast.evidence_only_b += std::log(share * b.left_out_density[i] / background + (1.0 - share));
   }
   contrast.shared = shared.sum;
   contrast.shared_variance = shared.Scatter();

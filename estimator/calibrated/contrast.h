@@ -14,10 +14,11 @@ struct Contrast {
   double exclusive = 0.0;  // log-likelihood of a minus that of b over matches that only one explains, nats
   double shared = 0.0;     // the same over matches that both explain
   double shared_variance = 0.0;  // of `shared`: its terms' sum of squares about their mean
-  int num_only_a = 0, num_only_b = 0, num_shared = 0;
-  // Of b, over the matches that only it explains, against their being wrong, nats.
-  double evidence_only_b = 0.0;
+  // Matches that a explains, and better than b; and the other way round. Of these the ones by kClearly.
+  int num_better_a = 0, num_better_b = 0, num_clearly_a = 0, num_clearly_b = 0;
 };
+
+inline constexpr double kClearly = 5.0;  // nats; a residual of 3.2 standard deviations against none
 
 // `background`: density of a wrong match's residual, per unit of the assumed sigma, the same for both.
 Contrast CompareModes(const Explanation& a, const Explanation& b, double background);

@@ -4,20 +4,39 @@
 
 #include "estimator/calibrated/candidates.h"
 #include "estimator/calibrated/hypothesis_search.h"
+#include "estimator/calibrated/influence.h"
 #include "estimator/calibrated/leverage_branches.h"
 #include "estimator/calibrated/twisted_pair.h"
 
 namespace rcme {
 namespace {
 
+constexpr double kWrong = 0.5;
+// Where the motion follows so few matches, a large influence is nothing unusual.
+constexpr int kLeastExplained = 30;
+constexpr int kMostRounds = 3, kStepsWithout = 8;
 constexpr int kFewSteps = 3, kMostSteps = 20;
 // Of a mode's right matches near one plane: its other motion is looked at.
 constexpr double kPlanarShare = 0.6;
 
+// Takes the matches that are more likely wrong than right from those that the mode uses; whether there were
+// any.
+bool LeaveOutWrong(const std::vector<double>& wrong, Mode* mode) {
+  bool has_changed = false;
+  for (size_t i = 0; i < wrong.size(); ++i) {
+    const auto bit = static_cast<std::uint8_t>(1u << (i % kBlockSize));
+    if (wrong[i] < kWrong || !(mode->used[i / kBlockSize] & bit)) continue;
+    mode->used[i / kBlockSize] &= static_cast<std::uint8_t>(~bit);
+    has_changed = true;
+  }
+  return has_changed;
+}
+
 class ModeList {
  public:
-  ModeList(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior)
-      : problem_(problem), matches_(matches), prior_(prior) {}
+  ModeList(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
+           CalibratedStep leave_out)
+      : problem_(problem), matches_(matches), prior_(prior), leave_out_(leave_out) {}
 
   const std::vector<ExplainedMode>& modes() const { return modes_; }
   bool Knows(const Mode& mode, double standard_deviations = 5.0) const {
@@ -27,16 +46,33 @@ class ModeList {
   }
   // The modes that explain at least half as many matches as the one that explains the most.
   std::vector<size_t> Notable() const {
-    int most = 0;
-    for (const ExplainedMode& mode : modes_) most = std::max(most, mode.explanation.num_explained);
     std::vector<size_t> notable;
     for (size_t i = 0; i < modes_.size(); ++i) {
-      if (2 * modes_[i].explanation.num_explained >= most) notable.push_back(i);
+      if (2 * modes_[i].explanation.num_explained >= most_explained_) notable.push_back(i);
     }
     return notable;
   }
+  // Fits the mode anew without the matches that their influence shows to be wrong, as long as there are any;
+  // whether there were.
+  bool LeaveOutInfluential(Mode* mode, Explanation* explanation) const {
+    int round = 0;
+    for (; round < kMostRounds && explanation->num_explained >= kLeastExplained; ++round) {
+      Mode without = *mode;
+      if (!LeaveOutWrong(WrongByInfluence(*mode, *explanation), &without)) break;
+      if (!FitMode(matches_, prior_, kStepsWithout, &without)) break;
+      Explanation fewer = Explain(matches_, without);
+      if (2 * fewer.num_explained < explanation->num_explained) break;
+      *mode = std::move(without);
+      *explanation = std::move(fewer);
+    }
+    return round > 0;
+  }
   void Add(Mode mode) {
     Explanation explanation = Explain(matches_, mode);
+    const bool is_pruned =
+        leave_out_ != CalibratedStep::kInfluence && 2 * explanation.num_explained >= most_explained_;
+    if (is_pruned && LeaveOutInfluential(&mode, &explanation) && Knows(mode, 1.0)) return;
+    most_explained_ = std::max(most_explained_, explanation.num_explained);
     if (explanation.num_explained <= 5) return;  // as many follow any motion through them
     modes_.push_back({std::move(mode), std::move(explanation)});
   }
@@ -74,18 +110,26 @@ class ModeList {
   const MotionProblem& problem_;
   const MatchBlocks& matches_;
   const MixturePrior& prior_;
+  CalibratedStep leave_out_;
   std::vector<ExplainedMode> modes_;
+  int most_explained_ = 0;
 };
 
 }  // namespace
 
 std::vector<ExplainedMode> ExplainMatches(const MotionProblem& problem, const MatchBlocks& matches,
-                                          const MixturePrior& prior, std::vector<Mode> modes) {
-  ModeList list(problem, matches, prior);
+                                          const MixturePrior& prior, const CalibratedOptions& options,
+                                          std::vector<Mode> modes) {
+  using Step = CalibratedStep;
+  ModeList list(problem, matches, prior, options.leave_out);
   for (Mode& mode : modes) list.Add(std::move(mode));
-  for (const size_t i : list.Notable()) list.AddBranches(i);
-  for (const size_t i : list.Notable()) list.AddTwistedPair(i);
-  for (const size_t i : list.Notable()) list.AddOppositeWay(i);
+  const auto for_notable = [&](Step step, auto add) {
+    if (options.leave_out == step) return;
+    for (const size_t i : list.Notable()) add(i);
+  };
+  for_notable(Step::kBranches, [&](size_t i) { list.AddBranches(i); });
+  for_notable(Step::kTwistedPair, [&](size_t i) { list.AddTwistedPair(i); });
+  for_notable(Step::kOppositeWay, [&](size_t i) { list.AddOppositeWay(i); });
   return list.modes();
 }
 

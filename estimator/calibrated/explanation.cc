@@ -32,15 +32,16 @@ Explanation Explain(const MatchBlocks& matches, const Mode& mode) {
     e.probability[i] = inlier / (inlier + outlier);
     e.num_explained += e.probability[i] > 0.5;
     e.left_out_density[i] = e.inlier_density[i];
+    if (e.probability[i] < 1e-3) continue;
     const bool is_used = mode.used[i / kBlockSize] >> (i % kBlockSize) & 1;
-    if (!is_used || e.probability[i] < 1e-3) continue;
     Vector5d J;
     for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = e.terms.derivative[k][i];
     const double information = e.probability[i] * NoiseWeight(m.noise, u) / (m.scale * m.scale);
-    const double h = std::clamp(information * J.dot(mode.inverse_hessian * J), 0.0, 1.0);
-    e.leverage[i] = h;
+    const double a = information * J.dot(mode.inverse_hessian * J);
+    // Of a match that the fit does not use: what it would have if it did.
+    const double h = e.leverage[i] = is_used ? std::min(a, 1.0) : a / (1.0 + a);
     const double left = std::sqrt(std::max(1.0 - h, 1e-4));
-    e.left_out_density[i] = NoiseDensity(m.noise, u / left) * left * in_front;
+    e.left_out_density[i] = NoiseDensity(m.noise, is_used ? u / left : u * left) * left * in_front;
   }
   return e;
 }

@@ -12,15 +12,16 @@ struct Explanation {
   MatchTermLists terms;
   std::vector<double> inlier_density;  // f(r / s) c(z / s) / s
   std::vector<double> probability;     // that the match is right
-  // p v J H^-1 J' / s^2, at most 1: the share of a match's residual that the motion follows.
+  // a = p v J H^-1 J' / s^2, at most 1: the share of a match's residual that the motion follows; a / (1 + a),
+  // what it would be, of a match that the mode does not use.
   std::vector<double> leverage;
-  // The density of the residual that the motion fitted without the match would leave, r / (1 - h), whose
-  // standard deviation is s / sqrt(1 - h).
+  // The density of the residual r' that the motion fitted without the match leaves, whose standard deviation
+  // is s / sqrt(1 - h): r' = r / (1 - h), or r where the mode does not use the match.
   std::vector<double> left_out_density;
   int num_explained = 0;  // matches that are right with a probability of more than one half
 };
 
-// One entry per match; a match that the mode does not use is left out by definition.
+// One entry per match.
 Explanation Explain(const MatchBlocks& matches, const Mode& mode);
 
 // f(u) of the noise law.

@@ -30,8 +30,8 @@ double InlierShare(double score, int num_matches) { return score / (0.88 * num_m
 
 class Rounds {
  public:
-  Rounds(const MatchBlocks& matches, const ScoreMatches& score_matches, RandomStream& rng)
-      : matches_(matches), scores_(score_matches), rng_(rng) {}
+  Rounds(const MatchBlocks& matches, const ScoreMatches& score_matches, double soft_scale, RandomStream& rng)
+      : matches_(matches), scores_(score_matches), soft_scale_(soft_scale), rng_(rng) {}
 
   // Draws until `num_samples` are drawn in all, scores their models.
   void Draw(int num_samples) {
@@ -47,7 +47,7 @@ class Rounds {
         }
         RankedModel model;
         for (int i = 0; i < 9; ++i) model.F[i] = block_.F[i][lane];
-        model.first_score = model.score = scores_.SumScores(model.F, kSoftScale, 0, first_end);
+        model.first_score = model.score = scores_.SumScores(model.F, soft_scale_, 0, first_end);
         fresh_.push_back(model);
       }
     }
@@ -66,7 +66,7 @@ class Rounds {
         [](const RankedModel& a, const RankedModel& b) { return a.first_score > b.first_score; });
     for (size_t i = 0; i < count; ++i) {
       RankedModel& model = fresh_[i];
-      model.score += scores_.SumScores(model.F, kSoftScale, first_end, scores_.num_matches());
+      model.score += scores_.SumScores(model.F, soft_scale_, first_end, scores_.num_matches());
       best_score_ = std::max(best_score_, model.score);
       scored_.push_back(model);
     }
@@ -75,6 +75,7 @@ class Rounds {
 
   const MatchBlocks& matches_;
   const ScoreMatches& scores_;
+  const double soft_scale_;
   RandomStream& rng_;
   BlockSource<FivePoint> source_;
   HypothesisBlock block_;
@@ -125,8 +126,8 @@ std::vector<ScoredEssential> SelectDistinct(const std::vector<RankedModel>& mode
 }  // namespace
 
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
-                                  const CalibratedOptions& options, RandomStream& rng) {
-  Rounds rounds(matches, score_matches, rng);
+                                  const CalibratedOptions& options, RandomStream& rng, double soft_scale) {
+  Rounds rounds(matches, score_matches, soft_scale, rng);
   for (int num_samples = options.min_samples;;) {
     rounds.Draw(num_samples);
     const double needed = SamplesNeeded(InlierShare(rounds.best_score(), matches.num_matches()));

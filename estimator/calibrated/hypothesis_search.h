@@ -31,6 +31,7 @@ struct HypothesisSearch {
 // matches, whose order must not mean anything, and the best of a round on all. Returned are the best
 // `options.num_candidates` distinct ones, half of them far from all others.
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
-                                  const CalibratedOptions& options, RandomStream& rng);
+                                  const CalibratedOptions& options, RandomStream& rng,
+                                  double soft_scale = kSoftScale);
 
 }  // namespace rcme

@@ -13,7 +13,7 @@ namespace {
 // The assumed sigma counts as so many matches: enough that five matches, which every motion through them fits
 // exactly, do not drive the scale to zero; few enough that a sigma assumed wrongly by four does little harm.
 constexpr double kPriorMatches = 2.0;
-constexpr double kScaleRange = 16.0;  // s stays within this factor of 1
+constexpr double kScaleRange = 8.0;  // s stays within this factor of 1
 // A step may lower the likelihood by so much, nats: c(z) is not in the gradient, and may fall for a match
 // near an epipole.
 constexpr double kTolerance = 1.0;
@@ -91,6 +91,17 @@ bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_step
   mode->hessian = at.hessian;
   mode->inverse_hessian = llt.solve(Matrix5d::Identity());
   return decrement < kSmallDecrement && mode->inverse_hessian.allFinite();
+}
+
+void FitShares(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode) {
+  constexpr int kSteps = 5;
+  MixturePrior fixed = prior;
+  fixed.estimates_scale = false;
+  mode->mixture.inlier_ratio = 0.5;
+  for (int step = 0; step < kSteps; ++step) {
+    const MixtureSums sums = SumMixture(matches, matches.All(), mode->pose, mode->mixture);
+    mode->mixture = Updated(mode->mixture, sums, matches.num_matches(), fixed);
+  }
 }
 
 }  // namespace rcme

@@ -24,4 +24,8 @@ MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inl
 bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
              MixtureUpdate update = MixtureUpdate::kAll);
 
+// The share and the density of wrong matches among all matches, whichever the mode uses, at its motion and
+// scale.
+void FitShares(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode);
+
 }  // namespace rcme

@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <functional>
 
+#include "estimator/calibrated/influence.h"
+
 namespace rcme {
 namespace {
 
 // Of the observed curvature over that without the residuals' second derivatives. Less is noise: there the
 // likelihood has no optimum along that direction.
 constexpr double kLeastCurvature = 0.1;
+// Of ProbabilityWrong, which is twice too great for the many matches of a few percent.
+constexpr double kDoubt = 0.5;
 
 Vector5d DerivativeOf(const MatchTermLists& terms, size_t i) {
   Vector5d J;
@@ -50,7 +54,8 @@ Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode) {
 
 Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix5d& inverse) {
   const MixtureParameters& m = mode.mixture;
-  Matrix5d scores = Matrix5d::Zero(), geometry = Matrix5d::Zero();
+  Matrix5d scores = Matrix5d::Zero(), geometry = Matrix5d::Zero(), doubt = Matrix5d::Zero();
+  const std::vector<double> wrong = WrongByInfluence(mode, e);
   double sum_squares = 0.0, num_right = 0.0;
   for (size_t i = 0; i < e.probability.size(); ++i) {
     if (!(mode.used[i / kBlockSize] >> (i % kBlockSize) & 1)) continue;
@@ -61,12 +66,16 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
     const Matrix5d outer = J * J.transpose();
     scores += factor * factor * outer;
     geometry += e.probability[i] * outer;
+    const double kept = std::max(1.0 - e.leverage[i], 0.01);
+    const double information = e.probability[i] * NoiseWeight(m.noise, u);
+    doubt +=
+        kDoubt * wrong[i] * (psi * psi / (kept * kept) + information / kept) / (m.scale * m.scale) * outer;
     sum_squares += psi * psi / (m.scale * m.scale);
     num_right += e.probability[i];
   }
   const double freedom = std::max(num_right - 5.0, 1.0);
   const Matrix5d equal = sum_squares / freedom * geometry;
-  scores = GreaterOf(scores, equal);
+  scores = GreaterOf(scores, equal) + doubt;
   // From a root of the middle: few matches leave a direction so uncertain that rounding would make the
   // product indefinite.
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(freedom / std::max(freedom - 2.0, 1.0) * scores);

@@ -15,9 +15,11 @@ Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode);
 // H^-1 S H^-1 with S = sum (p psi / ((1 - h) s))^2 J'J, psi = v u: the residuals give their own variances,
 // and a residual with leverage h is smaller than its error by 1 - h (HC3, MacKinnon and White 1985). Where
 // along some direction the mean variance of all residuals gives a greater S, that one: few matches, that
-// decide, have a poor estimate of their own variance. Times k / (k - 2), k the degrees of freedom, as the
-// scale is estimated. 5x5 [rotation, direction], rad^2. The mode's inverse information where the result is
-// not finite.
+// decide, have a poor estimate of their own variance. Beside this what a match in doubt adds: that it is
+// wrong, with probability w (influence.h), moves the motion by H^-1 J' psi / ((1 - h) s) and takes its
+// information away, so that by the law of total variance S grows by w (psi^2 / (1 - h)^2 + p v / (1 - h)) /
+// s^2 J'J. Times k / (k - 2), k the degrees of freedom, as the scale is estimated. 5x5 [rotation, direction],
+// rad^2. The mode's inverse information where the result is not finite.
 Matrix5d SandwichCovariance(const Mode& mode, const Explanation& explanation,
                             const Matrix5d& inverse_of_observed);
 

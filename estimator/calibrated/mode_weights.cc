@@ -29,9 +29,7 @@ double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixtur
 
 bool IsSecondMotion(const Contrast& contrast) {
   constexpr int kLeastMatches = 12;
-  constexpr double kLeastNats = 40.0;  // 22 for five exact matches, the search, and a margin
-  return contrast.num_only_b >= kLeastMatches && contrast.evidence_only_b > kLeastNats &&
-         contrast.num_shared < std::min(contrast.num_only_a, contrast.num_only_b);
+  return contrast.num_clearly_a >= kLeastMatches && contrast.num_clearly_b >= kLeastMatches;
 }
 
 double SecondMotionLogOdds(double odds, int num_answer, int num_second) {

@@ -28,13 +28,12 @@ double ModeLogOdds(const Contrast& a_against_b, double log_det_ratio, double num
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background);
 inline constexpr double kSearchNats = 22.0;
 
-// Whether b is a motion of its own, an object that moves or the scene behind it: it explains more matches
-// that a does not than chance and the search give any motion, and the two share fewer matches than either
-// explains alone.
+// Whether the two are motions of their own, the camera's and an object's: either explains a dozen matches
+// clearly better than the other.
 bool IsSecondMotion(const Contrast& a_against_b);
 
-// Log-odds that a second motion is the camera's: log(odds (num_second / num_answer)^3), a prior; the
-// numbers are of the matches that each explains alone.
+// Log-odds that the second motion is the camera's: log(odds (num_second / num_answer)^3), a prior; the
+// numbers are of the matches that either explains better.
 double SecondMotionLogOdds(double odds, int num_answer, int num_second);
 
 }  // namespace rcme

@@ -27,6 +27,8 @@ class ModeComparison {
     return CompareModes(modes_[a].explanation, modes_[b].explanation, background);
   }
   double LogOdds(size_t a, size_t b, const Contrast& contrast) const {
+    if (IsSecondMotion(contrast))
+      return -SecondMotionLogOdds(1.0, contrast.num_better_a, contrast.num_better_b);
     return ModeLogOdds(contrast, log_dets_[b] - log_dets_[a],
                        0.5 * (modes_[a].explanation.num_explained + modes_[b].explanation.num_explained));
   }
@@ -37,10 +39,23 @@ class ModeComparison {
   std::vector<double> log_dets_;
 };
 
+constexpr size_t kMostRounds = 3;
+
+// Odds of three modes need not be transitive: gone through until no mode is more likely than the answer, at
+// most three times.
 size_t ChooseAnswer(const std::vector<ExplainedMode>& modes, const ModeComparison& comparison) {
   size_t answer = 0;
-  for (size_t i = 1; i < modes.size(); ++i) {
-    if (comparison.LogOdds(answer, i) < 0.0) answer = i;
+  for (size_t round = 0, num_beaten = 0; round < kMostRounds && num_beaten + 1 < modes.size(); ++round) {
+    num_beaten = 0;
+    for (size_t i = 0; i < modes.size(); ++i) {
+      if (i == answer || (round == 0 && i < answer)) continue;
+      if (comparison.LogOdds(answer, i) < 0.0) {
+        answer = i;
+        num_beaten = 0;
+      } else {
+        ++num_beaten;
+      }
+    }
   }
   return answer;
 }
@@ -72,11 +87,11 @@ ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBoun
   const ExplainedMode& answer = modes[weights.answer];
   for (size_t i = 0; i < modes.size(); ++i) {
     const Contrast contrast = comparison.Compare(weights.answer, i);
-    double log_odds = i == weights.answer ? 0.0 : -comparison.LogOdds(weights.answer, i, contrast);
     const bool is_second = i != weights.answer && IsSecondMotion(contrast);
+    double log_odds = i == weights.answer ? 0.0 : -comparison.LogOdds(weights.answer, i, contrast);
     if (is_second)
-      log_odds = std::max(log_odds, SecondMotionLogOdds(options.second_motion_odds, contrast.num_only_a,
-                                                        contrast.num_only_b));
+      log_odds =
+          SecondMotionLogOdds(options.second_motion_odds, contrast.num_better_a, contrast.num_better_b);
     weights.is_rival.push_back(!IsWithin(answer.mode.pose, bounds, modes[i].mode.pose));
     weights.is_second_motion.push_back(is_second);
     weights.of_modes.push_back(std::exp(std::min(log_odds, 0.0)));

@@ -18,7 +18,8 @@ struct ModeWeights {
   std::vector<bool> is_second_motion;  // explains many matches that the answer does not; its odds are a prior
 };
 
-// The answer is the mode that no other one is more likely than (ModeLogOdds), begun at the greatest
+// The answer is the mode that no other one is more likely than, by ModeLogOdds or, of two motions of their
+// own (IsSecondMotion), by the number of matches that either explains better; begun at the greatest
 // likelihood. Modes within `bounds` of it are the same motion found more than once: together they weigh as
 // much as it. The others are alike among themselves, too, so that their odds add up to less than their sum:
 // to (sum odds^2.5)^(1/2.5), the exponent from the regression of ModeLogOdds.

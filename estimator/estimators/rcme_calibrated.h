@@ -3,7 +3,11 @@
 //
 //   1  hypotheses    calibrated/hypothesis_search.h    five-point samples, ranked by a soft score
 //   2  modes         calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h)
-//   3  branches      calibrated/leverage_branches.h    fits without single matches of large influence
+//                    calibrated/split_mode.h           two motions in place of a compromise between them
+//   3  influence     calibrated/influence.h            without matches that decide by themselves: mostly
+//   wrong
+//                    calibrated/leverage_branches.h    fits without single ones of large influence that are
+//                    left
 //   4  twisted pair  calibrated/twisted_pair.h         the other motion of a plane; every mode the other way
 //   5  contrast      calibrated/contrast.h             which of two modes explains more where they differ
 //   6  odds          calibrated/mode_weights.h         of the other modes, a second motion, no motion

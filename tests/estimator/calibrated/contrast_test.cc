@@ -24,9 +24,10 @@ TEST(Contrast, OfAnExampleByHand) {
   const Explanation a = Explaining({.9, .9, .9, .9, .1, .1, .1}, {2.0, 1.0, 4.0, right, 0.0, 0.0, 7.0});
   const Explanation b = Explaining({.9, .9, .9, .1, .9, .9, .1}, {1.0, 1.0, 2.0, 0.0, right, right, 9.0});
   const Contrast contrast = CompareModes(a, b, q);
-  EXPECT_EQ(contrast.num_shared, 3);
-  EXPECT_EQ(contrast.num_only_a, 1);
-  EXPECT_EQ(contrast.num_only_b, 2);
+  EXPECT_EQ(contrast.num_better_a, 3);  // 0, 2 and 3; match 1 is a tie
+  EXPECT_EQ(contrast.num_better_b, 2);
+  EXPECT_EQ(contrast.num_clearly_a, 1);
+  EXPECT_EQ(contrast.num_clearly_b, 2);
   const double log2 = std::log(2.0);
   EXPECT_NEAR(contrast.shared, 2.0 * log2, 1e-12);
   // Terms log 2, 0, log 2 about their mean 2/3 log 2.
@@ -35,8 +36,6 @@ TEST(Contrast, OfAnExampleByHand) {
   const double of_a = std::log(share_a * 1e12 + 1.0 - share_a) + 2.0 * std::log(1.0 - share_a);
   const double of_b = 2.0 * std::log(share_b * 1e12 + 1.0 - share_b) + std::log(1.0 - share_b);
   EXPECT_NEAR(contrast.exclusive, of_a - of_b, 1e-9);
-  // Of b against none on its own two: the share among them is (2 + 1/2) / 3.
-  EXPECT_NEAR(contrast.evidence_only_b, 2.0 * std::log(2.5 / 3.0 * 1e12), 1e-9);
 }
 
 TEST(Contrast, TurnsOverWithTheModes) {
@@ -54,9 +53,9 @@ TEST(Contrast, TurnsOverWithTheModes) {
   EXPECT_NEAR(forth.exclusive, -back.exclusive, 1e-9);
   EXPECT_NEAR(forth.shared, -back.shared, 1e-9);
   EXPECT_NEAR(forth.shared_variance, back.shared_variance, 1e-9);
-  EXPECT_EQ(forth.num_only_a, back.num_only_b);
-  EXPECT_EQ(forth.num_only_b, back.num_only_a);
-  EXPECT_EQ(forth.num_shared, back.num_shared);
+  ASSERT_NE(forth.num_better_a, forth.num_better_b);
+  EXPECT_EQ(forth.num_better_a, back.num_better_b);
+  EXPECT_EQ(forth.num_better_b, back.num_better_a);
 }
 
 TEST(Contrast, OfAModeWithItselfIsNothing) {
@@ -64,8 +63,17 @@ TEST(Contrast, OfAModeWithItselfIsNothing) {
   const Contrast contrast = CompareModes(a, a, 0.1);
   EXPECT_EQ(contrast.exclusive, 0.0);
   EXPECT_EQ(contrast.shared, 0.0);
-  EXPECT_EQ(contrast.evidence_only_b, 0.0);
-  EXPECT_EQ(contrast.num_shared, 2);
+  EXPECT_EQ(contrast.num_better_a, 0);
+  EXPECT_EQ(contrast.num_better_b, 0);
+}
+
+TEST(Contrast, IsClearFromFiveNatsOn) {
+  const double more = std::exp(kClearly + 1e-9), less = std::exp(kClearly - 1e-9);
+  const Explanation a = Explaining({.9, .9, .9}, {more, less, more}),
+                    b = Explaining({.9, .9, .1}, {1.0, 1.0, 1.0});
+  EXPECT_EQ(CompareModes(a, b, 0.1).num_clearly_a, 2);
+  EXPECT_EQ(CompareModes(b, a, 0.1).num_clearly_b, 2);
+  EXPECT_EQ(CompareModes(b, a, 0.1).num_clearly_a, 0);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ ParallaxCase MakeParallax(std::uint32_t trial, int num_matches, double parallax_
   const double mean_inverse_depth = parallax_px / problem.camera1.fx;
   for (size_t i = 0; i < problem.matches.size(); ++i) {
     const Eigen::Vector3d ray = c.random.points_in_cam1[i] / c.random.points_in_cam1[i].z();
-    const double inverse_depth = mean_inverse_depth * rng.Uniform(0.3, 1.7);
+    const double inverse_depth = std::max(mean_inverse_depth * rng.Uniform(0.3, 1.7), 1e-9);
     problem.matches[i] =
         ProjectToBoth(ray / inverse_depth, c.random.pose_true, problem.camera1, problem.camera2);
   }

@@ -55,14 +55,20 @@ TEST(Explanation, LeveragesAddUpToTheFiveThatAMotionTakes) {
   }
 }
 
-TEST(Explanation, AMatchThatTheModeDoesNotUseHasNoInfluence) {
+// Of a match outside the fit the residual is its error and the fit's uncertainty: h = a / (1 + a) is the
+// leverage that it would have in the fit with it (Sherman and Morrison).
+TEST(Explanation, OfAMatchThatTheModeDoesNotUseIsAPrediction) {
   FittedMode f = FitScene(30, 0.5, 0.0, 1);
   const Explanation with = Explain(f.matches, f.mode);
   f.mode.used[1] = 0b11111011;  // without match 10
   const Explanation without = Explain(f.matches, f.mode);
-  ASSERT_GT(with.leverage[10], 0.0);
-  EXPECT_EQ(without.leverage[10], 0.0);
-  EXPECT_EQ(without.left_out_density[10], without.inlier_density[10]);
+  const double a = with.leverage[10], h = a / (1.0 + a);
+  ASSERT_GT(a, 0.01);
+  EXPECT_NEAR(without.leverage[10], h, 1e-12);
+  const double u = without.terms.residual[10] / f.mode.mixture.scale, kept = std::sqrt(1.0 - h);
+  const double in_front = without.inlier_density[10] / NoiseDensity(f.mode.mixture.noise, u);
+  EXPECT_NEAR(without.left_out_density[10], NoiseDensity(f.mode.mixture.noise, u * kept) * kept * in_front,
+              1e-12);
   EXPECT_EQ(without.probability[10], with.probability[10]);
   EXPECT_EQ(without.leverage[11], with.leverage[11]);
 }

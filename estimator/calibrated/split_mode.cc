@@ -1,0 +1,113 @@
+#include "estimator/calibrated/split_mode.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "estimator/calibrated/candidates.h"
+#include "estimator/calibrated/explanation.h"
+#include "estimator/calibrated/hypothesis_search.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kMostSteps = 15, kShareSteps = 6, kMostSamples = 512, kCandidates = 8;
+constexpr double kTightScale = 1.5;   // of the soft score, in units of the assumed sigma
+constexpr size_t kLeastMatches = 12;  // of a second motion
+constexpr double kLeastGain = 40.0;   // nats: the search for the second motion, its five parameters, a margin
+
+// The matches that the mode explains, or does not.
+std::vector<size_t> Unexplained(const Explanation& explanation) {
+  std::vector<size_t> found;
+  for (size_t i = 0; i < explanation.probability.size(); ++i) {
+    if (!(explanation.probability[i] > 0.5)) found.push_back(i);
+  }
+  return found;
+}
+
+void Leave(const std::vector<size_t>& only, MatchMask* mask) {
+  std::ranges::fill(*mask, std::uint8_t{0});
+  for (const size_t i : only) (*mask)[i / kBlockSize] |= static_cast<std::uint8_t>(1u << (i % kBlockSize));
+}
+
+// The best motion of some of the matches at the assumed scale. Neither the samples are ranked nor the
+// candidates refined at a wider one, where a compromise between two motions would win.
+std::optional<Mode> MotionOf(const MotionProblem& problem, const MatchBlocks& matches,
+                             const MixturePrior& fixed, const std::vector<size_t>& some, RandomStream& rng) {
+  MotionProblem part = problem;
+  part.matches.clear();
+  for (const size_t i : some) part.matches.push_back(problem.matches[i]);
+  const MatchBlocks blocks(part);
+  CalibratedOptions options;
+  options.max_samples = kMostSamples;
+  options.num_candidates = kCandidates;
+  const HypothesisSearch search = SearchHypotheses(blocks, ScoreMatches(blocks), options, rng, kTightScale);
+  std::optional<Mode> best;
+  for (const ScoredEssential& candidate : search.candidates) {
+    Mode mode;
+    mode.pose = PoseInFront(blocks, candidate.E);
+    mode.mixture = FirstGuess(fixed, NoiseLaw().scale_of_gaussian, 0.5);
+    mode.used = matches.All();
+    Leave(some, &mode.used);
+    const bool is_fitted = FitMode(matches, fixed, kMostSteps, &mode);
+    if (is_fitted && (!best || mode.log_likelihood > best->log_likelihood)) best = mode;
+  }
+  return best;
+}
+
+struct TwoMotions {
+  double log_likelihood = 0.0;
+  std::vector<size_t> not_of_first, not_of_second;  // matches that the other explains better
+};
+
+// Both with shares of their own, by expectation-maximisation, beside wrong matches of density q.
+TwoMotions Mix(const Explanation& a, const Explanation& b, double q) {
+  const size_t n = a.inlier_density.size();
+  double share_a = 0.4, share_b = 0.3;
+  TwoMotions mix;
+  for (int step = 0; step <= kShareSteps; ++step) {
+    double sum_a = 0.5, sum_b = 0.5;
+    mix = {};
+    for (size_t i = 0; i < n; ++i) {
+      const double of_a = share_a * a.inlier_density[i], of_b = share_b * b.inlier_density[i];
+      const double all = of_a + of_b + (1.0 - share_a - share_b) * q;
+      sum_a += of_a / all;
+      sum_b += of_b / all;
+      mix.log_likelihood += std::log(all);
+      if (of_b > of_a) mix.not_of_first.push_back(i);
+      if (of_a > of_b) mix.not_of_second.push_back(i);
+    }
+    share_a = sum_a / (static_cast<double>(n) + 1.5);
+    share_b = sum_b / (static_cast<double>(n) + 1.5);
+  }
+  return mix;
+}
+
+}  // namespace
+
+std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, const MatchBlocks& matches,
+                                               const MixturePrior& prior, const Mode& mode,
+                                               RandomStream& rng) {
+  MixturePrior fixed = prior;
+  fixed.estimates_scale = false;
+  std::vector<size_t> all(problem.matches.size());
+  std::iota(all.begin(), all.end(), size_t{0});
+  std::optional<Mode> first = MotionOf(problem, matches, fixed, all, rng);
+  if (!first) return std::nullopt;
+  const Explanation by_first = Explain(matches, *first);
+  const std::vector<size_t> rest = Unexplained(by_first);
+  if (rest.size() < kLeastMatches) return std::nullopt;
+  std::optional<Mode> second = MotionOf(problem, matches, fixed, rest, rng);
+  if (!second) return std::nullopt;
+  const TwoMotions mix = Mix(by_first, Explain(matches, *second), prior.uniform_density);
+  if (mix.log_likelihood < mode.log_likelihood + kLeastGain) return std::nullopt;
+  Leave(mix.not_of_second, &first->used);
+  Leave(mix.not_of_first, &second->used);
+  for (Mode* found : {&*first, &*second}) {
+    if (!FitMode(matches, prior, kMostSteps, found)) return std::nullopt;
+    FitShares(matches, prior, found);
+  }
+  return std::pair{*first, *second};
+}
+
+}  // namespace rcme
