@@ -64,6 +64,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddReportCommand(app);
   AddPlotCommand(app);
   AddCheckCommand(app);
+  AddMergeCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);
   AddTuneCommand(app);

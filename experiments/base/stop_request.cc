@@ -5,7 +5,10 @@
 namespace rcme {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 std::atomic<int> stop_signal = 0;  // 0: none has come
+std::atomic<Clock::time_point> time_limit = Clock::time_point::max();
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may use nothing else");
 
 void Note(int signal) { stop_signal = signal; }
@@ -23,6 +26,7 @@ void Handle(int signal, struct sigaction* before) {
 
 StopOnSignals::StopOnSignals() {
   stop_signal = 0;
+  time_limit = Clock::time_point::max();
   Handle(SIGINT, &interrupt_before_);
   Handle(SIGTERM, &terminate_before_);
   struct sigaction ignore {};
@@ -36,8 +40,15 @@ StopOnSignals::~StopOnSignals() {
   sigaction(SIGPIPE, &pipe_before_, nullptr);
 }
 
-bool IsStopRequested() { return stop_signal != 0; }
+void StopAfter(std::chrono::duration<double> time) {
+  time_limit = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
+}
 
-int StopExitCode() { return 128 + stop_signal; }
+bool IsStopRequested() {
+  const Clock::time_point limit = time_limit;
+  return stop_signal != 0 || (limit != Clock::time_point::max() && Clock::now() >= limit);
+}
+
+int StopExitCode() { return stop_signal != 0 ? 128 + stop_signal : kTryAgain; }
 
 }  // namespace rcme

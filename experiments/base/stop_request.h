@@ -1,7 +1,8 @@
-// Ctrl-C (SIGINT) and SIGTERM as a request: what is in hand is finished and kept, then the program ends. The
-// same signal a second time ends it at once.
+// Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request: what is in hand is finished and kept,
+// then the program ends. The same signal a second time ends it at once.
 #pragma once
 
+#include <chrono>
 #include <csignal>
 #include <stdexcept>
 #include <string>
@@ -21,7 +22,10 @@ class StopOnSignals {
   struct sigaction interrupt_before_, terminate_before_, pipe_before_;
 };
 
-// Whether one of the two has come; the work looks between one piece and the next.
+// From now on, while the StopOnSignals lives that there is: the request comes by itself after this time.
+void StopAfter(std::chrono::duration<double> time);
+
+// Whether one has come; the work looks between one piece and the next.
 bool IsStopRequested();
 
 // Work that ended because of it.
@@ -30,7 +34,9 @@ class Stopped : public std::runtime_error {
   explicit Stopped(const std::string& message) : std::runtime_error(message) {}
 };
 
-// 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM.
+// 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM. 75, "try again" (EX_TEMPFAIL), after a time
+// limit.
+inline constexpr int kTryAgain = 75;
 int StopExitCode();
 
 }  // namespace rcme

@@ -18,6 +18,7 @@ void AddCompareCommand(CLI::App& app);
 void AddReliabilityCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);
 void AddCheckCommand(CLI::App& app);
+void AddMergeCommand(CLI::App& app);
 void AddPlotCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
 void AddShowCommand(CLI::App& app);

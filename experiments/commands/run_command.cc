@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "experiments/base/columns.h"
+#include "experiments/base/duration.h"
 #include "experiments/base/message.h"
 #include "experiments/base/progress.h"
 #include "experiments/base/stop_request.h"
@@ -12,6 +14,7 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/run/run_until.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -21,6 +24,7 @@ struct RunArguments {
   StudyChanges changes;
   std::int64_t trials = 0, repeats_per_scene = 0;  // 0: the study's own
   int threads = 0;
+  std::string shard, max_time;  // empty: all of the study, no limit
   std::string until, until_event = "failure";
   std::int64_t max_trials = UntilOptions{}.max_trials;
 };
@@ -79,14 +83,19 @@ void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, Result
 
 void Run(const RunArguments& arguments) {
   const StopOnSignals stop;
+  if (!arguments.max_time.empty())
+    StopAfter(std::chrono::duration<double>(ParseDuration(arguments.max_time).value()));
+  const Shard shard = arguments.shard.empty() ? Shard() : ParseShard(arguments.shard, ThisEnvironment());
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
-  ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
-  PrintMessage("{}: {} conditions, {} trials, {} estimators -> {}\n", plan.study.name, plan.conditions.size(),
-               plan.NumTrials(), plan.estimators.size(), arguments.out);
+  ResultStore store = ResultStore::OpenForRun(arguments.out, plan, shard);
+  PrintMessage("{}: {} conditions, {} trials, {} estimators{} -> {}\n", plan.study.name,
+               plan.conditions.size(), plan.NumTrials(), plan.estimators.size(),
+               shard.count > 1 ? ", of which shard " + shard.Text() : "", arguments.out);
   if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &store);
-  const RunReport report = RunStudy(plan, arguments.threads, &store);
-  PrintMessage("done: {} trials ({} were there already) in {}; next: rcme summarize {}\n", report.num_trials,
-               report.num_trials - report.num_run_now, DurationInWords(report.seconds), arguments.out);
+  const RunReport report = RunStudy(plan, arguments.threads, &store, shard);
+  PrintMessage("done: {} trials ({} were there already) in {}; next: rcme {} {}\n", report.num_trials,
+               report.num_trials - report.num_run_now, DurationInWords(report.seconds),
+               shard.count > 1 ? "merge" : "summarize", arguments.out);
 }
 
 }  // namespace
@@ -133,6 +142,22 @@ void AddRunCommand(CLI::App& app) {
       ->transform(WholeNumberIn(100, 2'000'000'000))
       ->capture_default_str()
       ->needs(until);
+  command
+      ->add_option(
+          "--shard", arguments->shard,
+          "I/N: the I-th of N shares of every condition's trials, for one of N machines, into a file of its "
+          "own that `rcme merge` puts together with the others; auto/N or auto: which one this is "
+          "in a Slurm array or a Kubernetes indexed job (docs/many_machines.md)")
+      ->excludes(until);
+  command
+      ->add_option(
+          "--max-time", arguments->max_time,
+          "end after this time (55m, 1h30m, 90s) between two trials; if some are left, with exit code "
+          "75: the same command resumes")
+      ->check([](const std::string& text) {
+        return ParseDuration(text) ? std::string()
+                                   : Quoted(text) + " is not allowed; give a time as 55m, 1h30m or 90s";
+      });
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")

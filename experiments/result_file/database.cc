@@ -28,8 +28,11 @@ std::string ReasonOf(const SQLite::Exception& error) {
     case SQLITE_FULL:
     case SQLITE_IOERR:
       return fmt::format("cannot be written ({}); trials committed before are safe", error.what());
-    case SQLITE_CANTOPEN:
     case SQLITE_READONLY:
+      if (error.getExtendedErrorCode() == SQLITE_READONLY_ROLLBACK)
+        return "its run was killed in the middle of a write; the same `rcme run` resumes it";
+      [[fallthrough]];
+    case SQLITE_CANTOPEN:
       return fmt::format("cannot be opened for writing ({})", error.what());
     default:
       return error.what();
@@ -38,11 +41,11 @@ std::string ReasonOf(const SQLite::Exception& error) {
 
 }  // namespace
 
-SQLite::Database OpenDatabase(const std::string& path, int flags) {
+SQLite::Database OpenDatabase(const std::string& path, int flags, FileLocks locks) {
   // By the absolute path: SQLite reads '', ':memory:' and 'file:...' as something else than a file of that
   // name. Without SQLite's own locks, which cost a tenth of an insertion: a store has one caller at a time.
   SQLite::Database database(std::filesystem::absolute(path).string(), flags | SQLite::OPEN_NOMUTEX,
-                            kBusyTimeoutMs);
+                            kBusyTimeoutMs, locks == FileLocks::kUsed ? "" : "unix-none");
   sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);

@@ -12,7 +12,8 @@ namespace rcme {
 
 // No views, triggers or functions of the file are run, and its internal tables cannot be written by SQL.
 // `flags` are SQLite's. Throws SQLite::Exception.
-SQLite::Database OpenDatabase(const std::string& path, int flags);
+enum class FileLocks { kUsed, kNone };  // none: for file systems without; who opens knows that nobody writes
+SQLite::Database OpenDatabase(const std::string& path, int flags, FileLocks locks = FileLocks::kUsed);
 
 // Throws what an error of the database or damage means to the user: an InputError that names the file.
 [[noreturn]] void ThrowForFile(const std::string& path, const SQLite::Exception& error);

@@ -57,6 +57,7 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
                                                {"stopping_rule", run.stopping_rule},
                                                {"until_options", run.until_options},
                                                {"until_trials", std::to_string(run.until_trials)},
+                                               {"shard", run.shard},
                                                {"program", run.origin.program},
                                                {"instruction_set", run.origin.instruction_set},
                                                {"study", run.study_yaml},
@@ -126,6 +127,7 @@ RunDescription ReadRun(SQLite::Database& database) {
   run.stopping_rule = values.Text("stopping_rule");
   run.until_options = values.Text("until_options");
   run.until_trials = values.WholeNumber("until_trials", kMax);
+  run.shard = values.Text("shard");
   run.origin = {values.Text("program"), values.Text("instruction_set")};
   return run;
 }

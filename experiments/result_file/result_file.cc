@@ -10,8 +10,8 @@
 
 namespace rcme {
 
-ResultFile::ResultFile(const std::string& file, int sqlite_flags)
-    : path(file), database(OpenDatabase(file, sqlite_flags)) {}
+ResultFile::ResultFile(const std::string& file, int sqlite_flags, FileLocks locks)
+    : path(file), database(OpenDatabase(file, sqlite_flags, locks)) {}
 
 bool ResultFile::IsNew() {
   return database.execAndGet("PRAGMA page_count").getInt() <= 1 &&

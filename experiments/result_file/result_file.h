@@ -15,7 +15,7 @@ namespace rcme {
 // Errors are SQLite::Exception and Damage, for NamingFile.
 class ResultFile {
  public:
-  ResultFile(const std::string& path, int sqlite_flags);
+  ResultFile(const std::string& path, int sqlite_flags, FileLocks locks = FileLocks::kUsed);
 
   // A file that no one has written to, or one whose first run ended before it had made the tables.
   bool IsNew();

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 
 #include "estimator/instruction_set.h"
 #include "experiments/base/program_name.h"
+#include "experiments/result_file/first_difference.h"
 #include "experiments/result_file/result_file.h"
 #include "experiments/result_file/trial_writer.h"
 #include "experiments/study/study_file.h"
@@ -15,19 +15,6 @@
 
 namespace rcme {
 namespace {
-
-// The first line in which two identities differ, as "'a' there, 'b' here".
-std::string FirstDifference(const std::string& there, const std::string& here) {
-  std::istringstream a(there), b(here);
-  std::string line_a, line_b;
-  while (true) {
-    const bool has_a = static_cast<bool>(std::getline(a, line_a));
-    const bool has_b = static_cast<bool>(std::getline(b, line_b));
-    if (!has_a) line_a = "(nothing)";
-    if (!has_b) line_b = "(nothing)";
-    if (line_a != line_b || (!has_a && !has_b)) return fmt::format("'{}' there, '{}' here", line_a, line_b);
-  }
-}
 
 void CheckPathToWrite(const std::string& path) {
   if (path.empty()) throw InputError("--out: '' is not allowed; give the path of a result file");
@@ -59,11 +46,22 @@ RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {
   for (size_t c = 0; c < run.conditions.size(); ++c) {
     run.conditions[c].num_trials = std::max(run.conditions[c].num_trials, earlier.conditions[c].num_trials);
   }
+  run.shard = earlier.shard;
   run.stopping_rule = earlier.stopping_rule;
   run.until_options = earlier.until_options;
   run.until_trials = earlier.until_trials;
   run.origin = earlier.origin;
   return run;
+}
+
+RunDescription DescribeShard(const StudyPlan& plan, const Shard& shard) {
+  RunDescription run = Describe(plan);
+  run.shard = shard.Text();
+  return run;
+}
+
+std::string ShardInWords(const std::string& shard) {
+  return shard.empty() ? "all trials of its study" : fmt::format("shard {} of its study", shard);
 }
 
 // Throws Damage if a description is not that of its study.
@@ -104,20 +102,20 @@ ResultStore::~ResultStore() {
   }
 }
 
-ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& plan) {
+ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& plan, const Shard& shard) {
   CheckPathToWrite(path);
   return NamingFile(path, [&] {
     auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     ResultFile& file = connection->file;
     file.database.exec(kTakeLock);  // now: a second run stops here
     if (file.IsNew()) {
-      file.Create(Describe(plan));
+      file.Create(DescribeShard(plan, shard));
     } else {
       file.LoadDescription();
       file.CheckTrials();
       file.CheckPages();
     }
-    // A file without a trial (its run failed at once) takes any study.
+    // A file without a trial (its run failed at once) takes any study and any shard.
     const std::string& identity = file.description.identity;
     if (identity != plan.identity && file.totals.NumTrials() > 0) {
       throw InputError(
@@ -125,8 +123,13 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
                       "--out",
                       path, file.description.origin.program, FirstDifference(identity, plan.identity)));
     }
-    if (identity != plan.identity) {
-      file.CreateAnew(Describe(plan));
+    if (file.description.shard != shard.Text() && file.totals.NumTrials() > 0) {
+      throw InputError(fmt::format("{}: is the file of {}, not of {}. Give another --out", path,
+                                   ShardInWords(file.description.shard),
+                                   shard.count == 1 ? "all trials" : "shard " + shard.Text()));
+    }
+    if (identity != plan.identity || file.description.shard != shard.Text()) {
+      file.CreateAnew(DescribeShard(plan, shard));
     } else {
       CheckFits(file.description, plan);
       const RunDescription run = Continued(file.description, plan);
@@ -209,7 +212,8 @@ StudyPlan ResultStore::Plan() const {
   return plan;
 }
 
-std::vector<TrialRange> ResultStore::MissingTrials(std::uint32_t condition, std::uint32_t num_trials) {
+std::vector<TrialRange> ResultStore::MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
+                                                   const ShardTrials& shard) {
   return NamingFile(connection_->file.path, [&] {
     SQLite::Statement query(connection_->file.database,
                             "SELECT trial FROM problems WHERE condition = ? AND trial < ? ORDER BY trial");
@@ -218,11 +222,14 @@ std::vector<TrialRange> ResultStore::MissingTrials(std::uint32_t condition, std:
     std::vector<TrialRange> missing;
     std::uint32_t next = 0;
     while (query.executeStep()) {
-      const auto done = static_cast<std::uint32_t>(query.getColumn(0).getInt64());
+      const auto trial = static_cast<std::uint32_t>(query.getColumn(0).getInt64());
+      if (!shard.Has(trial)) continue;
+      const std::uint32_t done = shard.NumBefore(trial);
       if (next < done) missing.push_back({next, done});
       next = done + 1;
     }
-    if (next < num_trials) missing.push_back({next, num_trials});
+    const std::uint32_t end = shard.NumBefore(num_trials);
+    if (next < end) missing.push_back({next, end});
     return missing;
   });
 }

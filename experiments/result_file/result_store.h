@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "experiments/study/run_description.h"
+#include "experiments/study/shard.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial.h"
 #include "experiments/trial/trial_range.h"
@@ -28,8 +29,9 @@ class ResultStore {
  public:
   // Opens the file of this plan's study, or makes it; what earlier runs asked for is still asked for: the
   // study keeps the greatest number of trials. Throws InputError if the path cannot be written, is no result
-  // file or a damaged one, is in use by another run, or holds another study (the message says what differs).
-  static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan);
+  // file or a damaged one, is in use by another run, or holds another study (the message says what differs)
+  // or another shard of it.
+  static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan, const Shard& shard = {});
   // Makes a new file for a run that is described, whatever it was run by. Throws InputError if the path
   // cannot be written or holds a file.
   static ResultStore Create(const std::string& path, const RunDescription& run);
@@ -49,8 +51,10 @@ class ResultStore {
   // InputError if its data (a folder of pairs) are gone or have changed.
   StudyPlan Plan() const;
 
-  // Those of the first `num_trials` trials of a condition that are not in the file, ascending.
-  std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials);
+  // Those of the first `num_trials` trials of a condition that the shard has and the file lacks, by their
+  // place in the shard, ascending.
+  std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
+                                        const ShardTrials& shard = {});
 
   // Of all conditions.
   std::int64_t NumTrials() const;

@@ -107,6 +107,7 @@ Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
   if (study && stored) {
     if (stored->identity != description_.identity) Note("the study is another than that of the file");
     description_.stopping_rule = stored->stopping_rule;
+    description_.shard = stored->shard;
     description_.origin = stored->origin;
   }
   if (!stored) {

@@ -125,6 +125,9 @@ const std::vector<RunKey>& RunKeys() {
       {"stopping_rule", "not empty: the number of trials depended on their outcomes, in these words"},
       {"until_options", "options of `rcme run` that alone gave `until_trials` trials; empty: none"},
       {"until_trials", "how many trials those gave in all conditions"},
+      {"shard",
+       "which shards of the study the file is of: `3/64`, or merged ones that are complete, `1-3,7/64` or "
+       "`none/64`; empty: the whole study"},
       {"program",
        "programs that computed trials, with their versions; separated by commas, empty: not known"},
       {"instruction_set", "instruction sets they used, likewise"},

@@ -32,7 +32,8 @@ void ForEachTrial(const std::vector<TrialsOfCondition>& trials, int num_threads,
     const auto p =
         static_cast<size_t>(std::ranges::upper_bound(first_index, index) - first_index.begin()) - 1;
     const auto offset = static_cast<std::uint32_t>(index - first_index[p]);
-    work(*trials[p].condition, trials[p].trials.first + offset, index);
+    const TrialsOfCondition& part = trials[p];
+    work(*part.condition, part.shard.TrialAt(part.trials.first + offset), index);
     progress->Advance(1);
   });
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/base/progress.h"
+#include "experiments/study/shard.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 
@@ -13,7 +14,8 @@ namespace rcme {
 
 struct TrialsOfCondition {
   const Condition* condition = nullptr;  // lives as long as its plan
-  TrialRange trials;
+  TrialRange trials;                     // by their place in the shard
+  ShardTrials shard = {};                // has all trials, unless it is given
 };
 
 // The same trials of every condition, in the plan's order.

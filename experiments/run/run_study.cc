@@ -16,15 +16,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The trials of the plan that are not in the store, in the plan's order.
-std::vector<TrialsOfCondition> TrialsToRun(const StudyPlan& plan, ResultStore* store) {
-  std::vector<TrialsOfCondition> missing;
+struct TrialsToRun {
+  std::vector<TrialsOfCondition> missing;  // in the store, in the plan's order
+  std::int64_t num_trials = 0;             // with those that it holds
+};
+
+TrialsToRun FindTrialsToRun(const StudyPlan& plan, const Shard& shard, ResultStore* store) {
+  TrialsToRun found;
   for (const Condition& condition : plan.conditions) {
     const auto num_trials = static_cast<std::uint32_t>(condition.num_trials);
-    for (const TrialRange& range : store->MissingTrials(condition.index, num_trials))
-      missing.push_back({&condition, range});
+    const ShardTrials trials(shard, condition.index, plan.study.repeats_per_scene);
+    found.num_trials += trials.NumBefore(num_trials);
+    for (const TrialRange& range : store->MissingTrials(condition.index, num_trials, trials))
+      found.missing.push_back({&condition, range, trials});
   }
-  return missing;
+  return found;
 }
 
 // Collects the records of finished trials; from time to time one thread writes them, while the others go on.
@@ -86,19 +92,19 @@ class RecordBuffer {
 
 }  // namespace
 
-RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
+RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store, const Shard& shard) {
   const Clock::time_point start = Clock::now();
-  const std::vector<TrialsOfCondition> trials = TrialsToRun(plan, store);
-  const std::int64_t num_to_run = NumTrials(trials), num_before = plan.NumTrials() - num_to_run;
+  const TrialsToRun trials = FindTrialsToRun(plan, shard, store);
+  const std::int64_t num_to_run = NumTrials(trials.missing), num_before = trials.num_trials - num_to_run;
   if (num_to_run > 0) {
     const std::string warning = store->NoteOrigin(ThisProgram());
     if (!warning.empty()) PrintMessage("warning: {}\n", warning);
   }
-  Progress progress("trials", plan.NumTrials(), num_before);
+  Progress progress("trials", trials.num_trials, num_before);
   RecordBuffer buffer(store);
   std::atomic<std::int64_t> num_done = num_before;
   try {
-    ForEachTrial(trials, num_threads, &progress,
+    ForEachTrial(trials.missing, num_threads, &progress,
                  [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
                    const TrialResult result = RunTrial(plan, condition, trial);
                    buffer.Add(result.problem, result.records);
@@ -113,7 +119,7 @@ RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store) {
   }
   buffer.Flush();
   const std::chrono::duration<double> elapsed = Clock::now() - start;
-  return {plan.NumTrials(), num_to_run, elapsed.count()};
+  return {trials.num_trials, num_to_run, elapsed.count()};
 }
 
 }  // namespace rcme

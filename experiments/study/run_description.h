@@ -46,6 +46,9 @@ struct RunDescription {
   // Options of `rcme run` that alone gave `until_trials` trials in all; empty: none.
   std::string until_options;
   std::int64_t until_trials = 0;
+  // Which shards of the study: "3/64" (study/shard.h), of several that were merged "1-3,7/64", "none/64" if
+  // every one of them lacks trials; empty: all of it.
+  std::string shard;
   TrialOrigin origin;  // of all trials; several names are separated by commas, none known is empty
 
   std::int64_t NumTrials() const;

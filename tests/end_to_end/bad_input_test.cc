@@ -396,6 +396,7 @@ TEST(Help, IsThereForEveryCommand) {
                                                   {"compare"},
                                                   {"report"},
                                                   {"check"},
+                                                  {"merge"},
                                                   {"replay"},
                                                   {"show"},
                                                   {"estimate"},

@@ -59,6 +59,20 @@ TEST(StopRequest, IsForgottenByTheNextAndTheHandlersAreGivenBack) {
   std::signal(SIGTERM, SIG_DFL);
 }
 
+TEST(StopRequest, ComesByItselfAfterATimeAndAsksToTryAgain) {
+  {
+    const StopOnSignals stop;
+    StopAfter(std::chrono::milliseconds(20));
+    EXPECT_FALSE(IsStopRequested());
+    EXPECT_THROW(ForEachIndex(1'000'000'000, 2, [](std::int64_t) {}), Stopped);
+    EXPECT_EQ(StopExitCode(), 75);
+    std::raise(SIGTERM);
+    EXPECT_EQ(StopExitCode(), 128 + SIGTERM) << "who was asked to end says so";
+  }
+  const StopOnSignals next;
+  EXPECT_FALSE(IsStopRequested());
+}
+
 // The run is stopped by a signal in the call of its fifth motion, whatever the machine does meanwhile.
 TEST(StopRequest, ARunKeepsItsTrialsAndGoesOnLater) {
   const StudyPlan plan = MakePlan(SmallStudy());
