@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "experiments/base/columns.h"
 #include "experiments/base/duration.h"
@@ -12,6 +13,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/result_file/first_difference.h"
 #include "experiments/run/run_until.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -25,7 +27,7 @@ struct RunArguments {
   std::int64_t trials = 0, repeats_per_scene = 0;  // 0: the study's own
   int threads = 0;
   std::string shard, max_time;  // empty: all of the study, no limit
-  std::string until, until_event = "failure";
+  std::string until, until_event = "failure", merged;
   std::int64_t max_trials = UntilOptions{}.max_trials;
 };
 
@@ -58,13 +60,37 @@ std::string SpentAsTable(const StudyPlan& plan, const std::vector<CellPrecision>
   return FormatColumns(rows);
 }
 
-void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, ResultStore* store) {
+UntilOptions UntilOptionsFrom(const RunArguments& arguments) {
   UntilOptions options;
   options.target = PrecisionTarget::Parse(arguments.until);
   options.event = *std::ranges::find(TrialEvents(), arguments.until_event, &TrialEvent::name);
   options.max_trials = arguments.max_trials;
   options.num_threads = arguments.threads;
-  const std::vector<CellPrecision> cells = RunUntil(plan, options, store);
+  return options;
+}
+
+// One shard's part of a round.
+void RunRound(const StudyPlan& plan, const RunArguments& arguments, const Shard& shard, ResultStore* store) {
+  std::optional<ResultStore> merged;
+  if (!arguments.merged.empty()) {
+    merged.emplace(ResultStore::OpenForReading(arguments.merged));
+    const std::string identity = merged->Description().identity;
+    if (identity != plan.identity) {
+      throw InputError(fmt::format("--merged: {} is of another study; first difference: {}", arguments.merged,
+                                   FirstDifference(identity, plan.identity)));
+    }
+  }
+  if (RunRoundUntil(plan, UntilOptionsFrom(arguments), shard, merged ? &*merged : nullptr, store)) {
+    PrintMessage("the round's trials of shard {} are done; when those of all are: rcme merge\n",
+                 shard.Text());
+    throw EndWith{kTryAgain};
+  }
+  PrintMessage("no trial is missing; next: the same command without --shard and --merged, --out {}\n",
+               arguments.merged);
+}
+
+void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, ResultStore* store) {
+  const std::vector<CellPrecision> cells = RunUntil(plan, UntilOptionsFrom(arguments), store);
   std::int64_t spent = 0, num_open = 0;
   for (const CellPrecision& cell : cells) {
     spent += cell.num_trials;
@@ -91,6 +117,7 @@ void Run(const RunArguments& arguments) {
   PrintMessage("{}: {} conditions, {} trials, {} estimators{} -> {}\n", plan.study.name,
                plan.conditions.size(), plan.NumTrials(), plan.estimators.size(),
                shard.count > 1 ? ", of which shard " + shard.Text() : "", arguments.out);
+  if (!arguments.until.empty() && shard.count > 1) return RunRound(plan, arguments, shard, &store);
   if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &store);
   const RunReport report = RunStudy(plan, arguments.threads, &store, shard);
   PrintMessage("done: {} trials ({} were there already) in {}; next: rcme {} {}\n", report.num_trials,
@@ -142,13 +169,16 @@ void AddRunCommand(CLI::App& app) {
       ->transform(WholeNumberIn(100, 2'000'000'000))
       ->capture_default_str()
       ->needs(until);
+  CLI::Option* shard = command->add_option(
+      "--shard", arguments->shard,
+      "I/N: the I-th of N shares of every condition's trials, for one of N machines, into a file of its "
+      "own that `rcme merge` puts together with the others; auto/N or auto: which one this is "
+      "in a Slurm array or a Kubernetes indexed job (docs/many_machines.md)");
   command
-      ->add_option(
-          "--shard", arguments->shard,
-          "I/N: the I-th of N shares of every condition's trials, for one of N machines, into a file of its "
-          "own that `rcme merge` puts together with the others; auto/N or auto: which one this is "
-          "in a Slurm array or a Kubernetes indexed job (docs/many_machines.md)")
-      ->excludes(until);
+      ->add_option("--merged", arguments->merged,
+                   "merged result file of the rounds before, for a further round of --until in shards")
+      ->needs(until)
+      ->needs(shard);
   command
       ->add_option(
           "--max-time", arguments->max_time,

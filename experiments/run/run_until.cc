@@ -81,7 +81,9 @@ PrecisionTarget PrecisionTarget::Parse(const std::string& text) {
   return target;
 }
 
-std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& options, ResultStore* store) {
+namespace {
+
+void Begin(const StudyPlan& plan, ResultStore* store) {
   if (plan.study.repeats_per_scene > 1) {
     throw InputError(
         "--until: the repeats of a scene (repeats_per_scene) are not independent, which the intervals it "
@@ -89,15 +91,59 @@ std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& o
         "at ask for; give --trials instead");
   }
   store->NoteStoppingRule("a rate's interval is narrow enough");
-  std::vector<CellPrecision> cells(plan.conditions.size());
-  std::vector<std::uint32_t> open;
-  for (const Condition& condition : plan.conditions) open.push_back(condition.index);
-  StudyPlan growing = plan;
-  for (Condition& condition : growing.conditions) condition.num_trials = 0;
+}
+
+std::vector<std::uint32_t> AllConditions(const StudyPlan& plan) {
+  std::vector<std::uint32_t> all;
+  for (const Condition& condition : plan.conditions) all.push_back(condition.index);
+  return all;
+}
+
+StudyPlan WithoutTrials(StudyPlan plan) {
+  for (Condition& condition : plan.conditions) condition.num_trials = 0;
+  return plan;
+}
+
+// Every open condition to `num_trials`.
+void Grow(const std::vector<std::uint32_t>& open, std::int64_t num_trials, StudyPlan* growing) {
+  for (const std::uint32_t c : open) growing->conditions[c].num_trials = static_cast<int>(num_trials);
+  PrintMessage("{} of {} conditions to {} trials each\n", open.size(), growing->conditions.size(),
+               num_trials);
+}
+
+}  // namespace
+
+bool RunRoundUntil(const StudyPlan& plan, const UntilOptions& options, const Shard& shard,
+                   ResultStore* merged, ResultStore* store) {
+  Begin(plan, store);
+  std::vector<std::uint32_t> open = AllConditions(plan);
+  StudyPlan growing = WithoutTrials(plan);
   for (std::int64_t look = kFirstLook; !open.empty(); look = NextLook(look)) {
     const std::int64_t num_trials = std::min(look, options.max_trials);
-    for (const std::uint32_t c : open) growing.conditions[c].num_trials = static_cast<int>(num_trials);
-    PrintMessage("{} of {} conditions to {} trials each\n", open.size(), cells.size(), num_trials);
+    const auto is_complete = [&](std::uint32_t c) {
+      return merged && merged->MissingTrials(c, static_cast<std::uint32_t>(num_trials)).empty();
+    };
+    if (!std::ranges::all_of(open, is_complete)) {
+      Grow(open, num_trials, &growing);
+      RunStudy(growing, options.num_threads, store, shard);
+      return true;
+    }
+    std::erase_if(open, [&](std::uint32_t c) {
+      return num_trials == options.max_trials ||
+             Look(growing, growing.conditions[c], num_trials, options, *merged).is_reached;
+    });
+  }
+  return false;
+}
+
+std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& options, ResultStore* store) {
+  Begin(plan, store);
+  std::vector<CellPrecision> cells(plan.conditions.size());
+  std::vector<std::uint32_t> open = AllConditions(plan);
+  StudyPlan growing = WithoutTrials(plan);
+  for (std::int64_t look = kFirstLook; !open.empty(); look = NextLook(look)) {
+    const std::int64_t num_trials = std::min(look, options.max_trials);
+    Grow(open, num_trials, &growing);
     RunStudy(growing, options.num_threads, store);
     for (const std::uint32_t c : open)
       cells[c] = Look(growing, growing.conditions[c], num_trials, options, *store);

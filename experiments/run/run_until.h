@@ -41,6 +41,15 @@ struct UntilOptions {
   int num_threads = 0;
 };
 
+// In shards: rounds, each of which looks at the merged trials of all shards after those before. One round of
+// one shard: adds its share of the trials that every condition needs for its next look, as far as the looks
+// at `merged` tell (null: the first one). False: nothing was missing, every condition has reached the target
+// or max_trials, and RunUntil on the merged file adds no trial. Whatever is lost or cut off in a round is
+// missing from the merged trials and so part of the next one. Throws InputError as RunUntil, and if `merged`
+// is of another study.
+bool RunRoundUntil(const StudyPlan& plan, const UntilOptions& options, const Shard& shard,
+                   ResultStore* merged, ResultStore* store);
+
 // Every estimator of a condition has to reach the target. Notes in the store that the number of trials
 // depends on the outcomes. Throws InputError if trials are weighted: their intervals hold for one look only;
 // and if scenes are repeated.

@@ -1,11 +1,15 @@
 #include "experiments/run/run_until.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 
 #include "experiments/analysis/summarize.h"
+#include "experiments/result_file/merge_results.h"
 #include "stats/confidence_sequence.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
@@ -82,6 +86,43 @@ TEST_F(RunUntilTest, TheSameTrialsWhateverTheThreadsAndHoweverOftenItWasCutOff) 
     EXPECT_EQ(whole[c].rate, parts[c].rate);
   }
   EXPECT_EQ(CsvOf("whole"), CsvOf("parts"));
+}
+
+// Two shards in rounds, one of which is lost once: the trials of one run, and so its tables.
+TEST_F(RunUntilTest, ShardsInRoundsRunTheTrialsOfOneRun) {
+  const UntilOptions options = Until("ci=0.06", 1'000'000, 1);
+  const std::vector<CellPrecision> whole = Run("whole", options);
+  std::string merged;
+  int num_rounds = 0;
+  for (bool is_open = true; is_open; ++num_rounds) {
+    ASSERT_LT(num_rounds, 12);
+    std::optional<ResultStore> before;
+    if (!merged.empty()) before.emplace(ResultStore::OpenForReading(merged));
+    std::vector<std::string> parts;
+    for (const std::uint32_t number : {1u, 2u}) {
+      parts.push_back(folder_.Path(fmt::format("part_{}", number)));
+      if (num_rounds == 2 && number == 2) {
+        std::filesystem::remove(parts[1]);  // its trials of all rounds
+        continue;
+      }
+      ResultStore store = ResultStore::OpenForRun(parts[number - 1], plan_, {number, 2});
+      is_open = RunRoundUntil(plan_, options, {number, 2}, before ? &*before : nullptr, &store);
+    }
+    if (num_rounds == 2) parts.pop_back();
+    merged = folder_.Path(fmt::format("merged_{}", num_rounds));
+    EXPECT_EQ(MergeResults(parts, merged, false, {}).num_missing, 0)
+        << "how many there are to be is not known";
+  }
+  EXPECT_GT(num_rounds, 3);
+  EXPECT_EQ(CsvOf("whole"), CsvOf(std::filesystem::path(merged).filename()));
+  ResultStore store = ResultStore::OpenForRun(merged, plan_);
+  const std::int64_t num_before = store.NumTrials();
+  const std::vector<CellPrecision> cells = RunUntil(plan_, options, &store);
+  EXPECT_EQ(store.NumTrials(), num_before);
+  for (size_t c = 0; c < whole.size(); ++c) {
+    EXPECT_EQ(cells[c].num_trials, whole[c].num_trials);
+    EXPECT_EQ(cells[c].rate, whole[c].rate);
+  }
 }
 
 // A run that was killed has the trial after the last one of the first look, a refusal: it is not counted
