@@ -9,10 +9,6 @@
 namespace rcme {
 namespace {
 
-// Of the grid: a score moves by at most half a step, which adds at most a quarter of its square to a
-// variance.
-constexpr int kNumSteps = 100;
-
 // Stakes, as shares of what is lost at the least score if the mean is staked on. For n scores of mean m and
 // standard deviation s the best is about 3 m / (s sqrt(n)); where the scores are mostly near the top, the
 // bound below them hangs on the great ones, so these stand closer.
@@ -38,6 +34,16 @@ void ScoreMean::Add(double score, std::int64_t count) {
   counts_[static_cast<size_t>(below) + 1] += times * (at - below);
   sum_ += times * score;
   n_ += count;
+}
+
+ScoreMean ScoreMean::OnGrid(const std::vector<double>& counts, std::int64_t n, double sum) {
+  ScoreMean scores;
+  if (n == 0) return scores;
+  if (counts.size() != kNumSteps + 1) throw std::invalid_argument("mean of scores: another grid");
+  scores.counts_ = counts;
+  scores.n_ = n;
+  scores.sum_ = sum;
+  return scores;
 }
 
 double ScoreMean::mean() const { return sum_ / static_cast<double>(n_); }

@@ -35,6 +35,13 @@ class ScoreMean {
   void Add(double score, std::int64_t count = 1);
 
   std::int64_t n() const { return n_; }
+  // Scores that are on the grid already, divided as Add does it: how much of how many is at each of its
+  // points; their sum is that of the scores themselves.
+  static ScoreMean OnGrid(const std::vector<double>& counts, std::int64_t n, double sum);
+  // A score moves by at most half a step of the grid, which adds at most a quarter of its square to a
+  // variance.
+  static constexpr int kNumSteps = 100;
+
   // NaN without scores.
   double mean() const;
   // Of the scores on the grid: a variance that exceeds theirs by at most a quarter of its squared step.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "stats/accuracy.h"
@@ -27,6 +29,46 @@ void StreamMedian::Add(double x) {
   cell.least = std::min(cell.least, x);
   cell.greatest = std::max(cell.greatest, x);
   ++n_;
+}
+
+void StreamMedian::Merge(const StreamMedian& other) {
+  for (const auto& [number, cell] : other.cells_) {
+    Cell& here = cells_.try_emplace(number, Cell{0, cell.least, cell.greatest}).first->second;
+    here.count += cell.count;
+    here.least = std::min(here.least, cell.least);
+    here.greatest = std::max(here.greatest, cell.greatest);
+  }
+  n_ += other.n_;
+}
+
+std::string StreamMedian::Text() const {
+  std::string text;
+  char cell_text[100];
+  for (const auto& [number, cell] : cells_) {
+    std::snprintf(cell_text, sizeof(cell_text), "%s%lld:%a:%a", text.empty() ? "" : " ",
+                  static_cast<long long>(cell.count), cell.least, cell.greatest);
+    text += cell_text;
+  }
+  return text;
+}
+
+StreamMedian StreamMedian::FromText(const std::string& text) {
+  StreamMedian median;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    Cell cell;
+    long long count = 0;
+    int length = 0;
+    const int num_read =
+        std::sscanf(word.c_str(), "%lld:%la:%la%n", &count, &cell.least, &cell.greatest, &length);
+    cell.count = count;
+    const bool is_cell = num_read == 3 && static_cast<size_t>(length) == word.size() && count > 0 &&
+                         cell.least <= cell.greatest && CutOff(cell.least) == CutOff(cell.greatest);
+    if (!is_cell || !median.cells_.emplace(CutOff(cell.least), cell).second)
+      throw std::invalid_argument("median: not a cell: " + word);
+    median.n_ += count;
+  }
+  return median;
 }
 
 const StreamMedian::Cell& StreamMedian::CellOf(std::int64_t rank) const {

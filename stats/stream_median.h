@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 
 #include "stats/intervals.h"
 
@@ -14,6 +15,8 @@ class StreamMedian {
  public:
   // May be infinite. Throws std::invalid_argument on NaN.
   void Add(double x);
+  // As if the other's numbers had been added here.
+  void Merge(const StreamMedian& other);
 
   std::int64_t n() const { return n_; }
   // The ceil(n / 2)-th smallest, or the least number of its cell: at most 0.4 % nearer to zero. NaN at n = 0.
@@ -22,6 +25,11 @@ class StreamMedian {
   // those of the cells of the order statistics, so rounding only widens it. An end is infinite where no order
   // statistic is far enough out.
   Interval interval(double confidence = 0.95) const;
+
+  // All of it: "count:least:greatest", in the order of the numbers, separated by spaces.
+  std::string Text() const;
+  // Throws std::invalid_argument for any other text.
+  static StreamMedian FromText(const std::string& text);
 
  private:
   struct Cell {

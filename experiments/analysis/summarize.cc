@@ -9,6 +9,7 @@
 #include "experiments/analysis/failure_forecasts.h"
 #include "experiments/analysis/scene_split.h"
 #include "experiments/analysis/scenes_of_run.h"
+#include "experiments/analysis/summary_quantities.h"
 #include "experiments/trial/trial_measure.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
@@ -19,18 +20,6 @@
 
 namespace rcme {
 namespace {
-
-// What a trial contributes to a quantity: nothing (it is not of those the quantity is about), or a number (a
-// rate: 0 or 1). `Record` is TrialRecord, for estimators, or ProblemRecord.
-template <typename Record>
-struct Quantity {
-  std::string name;
-  SummaryRow::Kind kind;
-  std::string doc;
-  std::function<std::optional<double>(const Record&, const FailureBounds&)> contribution;
-};
-using TrialQuantity = Quantity<TrialRecord>;
-using ProblemQuantity = Quantity<ProblemRecord>;
 
 std::optional<double> If(bool is_of_interest, double value) {
   return is_of_interest && !std::isnan(value) ? std::optional<double>(value) : std::nullopt;
@@ -139,6 +128,8 @@ const std::vector<TrialQuantity>& OwnQuantities() {
   return all;
 }
 
+}  // namespace
+
 const std::vector<TrialQuantity>& TrialQuantities() {
   static const std::vector<TrialQuantity> all = [] {
     std::vector<TrialQuantity> quantities = OwnQuantities();
@@ -151,12 +142,16 @@ const std::vector<TrialQuantity>& TrialQuantities() {
   return all;
 }
 
+namespace {
+
 // No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
 // problem and not the estimator is to blame.
 bool IsImpossible(const ProblemRecord& problem, const FailureBounds& bounds) {
   return problem.severity.crb_rotation_deg > bounds.max_rotation_error_deg ||
          problem.severity.crb_direction_deg > bounds.max_direction_error_deg;
 }
+
+}  // namespace
 
 const std::vector<ProblemQuantity>& ProblemQuantities() {
   static const std::vector<ProblemQuantity> all = [] {
@@ -184,6 +179,46 @@ const std::vector<ProblemQuantity>& ProblemQuantities() {
   return all;
 }
 
+namespace {
+
+void FillRate(std::int64_t num_trials, SummaryRow* row) {
+  const std::int64_t successes = row->n > 0 ? std::llround(row->value * static_cast<double>(row->n)) : 0;
+  row->interval = row->interval_kind == IntervalKind::kExact ? ExactBinomialInterval(successes, row->n)
+                                                             : ConfidenceSequence(successes, row->n);
+  if (row->n == 0) return;
+  row->value = static_cast<double>(successes) / static_cast<double>(row->n);
+  if (row->quantity != "nees_coverage") return;
+  const bool is_of_fixed_n = row->interval_kind == IntervalKind::kExact;
+  row->coverage_verdict = JudgeCoverage(row->value, row->interval, row->n, num_trials, is_of_fixed_n);
+}
+
+// Its interval is of a number of trials that was fixed beforehand.
+void FillMedian(const StreamMedian& median, SummaryRow* row) {
+  row->value = median.median();
+  row->n = median.n();
+  row->interval =
+      row->interval_kind == IntervalKind::kExact ? median.interval() : Interval{std::nan(""), std::nan("")};
+}
+
+}  // namespace
+
+void FillRow(const Collected& collected, std::int64_t num_trials, SummaryRow* row) {
+  row->value = collected.mean;
+  row->n = collected.n;
+  if (collected.median) {
+    FillMedian(*collected.median, row);
+  } else if (collected.scores) {
+    row->interval_kind = IntervalKind::kBetting;
+    row->interval = collected.scores->Sequence();
+  } else if (row->kind == SummaryRow::Kind::kRate) {
+    FillRate(num_trials, row);
+  } else {
+    row->standard_error = collected.standard_error;
+  }
+}
+
+namespace {
+
 // The quantities of one estimator, or of the problems, in one condition, growing trial by trial.
 template <typename Record>
 class Accumulator {
@@ -209,9 +244,7 @@ class Accumulator {
       const std::optional<double> mean = scene_[q].Take();
       if (!mean) continue;
       moments_[q].Add(*mean);
-      const SummaryRow::Kind kind = quantities_[q].kind;
-      if (kind == SummaryRow::Kind::kScore || (kind == SummaryRow::Kind::kRate && has_repeats_))
-        scores_[q].Add(*mean);
+      if (IsScore(quantities_[q].kind)) scores_[q].Add(*mean);
     }
   }
 
@@ -221,46 +254,32 @@ class Accumulator {
       SummaryRow row = cell;
       row.quantity = quantities_[q].name;
       row.kind = quantities_[q].kind;
-      row.value = moments_[q].mean();
-      row.n = moments_[q].n();
       if (is_weighted_) row.interval_kind = IntervalKind::kWeighted;
-      if (row.kind == SummaryRow::Kind::kMedian) {
-        FillMedian(is_weighted_ ? StreamMedian() : medians_[q], &row);
-      } else if (is_weighted_) {
+      const bool is_median = row.kind == SummaryRow::Kind::kMedian;
+      if (is_weighted_ && !is_median) {
         FillWeighted(q, &row);
-      } else if (row.kind == SummaryRow::Kind::kRate && !has_repeats_) {
-        FillRate(&row);
-      } else if (row.kind == SummaryRow::Kind::kScore || row.kind == SummaryRow::Kind::kRate) {
-        row.interval_kind = IntervalKind::kBetting;
-        row.interval = scores_[q].Sequence();
       } else {
-        row.standard_error = moments_[q].standard_error();
+        const StreamMedian none;  // no median of weighted trials
+        FillRow({moments_[q].n(), moments_[q].mean(), moments_[q].standard_error(),
+                 !is_median     ? nullptr
+                 : is_weighted_ ? &none
+                                : &medians_[q],
+                 IsScore(row.kind) ? &scores_[q] : nullptr},
+                num_scenes_, &row);
       }
       rows->push_back(std::move(row));
     }
   }
 
  private:
-  void FillRate(SummaryRow* row) const {
-    const std::int64_t successes = row->n > 0 ? std::llround(row->value * static_cast<double>(row->n)) : 0;
-    row->interval = row->interval_kind == IntervalKind::kExact ? ExactBinomialInterval(successes, row->n)
-                                                               : ConfidenceSequence(successes, row->n);
-    if (row->n == 0) return;
-    row->value = static_cast<double>(successes) / static_cast<double>(row->n);
-    if (row->quantity != "nees_coverage") return;
-    const bool is_of_fixed_n = row->interval_kind == IntervalKind::kExact;
-    row->coverage_verdict = JudgeCoverage(row->value, row->interval, row->n, num_scenes_, is_of_fixed_n);
-  }
-
-  // Its interval is of a number of trials that was fixed beforehand.
-  static void FillMedian(const StreamMedian& median, SummaryRow* row) {
-    row->value = median.median();
-    row->n = median.n();
-    row->interval =
-        row->interval_kind == IntervalKind::kExact ? median.interval() : Interval{std::nan(""), std::nan("")};
+  // The means of scenes are no zeros and ones.
+  bool IsScore(SummaryRow::Kind kind) const {
+    return kind == SummaryRow::Kind::kScore || (kind == SummaryRow::Kind::kRate && has_repeats_);
   }
 
   void FillWeighted(size_t q, SummaryRow* row) const {
+    row->value = moments_[q].mean();
+    row->n = moments_[q].n();
     const bool is_of_all = weighted_[q].num_trials == num_scenes_;
     const WeightedRate rate = EstimateWeightedRate(is_of_all ? weighted_[q] : WeightedEvents());
     row->n = is_of_all ? row->n : 0;
@@ -389,13 +408,17 @@ Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
     if (!run.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
     cells[c].AppendRows(run, row, &summary.rows);
   }
-  const bool has_probabilities = std::ranges::any_of(
-      summary.rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity) && row.n > 0; });
-  if (!has_probabilities)
-    std::erase_if(summary.rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity); });
-  if (!with_times)
-    std::erase_if(summary.rows, [](const SummaryRow& row) { return row.quantity == "time_ms"; });
+  LeaveOutRows(with_times, &summary);
   return summary;
+}
+
+void LeaveOutRows(bool with_times, Summary* summary) {
+  std::vector<SummaryRow>& rows = summary->rows;
+  const bool has_probabilities = std::ranges::any_of(
+      rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity) && row.n > 0; });
+  if (!has_probabilities)
+    std::erase_if(rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity); });
+  if (!with_times) std::erase_if(rows, [](const SummaryRow& row) { return row.quantity == "time_ms"; });
 }
 
 }  // namespace rcme

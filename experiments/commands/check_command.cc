@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "experiments/analysis/summarize_counts.h"
 #include "experiments/base/columns.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/study_source.h"
@@ -127,6 +128,10 @@ void ReportDamage(const CheckArguments& arguments, const InputError& error) {
 }
 
 void CheckFile(const CheckArguments& arguments) {
+  if (KeepsCounts(arguments.run)) {
+    fmt::print("{}: sound: the counts of {} trials\n", arguments.run, OpenCounts(arguments.run).NumTrials());
+    return;
+  }
   try {
     const ResultStore store = ResultStore::OpenForReading(arguments.run);
     PrintSound(arguments.run, store);

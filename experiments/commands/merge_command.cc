@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
+#include "experiments/analysis/merge_counts.h"
+#include "experiments/analysis/summarize_counts.h"
 #include "experiments/base/message.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
@@ -31,9 +34,13 @@ std::string MissingInWords(const MergeReport& report) {
                      ArrayText(report.missing_shards), report.num_shards);
 }
 
+// Parts of both kinds are refused, whichever of them comes first.
+bool KeepCounts(const std::vector<std::string>& parts) { return std::ranges::any_of(parts, KeepsCounts); }
+
 // The shards alone go to standard output, for the shell.
 void CheckMissing(const MergeArguments& arguments) {
-  const MergeReport report = CheckParts(arguments.parts, arguments.options);
+  const auto check = KeepCounts(arguments.parts) ? CheckCounts : CheckParts;
+  const MergeReport report = check(arguments.parts, arguments.options);
   for (const std::string& part : report.unreadable) PrintMessage("{}\n", part);
   if (report.num_missing == 0) {
     PrintMessage("{} trials, none is missing\n", report.num_trials);
@@ -47,8 +54,8 @@ void CheckMissing(const MergeArguments& arguments) {
 
 void MergeParts(const MergeArguments& arguments) {
   const StopOnSignals stop;
-  const MergeReport report =
-      MergeResults(arguments.parts, arguments.out, arguments.is_partial, arguments.options);
+  const auto merge = KeepCounts(arguments.parts) ? MergeCounts : MergeResults;
+  const MergeReport report = merge(arguments.parts, arguments.out, arguments.is_partial, arguments.options);
   if (report.num_missing > 0 && !arguments.is_partial) {
     PrintMessage("{}; nothing was written (--partial writes what there is)\n", MissingInWords(report));
     throw EndWith{kTryAgain};

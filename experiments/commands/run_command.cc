@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "experiments/analysis/count_study.h"
 #include "experiments/base/columns.h"
 #include "experiments/base/duration.h"
 #include "experiments/base/message.h"
@@ -26,6 +27,7 @@ struct RunArguments {
   StudyChanges changes;
   std::int64_t trials = 0, repeats_per_scene = 0;  // 0: the study's own
   int threads = 0;
+  std::string keep = "all";
   std::string shard, max_time;  // empty: all of the study, no limit
   std::string until, until_event = "failure", merged;
   std::int64_t max_trials = UntilOptions{}.max_trials;
@@ -113,13 +115,16 @@ void Run(const RunArguments& arguments) {
     StopAfter(std::chrono::duration<double>(ParseDuration(arguments.max_time).value()));
   const Shard shard = arguments.shard.empty() ? Shard() : ParseShard(arguments.shard, ThisEnvironment());
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
-  ResultStore store = ResultStore::OpenForRun(arguments.out, plan, shard);
+  const bool keeps_counts = arguments.keep == "counts";
+  std::optional<ResultStore> store;
+  if (!keeps_counts) store.emplace(ResultStore::OpenForRun(arguments.out, plan, shard));
   PrintMessage("{}: {} conditions, {} trials, {} estimators{} -> {}\n", plan.study.name,
                plan.conditions.size(), plan.NumTrials(), plan.estimators.size(),
                shard.count > 1 ? ", of which shard " + shard.Text() : "", arguments.out);
-  if (!arguments.until.empty() && shard.count > 1) return RunRound(plan, arguments, shard, &store);
-  if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &store);
-  const RunReport report = RunStudy(plan, arguments.threads, &store, shard);
+  if (!arguments.until.empty() && shard.count > 1) return RunRound(plan, arguments, shard, &*store);
+  if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &*store);
+  const RunReport report = keeps_counts ? CountStudy(plan, arguments.threads, arguments.out, shard)
+                                        : RunStudy(plan, arguments.threads, &*store, shard);
   PrintMessage("done: {} trials ({} were there already) in {}; next: rcme {} {}\n", report.num_trials,
                report.num_trials - report.num_run_now, DurationInWords(report.seconds),
                shard.count > 1 ? "merge" : "summarize", arguments.out);
@@ -179,6 +184,15 @@ void AddRunCommand(CLI::App& app) {
                    "merged result file of the rounds before, for a further round of --until in shards")
       ->needs(until)
       ->needs(shard);
+  command
+      ->add_option(
+          "--keep", arguments->keep,
+          "all: every trial; counts: what `rcme summarize` needs of all, exactly, with a few trials as "
+          "they are, in a file that does not grow with their number")
+      ->check(CLI::IsMember({"all", "counts"}))
+      ->capture_default_str()
+      ->excludes(until)
+      ->excludes(repeats);
   command
       ->add_option(
           "--max-time", arguments->max_time,

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "experiments/analysis/forecast_output.h"
+#include "experiments/analysis/summarize_counts.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/analysis/trial_table.h"
 #include "experiments/base/file_output.h"
@@ -22,6 +23,12 @@ std::string Tables(const ResultStore& store, const Summary& summary) {
   const std::string text = SummaryAsTable(summary);
   return HasFailureProbabilities(summary) ? text + "\n" + ForecastsAsTable(MeasureFailureForecasts(store))
                                           : text;
+}
+
+std::string TextOf(const Summary& summary, const std::string& format) {
+  return format == "csv"    ? SummaryAsCsv(summary)
+         : format == "json" ? SummaryAsJson(summary)
+                            : SummaryAsTable(summary);
 }
 
 }  // namespace
@@ -72,14 +79,16 @@ void AddSummarizeCommand(CLI::App& app) {
                  "all conditions as one: rates over the whole study, every trial with the same weight")
       ->excludes("--raw");
   command->callback([arguments] {
+    const Pooling pooling = arguments->is_pooled ? Pooling::kPooled : Pooling::kPerCondition;
+    if (arguments->raw.empty() && KeepsCounts(arguments->run)) {
+      const Summary summary = SummarizeCounts(OpenCounts(arguments->run), arguments->with_times, pooling);
+      return PrintOrWrite(arguments->out, TextOf(summary, arguments->format));
+    }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
-    const Summary summary = Summarize(store, arguments->with_times,
-                                      arguments->is_pooled ? Pooling::kPooled : Pooling::kPerCondition);
-    const std::string text = arguments->format == "csv"    ? SummaryAsCsv(summary)
-                             : arguments->format == "json" ? SummaryAsJson(summary)
-                                                           : Tables(store, summary);
-    PrintOrWrite(arguments->out, text);
+    const Summary summary = Summarize(store, arguments->with_times, pooling);
+    PrintOrWrite(arguments->out,
+                 arguments->format == "table" ? Tables(store, summary) : TextOf(summary, arguments->format));
   });
 }
 

@@ -58,6 +58,7 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
                                                {"until_options", run.until_options},
                                                {"until_trials", std::to_string(run.until_trials)},
                                                {"shard", run.shard},
+                                               {"keep", run.keeps_counts ? "counts" : "all"},
                                                {"program", run.origin.program},
                                                {"instruction_set", run.origin.instruction_set},
                                                {"study", run.study_yaml},
@@ -128,6 +129,8 @@ RunDescription ReadRun(SQLite::Database& database) {
   run.until_options = values.Text("until_options");
   run.until_trials = values.WholeNumber("until_trials", kMax);
   run.shard = values.Text("shard");
+  run.keeps_counts = values.Text("keep") == "counts";
+  if (!run.keeps_counts && values.Text("keep") != "all") throw Damage("'keep' of table run is not possible");
   run.origin = {values.Text("program"), values.Text("instruction_set")};
   return run;
 }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/result_file/result_file.h"
+#include "experiments/result_file/parts.h"
 
 namespace rcme {
 
@@ -26,21 +26,6 @@ class TrialsHeld {
  private:
   std::vector<std::vector<bool>> held_;  // per condition
   std::int64_t num_trials_ = 0;
-};
-
-struct MergeOptions {
-  // Parts of other instruction sets than the first one's are merged too.
-  bool are_instruction_sets_mixed = false;
-};
-
-struct MergeReport {
-  RunDescription run;            // of the whole
-  std::int64_t num_trials = 0;   // held by the parts together
-  std::int64_t num_twice = 0;    // read again from another part: they were equal
-  std::int64_t num_missing = 0;  // of those asked for; 0 under a stopping rule, which alone knows
-  std::uint32_t num_shards = 0;  // 0: the parts do not agree on it
-  std::vector<std::uint32_t> missing_shards;  // ascending: lost, not whole, or not among the parts
-  std::vector<std::string> unreadable;  // parts that could not be read, in words; their trials are missing
 };
 
 // Writes the parts to `out`, whole or not at all: where trials are missing, only if `is_partial`. Throws

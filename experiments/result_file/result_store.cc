@@ -8,7 +8,7 @@
 #include "estimator/instruction_set.h"
 #include "experiments/base/program_name.h"
 #include "experiments/result_file/first_difference.h"
-#include "experiments/result_file/result_file.h"
+#include "experiments/result_file/open_for_run.h"
 #include "experiments/result_file/trial_writer.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -16,76 +16,26 @@
 namespace rcme {
 namespace {
 
-void CheckPathToWrite(const std::string& path) {
-  if (path.empty()) throw InputError("--out: '' is not allowed; give the path of a result file");
-  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  if (std::filesystem::is_directory(path))
-    throw InputError(fmt::format("{}: is a folder, not a result file", path));
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
-    throw InputError(fmt::format("{}: cannot be written as a result file: it is a device or a pipe", path));
-  if (!parent.empty() && !std::filesystem::is_directory(parent))
-    throw InputError(fmt::format("{}: folder '{}' does not exist", path, parent.string()));
+void CheckKeepsTrials(const ResultFile& file) {
+  if (!file.description.keeps_counts) return;
+  throw InputError(fmt::format(
+      "{}: holds counts, not trials (--keep counts): `rcme summarize` and `rcme merge` read it", file.path));
 }
-
-// Names separated by commas, with this one.
-std::string WithName(const std::string& names, const std::string& name) {
-  if (names.empty()) return name;
-  const bool has_it = (", " + names + ",").find(", " + name + ",") != std::string::npos;
-  return has_it ? names : names + ", " + name;
-}
-
-// The run as a plan asks for it, in a file that earlier runs have written to: what they asked for is still
-// asked for, and what they noted stays.
-RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {
-  RunDescription run = Describe(plan);
-  if (earlier.trials > run.trials) {
-    Study study = plan.study;
-    study.trials = run.trials = earlier.trials;
-    run.study_yaml = ToYaml(study);
-  }
-  for (size_t c = 0; c < run.conditions.size(); ++c) {
-    run.conditions[c].num_trials = std::max(run.conditions[c].num_trials, earlier.conditions[c].num_trials);
-  }
-  run.shard = earlier.shard;
-  run.stopping_rule = earlier.stopping_rule;
-  run.until_options = earlier.until_options;
-  run.until_trials = earlier.until_trials;
-  run.origin = earlier.origin;
-  return run;
-}
-
-RunDescription DescribeShard(const StudyPlan& plan, const Shard& shard) {
-  RunDescription run = Describe(plan);
-  run.shard = shard.Text();
-  return run;
-}
-
-std::string ShardInWords(const std::string& shard) {
-  return shard.empty() ? "all trials of its study" : fmt::format("shard {} of its study", shard);
-}
-
-// Throws Damage if a description is not that of its study.
-void CheckFits(const RunDescription& run, const StudyPlan& plan) {
-  if (plan.conditions.size() != run.conditions.size() || plan.estimators.size() != run.estimators.size())
-    throw Damage("its tables are not those of its study");
-}
-
-// A read-write connection that no other run shares.
-constexpr const char* kTakeLock = "PRAGMA locking_mode = EXCLUSIVE; BEGIN IMMEDIATE; COMMIT";
 
 }  // namespace
 
 TrialOrigin ThisProgram() { return {ProgramName(), InstructionSetName()}; }
 
 struct ResultStore::Connection {
-  Connection(const std::string& path, int sqlite_flags) : file(path, sqlite_flags) {}
+  explicit Connection(std::unique_ptr<ResultFile> opened) : owned(std::move(opened)) {}
 
   void Set(const RunDescription& run) {
     if (writer) writer->Commit();
     file.SetDescription(run);
   }
 
-  ResultFile file;
+  const std::unique_ptr<ResultFile> owned;
+  ResultFile& file = *owned;
   std::optional<TrialWriter> writer;
   bool are_trials_checked = false;
 };
@@ -103,39 +53,9 @@ ResultStore::~ResultStore() {
 }
 
 ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& plan, const Shard& shard) {
-  CheckPathToWrite(path);
   return NamingFile(path, [&] {
-    auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    ResultFile& file = connection->file;
-    file.database.exec(kTakeLock);  // now: a second run stops here
-    if (file.IsNew()) {
-      file.Create(DescribeShard(plan, shard));
-    } else {
-      file.LoadDescription();
-      file.CheckTrials();
-      file.CheckPages();
-    }
-    // A file without a trial (its run failed at once) takes any study and any shard.
-    const std::string& identity = file.description.identity;
-    if (identity != plan.identity && file.totals.NumTrials() > 0) {
-      throw InputError(
-          fmt::format("{}: holds the results of another study, run by {}; first difference: {}. Give another "
-                      "--out",
-                      path, file.description.origin.program, FirstDifference(identity, plan.identity)));
-    }
-    if (file.description.shard != shard.Text() && file.totals.NumTrials() > 0) {
-      throw InputError(fmt::format("{}: is the file of {}, not of {}. Give another --out", path,
-                                   ShardInWords(file.description.shard),
-                                   shard.count == 1 ? "all trials" : "shard " + shard.Text()));
-    }
-    if (identity != plan.identity || file.description.shard != shard.Text()) {
-      file.CreateAnew(DescribeShard(plan, shard));
-    } else {
-      CheckFits(file.description, plan);
-      const RunDescription run = Continued(file.description, plan);
-      if (run.study_yaml != file.description.study_yaml) file.SetDescription(run);
-    }
-    connection->writer.emplace(&file);
+    auto connection = std::make_unique<Connection>(OpenFileForRun(path, plan, shard, Keep::kTrials));
+    connection->writer.emplace(&connection->file);
     return ResultStore(std::move(connection));
   });
 }
@@ -145,7 +65,8 @@ ResultStore ResultStore::Create(const std::string& path, const RunDescription& r
   if (std::filesystem::exists(path))
     throw InputError(fmt::format("{}: exists already; give a new file", path));
   return NamingFile(path, [&] {
-    auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    auto connection = std::make_unique<Connection>(
+        std::make_unique<ResultFile>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE));
     connection->file.database.exec(kTakeLock);
     connection->file.Create(run);
     connection->writer.emplace(&connection->file);
@@ -157,9 +78,11 @@ ResultStore ResultStore::OpenUnchecked(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
   return NamingFile(path, [&] {
     // Read-write where that is allowed: rolling back the journal of a run that was killed needs to write.
-    auto connection = std::make_unique<Connection>(path, SQLite::OPEN_READWRITE);
+    auto connection =
+        std::make_unique<Connection>(std::make_unique<ResultFile>(path, SQLite::OPEN_READWRITE));
     connection->file.database.exec("BEGIN");  // what is checked is what will be read, whoever writes
     connection->file.LoadDescription();
+    CheckKeepsTrials(connection->file);
     return ResultStore(std::move(connection));
   });
 }
@@ -264,14 +187,9 @@ std::int64_t ResultStore::NumTrials() const { return connection_->file.totals.Nu
 std::string ResultStore::NoteOrigin(const TrialOrigin& origin) {
   RunDescription run = connection_->file.description;
   const TrialOrigin before = run.origin;
-  run.origin = {WithName(before.program, origin.program),
-                WithName(before.instruction_set, origin.instruction_set)};
+  const std::string warning = NoteOriginIn(&run, connection_->file.path, NumTrials() > 0, origin);
   if (run.origin != before) Set(run);
-  if (run.origin == origin || connection_->file.totals.NumTrials() == 0) return {};
-  return fmt::format(
-      "{}: its trials are of {} ({}), the further ones will be of {} ({}): they may differ in their last "
-      "bits",
-      connection_->file.path, before.program, before.instruction_set, origin.program, origin.instruction_set);
+  return warning;
 }
 
 void ResultStore::ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const {

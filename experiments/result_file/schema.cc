@@ -93,6 +93,29 @@ const std::vector<ResultTable>& ResultTables() {
         {"num_trials", "INTEGER", "trials", "trials in the file"},
         {"checksum", "INTEGER", "", "sum of their checksums"}},
        {"condition"}},
+      {"counted",
+       "Which trials the counts are of; empty unless the run keeps counts.",
+       {kCondition,
+        {"shard", "TEXT", "", "the shard that has them, as `3/64`; empty: all trials"},
+        {"places", "TEXT", "", "their places in the shard, from 0: `0-499,600`"},
+        {"checksum", "INTEGER", "", "CRC-32 of the row, begun with that of the study's identity"}},
+       {"condition", "shard"}},
+      {"counts",
+       "What the summary needs of all trials, exactly; empty unless the run keeps counts. A sum is a "
+       "hexadecimal "
+       "whole number and a power of two, `-1a3p-20`.",
+       {kCondition,
+        {"estimator", "INTEGER", "", "number of the estimator; the one after the last: the problems"},
+        {"quantity", "TEXT", "", "its name (`rcme list quantities`)"},
+        {"n", "INTEGER", "trials", "trials that give it a number"},
+        {"sum", "TEXT", "of the quantity", "their sum; of a rate in decimal digits; empty for a median"},
+        {"sum_squares", "TEXT", "", "the sum of their squares; empty for a rate and a median"},
+        {"cells", "TEXT", "",
+         "of a median how many, the least and the greatest of its cells (`stats/stream_median.h`), of a "
+         "score "
+         "its parts on a grid (`stats/exact_scores.h`); else empty"},
+        {"checksum", "INTEGER", "", "CRC-32 of the row, begun with that of the study's identity"}},
+       {"condition", "estimator", "quantity"}},
       {"problems",
        "One row per trial: the problem, whoever solves it.",
        RecordColumns<ProblemRecord>(kChecksumColumn),
@@ -128,6 +151,9 @@ const std::vector<RunKey>& RunKeys() {
       {"shard",
        "which shards of the study the file is of: `3/64`, or merged ones that are complete, `1-3,7/64` or "
        "`none/64`; empty: the whole study"},
+      {"keep",
+       "`all`: every trial is in the file; `counts`: what the summary needs of all, a few trials as they "
+       "are"},
       {"program",
        "programs that computed trials, with their versions; separated by commas, empty: not known"},
       {"instruction_set", "instruction sets they used, likewise"},

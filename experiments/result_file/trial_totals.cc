@@ -52,6 +52,11 @@ void TrialTotals::Add(std::uint32_t condition, std::uint32_t trial_checksum) {
   changed_.insert(condition);
 }
 
+void TrialTotals::Clear(std::uint32_t condition) {
+  totals_.at(condition) = {};
+  changed_.insert(condition);
+}
+
 void TrialTotals::WriteChanged(SQLite::Database& database) {
   SQLite::Statement insert(database, "INSERT OR REPLACE INTO totals VALUES (?, ?, ?)");
   for (const std::uint32_t condition : changed_) WriteRow(insert, condition, totals_[condition]);

@@ -19,11 +19,12 @@ class TrialWriter {
   // To each problem one record per estimator, in the problems' order. Commits about twice a second.
   void Add(const std::vector<ProblemRecord>& problems, const std::vector<TrialRecord>& records);
   void Commit();
+  // The same for one trial in a transaction of the caller's, who writes the totals and takes back what fails.
+  void AddTrial(const ProblemRecord& problem, std::span<const TrialRecord> records);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  void AddTrial(const ProblemRecord& problem, std::span<const TrialRecord> records);
   template <typename Action>
   void OrRollBack(Action action);
 

@@ -49,7 +49,8 @@ struct RunDescription {
   // Which shards of the study: "3/64" (study/shard.h), of several that were merged "1-3,7/64", "none/64" if
   // every one of them lacks trials; empty: all of it.
   std::string shard;
-  TrialOrigin origin;  // of all trials; several names are separated by commas, none known is empty
+  bool keeps_counts = false;  // of the trials, not the trials themselves (result_file/counts_tables.h)
+  TrialOrigin origin;         // of all trials; several names are separated by commas, none known is empty
 
   std::int64_t NumTrials() const;
 };

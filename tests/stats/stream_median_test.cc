@@ -68,5 +68,27 @@ TEST(StreamMedian, IntervalCoversForALawWithAHeavyTail) {
   EXPECT_FALSE(covered.Admits(0.95)) << "no power";
 }
 
+TEST(StreamMedian, InGroupsAndAsText) {
+  StreamMedian whole, merged;
+  RandomStream rng({.seed = 2, .purpose = 171});
+  for (int group = 0; group < 5; ++group) {
+    StreamMedian part;
+    for (int i = 0; i < 40; ++i) {
+      const double x = i == 7 ? std::numeric_limits<double>::infinity() : rng.Uniform() - 0.3;
+      part.Add(x);
+      whole.Add(x);
+    }
+    merged.Merge(StreamMedian::FromText(part.Text()));
+  }
+  EXPECT_EQ(merged.Text(), whole.Text());
+  EXPECT_EQ(merged.n(), whole.n());
+  EXPECT_EQ(merged.median(), whole.median());
+  EXPECT_EQ(merged.interval().upper, whole.interval().upper);
+  EXPECT_EQ(StreamMedian::FromText("").n(), 0);
+  for (const char* other : {"1", "1:2", "1:0x1p+0:0x1p+1", "0:0x1p+0:0x1p+0", "1:0x1p+0:0x1p+0x", "1:nan:nan",
+                            "1:0x1p+0:0x1p+0 2:0x1p+0:0x1p+0"})
+    EXPECT_THROW(StreamMedian::FromText(other), std::invalid_argument) << other;
+}
+
 }  // namespace
 }  // namespace rcme

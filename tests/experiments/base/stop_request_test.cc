@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <memory>
+#include <thread>
 
 #include "experiments/base/for_each_index.h"
 #include "experiments/run/run_study.h"
@@ -69,6 +71,12 @@ TEST(StopRequest, ComesByItselfAfterATimeAndAsksToTryAgain) {
     std::raise(SIGTERM);
     EXPECT_EQ(StopExitCode(), 128 + SIGTERM) << "who was asked to end says so";
   }
+  {
+    const StopOnSignals stop;
+    StopAfter(std::chrono::milliseconds(1));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_NO_THROW(ForEachIndex(10, 1, [](std::int64_t) {})) << "the limit ends with who set it";
   const StopOnSignals next;
   EXPECT_FALSE(IsStopRequested());
 }

@@ -207,9 +207,9 @@ TEST_F(MergeTest, AShardIsNotContinuedAsAnother) {
         ResultStore::OpenForRun(part, plan, {2, 2});
       },
       {"shard 1/2", "shard 2/2"}));
-  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForRun(part, plan); }, {"shard 1/2", "all trials"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForRun(part, plan); }, {"shard 1/2", "whole study"}));
   const std::string whole = Run({1, 1});
-  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForRun(whole, plan, {2, 2}); }, {"all trials"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForRun(whole, plan, {2, 2}); }, {"whole study"}));
 }
 
 }  // namespace

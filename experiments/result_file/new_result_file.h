@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "experiments/result_file/result_file.h"
+
+namespace rcme {
+
+// A result file in the making, beside the place that it takes at Finish; without that nothing is left of it.
+// Throws InputError that names the path if it cannot be written, or exists.
+class NewResultFile {
+ public:
+  NewResultFile(const std::string& path, const RunDescription& run);
+  ~NewResultFile();
+  NewResultFile(const NewResultFile&) = delete;
+  NewResultFile& operator=(const NewResultFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  ResultFile& file() { return *file_; }
+  // With this description at last. No transaction is open.
+  void Finish(const RunDescription& run);
+
+ private:
+  const std::string path_, part_;
+  std::optional<ResultFile> file_;
+};
+
+}  // namespace rcme
