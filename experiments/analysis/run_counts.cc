@@ -20,8 +20,8 @@ std::uint64_t HashOfTrial(std::uint32_t condition, std::uint32_t trial) {
 }
 
 // Keeps those of the least hashes.
-void Keep(std::uint64_t hash, const StoredTrial& trial, size_t num,
-          std::map<std::uint64_t, StoredTrial>* kept) {
+void KeepByHash(std::uint64_t hash, const StoredTrial& trial, size_t num,
+                std::map<std::uint64_t, StoredTrial>* kept) {
   if (kept->size() >= num && hash >= kept->rbegin()->first) return;
   kept->emplace(hash, trial);
   if (kept->size() > num) kept->erase(std::prev(kept->end()));
@@ -110,9 +110,9 @@ Places Places::FromText(const std::string& text) {
 
 void KeptTrials::Add(const StoredTrial& trial, const FailureBounds& bounds) {
   const std::uint64_t hash = HashOfTrial(trial.problem.condition, trial.problem.trial);
-  Keep(hash, trial, kNumSampled, &sampled_);
+  KeepByHash(hash, trial, kNumSampled, &sampled_);
   if (std::ranges::any_of(trial.records, [&](const TrialRecord& r) { return HasFailed(r, bounds); }))
-    Keep(hash, trial, kNumFailed, &failed_);
+    KeepByHash(hash, trial, kNumFailed, &failed_);
 }
 
 std::map<std::uint32_t, StoredTrial> KeptTrials::All() const {
