@@ -9,6 +9,7 @@ namespace rcme {
 namespace {
 
 constexpr int kFirstMatches = 64;
+constexpr int kModelsOfSample = 5;       // about, to reserve room for
 constexpr size_t kLeastFullScores = 40;  // of a round; a quarter of it where that is more
 // Two hypotheses are the same motion, or near to each other, by |<E_a, E_b>| / 2.
 constexpr double kSame = 0.9999, kNear = 0.98;
@@ -36,6 +37,7 @@ class Rounds {
   // Draws until `num_samples` are drawn in all, scores their models.
   void Draw(int num_samples) {
     const int first_end = std::min(kFirstMatches, scores_.num_matches());
+    fresh_.reserve(static_cast<size_t>(kModelsOfSample * (num_samples - num_drawn_)));
     while (num_drawn_ < num_samples) {
       source_.FillNext(matches_, RequestedOutputs::kNone, rng_, &block_, &proposals_);
       for (int lane = 0; lane < kBlockSize; ++lane) {

@@ -318,7 +318,8 @@ BenchmarkCase EstimatorCase(const std::string& name, const std::string& estimato
 
 std::vector<BenchmarkCase> AllBenchmarkCases() {
   std::vector<BenchmarkCase> cases;
-  for (const auto& group : {StageCases(), EstimatorCases(), OpenCvCases(), PoseLibCases(), TrialCases()}) {
+  for (const auto& group :
+       {StageCases(), EstimatorCases(), CalibratedCases(), OpenCvCases(), PoseLibCases(), TrialCases()}) {
     cases.insert(cases.end(), group.begin(), group.end());
   }
   return cases;

@@ -26,6 +26,11 @@ std::vector<BenchmarkCase> AllBenchmarkCases();
 BenchmarkCase EstimatorCase(const std::string& name, const std::string& estimator,
                             const RansacOptions& options);
 
+// rcme_calibrated by its own stopping rule.
+BenchmarkCase CalibratedCase(const std::string& name);
+// The same, with half the matches wrong too, and its stages.
+std::vector<BenchmarkCase> CalibratedCases();
+
 // PoseLib's estimator where the library is installed, and nothing where it is not.
 std::vector<BenchmarkCase> PoseLibCases();
 

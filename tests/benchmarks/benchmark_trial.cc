@@ -13,13 +13,13 @@ StreamName NameOf(std::uint32_t trial) { return {1, 0, trial, 0}; }
 
 }  // namespace
 
-TrialData MakeBenchmarkData(int num_matches, std::uint32_t trial) {
-  static std::map<int, std::shared_ptr<const DataSource>> sources;  // by the number of matches
-  std::shared_ptr<const DataSource>& source = sources[num_matches];
+TrialData MakeBenchmarkData(int num_matches, std::uint32_t trial, const std::string& outlier_ratio) {
+  static std::map<std::pair<int, std::string>, std::shared_ptr<const DataSource>> sources;
+  std::shared_ptr<const DataSource>& source = sources[{num_matches, outlier_ratio}];
   if (!source) {
     source = MakeDataSources({{"scene", "uniform_volume"},
                               {"num_matches", std::to_string(num_matches)},
-                              {"outlier_ratio", "0.2"},
+                              {"outlier_ratio", outlier_ratio},
                               {"sigma_px", "0.5"}})
                  .sources[0]
                  .second;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 #include "estimator/kernels/block_search.h"
@@ -61,6 +62,6 @@ struct BenchmarkTrial {
 std::vector<BenchmarkTrial> MakeBenchmarkTrials(int num_matches, int num_trials);
 const std::vector<BenchmarkTrial>& BenchmarkTrials();  // kNumBenchmarkTrials with kNumMatches matches each
 
-TrialData MakeBenchmarkData(int num_matches, std::uint32_t trial);
+TrialData MakeBenchmarkData(int num_matches, std::uint32_t trial, const std::string& outlier_ratio = "0.2");
 
 }  // namespace rcme

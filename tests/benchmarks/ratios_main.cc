@@ -78,6 +78,8 @@ void AddGrowingProblems(const Extent& extent, const std::vector<BenchmarkCase>& 
     tasks->push_back(TaskOf(SizedName("n", n), PrcmeCase(kNumHypotheses), trials[n], num_trials));
     tasks->push_back(
         TaskOf(SizedName("n_scoring", n), FindCase(cases, "score_as_printed/fast"), trials[n], num_trials));
+    tasks->push_back(
+        TaskOf(SizedName("n_calibrated", n), CalibratedCase("rcme_calibrated"), trials[n], num_trials));
   }
   for (const int iterations : extent.num_iterations) {
     tasks->push_back(
@@ -136,6 +138,11 @@ constexpr int kRankAwareOperations = 17 + 41 + 1 + 1;
 constexpr int kPrintedOperations =
     17 + 8 + 5 * (12 + 10 + 4 + 1) + 16 + 2 * 6 + 8 + (4 + 5 + 5 + 2) + (1 + 1 + 12 + 1);
 
+// SumMixture: EvaluateConstraint 12 for F and each of five derivatives, Dot4 4 for each, r 1, u 1, two for
+// each derivative; DepthInNoise 34; EvaluateMixture 22; 10 of the sums beside the five of the gradient and
+// the 5 + 15 of the Hessian.
+constexpr int kMixtureOperations = 6 * (12 + 4) + 2 + 5 * 2 + 34 + 22 + 10 + 5 + 20;
+
 // Share of the peak that a scan of all hypotheses reaches.
 PerRound ShareOfPeak(const PerRound& scan_seconds, int operations, const PerRound& seconds_per_fma) {
   const int num_vectors = BenchmarkTrials()[0].blocks.num_blocks() * kBlockSize / LanesPerVector();
@@ -171,6 +178,9 @@ void AddPeerRatios(const Times& times, std::vector<Ratio>* ratios) {
           "time of findFundamentalMat(USAC_ACCURATE)" + per_rcme);
   speedup("rcme_vs_poselib_relative_pose", "poselib_relative_pose", rcme,
           "time of PoseLib's estimate_relative_pose" + per_rcme);
+  for (const std::string peer : {"opencv_ransac_200", "opencv_usac_magsac", "poselib_relative_pose"})
+    speedup("rcme_calibrated_vs_" + peer, peer, "rcme_calibrated",
+            "time of " + peer + " / time of rcme_calibrated (options default)");
   speedup("rcme_vs_reference", "rcme_as_printed/reference", rcme,
           "time of rcme with implementation reference, refinement_error reprojection" + per_rcme);
   speedup("standard_vs_opencv_ransac_200", "opencv_ransac_200", "standard/fast",
@@ -200,6 +210,9 @@ void AddShares(const Times& times, std::vector<Ratio>* ratios) {
                      ShareOfPeak(times.at("scan_as_printed"), kPrintedOperations, times.at("fma_peak"))});
   ratios->push_back({"rank_aware_score_fma_peak", meaning("ScanRankAware", kRankAwareOperations),
                      ShareOfPeak(times.at("scan_rank_aware"), kRankAwareOperations, times.at("fma_peak"))});
+  ratios->push_back(
+      {"mixture_sums_fma_peak", meaning("SumMixture", kMixtureOperations),
+       ShareOfPeak(times.at("calibrated_mixture_sums"), kMixtureOperations, times.at("fma_peak"))});
 }
 
 void AddExponents(const Extent& extent, const Times& times, std::vector<Ratio>* ratios) {
@@ -211,6 +224,7 @@ void AddExponents(const Extent& extent, const Times& times, std::vector<Ratio>* 
   };
   add("n", extent.num_matches, "whole call of prcme (as printed, N = 200) over n");
   add("n_scoring", extent.num_matches, "scoring of 200 hypotheses as printed over n");
+  add("n_calibrated", extent.num_matches, "whole call of rcme_calibrated over n");
   add("iterations", extent.num_iterations, "whole call of prcme (as printed, n = 500) over N");
   add("trials", extent.num_study_trials,
       "wall time of a study with rcme, on all cores, over its number of trials");
@@ -264,6 +278,7 @@ void WriteCases(const std::vector<BenchmarkCase>& cases, const Times& times, ord
 void WriteSeries(const Extent& extent, const Times& times, ordered_json* out) {
   for (const auto& [series, sizes] : {std::pair{"n", extent.num_matches},
                                       {"n_scoring", extent.num_matches},
+                                      {"n_calibrated", extent.num_matches},
                                       {"iterations", extent.num_iterations},
                                       {"trials", extent.num_study_trials}}) {
     for (const int size : sizes) {
