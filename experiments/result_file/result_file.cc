@@ -44,6 +44,14 @@ void ResultFile::LoadDescription() {
   totals = TrialTotals::Read(database);
   if (totals.num_conditions() != description.conditions.size())
     throw Damage("table totals has other conditions than the study");
+  if (!description.keeps_counts) CheckHasNoCounts();
+}
+
+void ResultFile::CheckHasNoCounts() {
+  for (const char* table : {"counted", "counts"}) {
+    if (database.execAndGet(fmt::format("SELECT count(*) FROM {}", table)).getInt64() > 0)
+      throw Damage(fmt::format("table {} has rows, although the file keeps every trial", table));
+  }
 }
 
 void ResultFile::CheckTrials() const {

@@ -40,6 +40,9 @@ class ResultFile {
   SQLite::Database database;
   RunDescription description;
   TrialTotals totals;
+
+ private:
+  void CheckHasNoCounts();
 };
 
 }  // namespace rcme

@@ -38,6 +38,7 @@ TEST_F(CorruptedResultFile, PagesZeroedAndSwapped) {
     Write(zeroed);
     ExpectRefused(fmt::format("page {} zeroed", page));
     doubled.replace(page * kPage, kPage, *bytes_, (page + 1) % num_pages * kPage, kPage);
+    if (doubled == *bytes_) continue;  // two tables without a row
     Write(doubled);
     ExpectRefused(fmt::format("page {} is a copy of the next", page));
   }
