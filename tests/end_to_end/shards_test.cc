@@ -134,5 +134,56 @@ TEST_F(Shards, KnowTheirNumberFromTheScheduler) {
   EXPECT_EQ(Merge({Part(5, 9)}, {"--check"}).out, "1-4,6-9\n");
 }
 
+TEST_F(Shards, KeepCountsToTheSameBytes) {
+  const auto run = [&](const std::string& out, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"run", study_, "--out", out, "--trials", "600", "--keep", "counts"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult result = RunRcme(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  const auto summary = [](const std::string& path) {
+    return RunRcme({"summarize", path, "--format", "json"}).out + RunRcme({"summarize", path}).out;
+  };
+  const std::string whole = folder_.Path("whole.sqlite");
+  run(whole, {});
+  const Paths parts = {Part(1, 3), Part(2, 3), Part(3, 3)};
+  for (int number = 1; number <= 3; ++number) run(Part(number, 3), {"--shard", fmt::format("{}/3", number)});
+  EXPECT_EQ(Merge({parts[0], parts[2]}, {"--check"}).out, "2\n");
+  EXPECT_EQ(summary(Merged(parts, "counts")), summary(whole));
+  EXPECT_GT(summary(whole).size(), 10'000u);
+  EXPECT_EQ(RunRcme({"check", whole}).exit_code, 0);
+  EXPECT_EQ(RunRcme({"compare", whole}).exit_code, 2);
+  EXPECT_EQ(RunRcme({"summarize", whole, "--raw", "csv"}).exit_code, 2);
+}
+
+TEST_F(Shards, GoInRoundsUntilIntervalsAreNarrow) {
+  const std::vector<std::string> until = {"run", study_, "--threads", "1", "--until", "ci=0.06", "--out"};
+  const auto run = [&](const std::string& out, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = until;
+    arguments.push_back(out);
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return RunRcme(arguments);
+  };
+  const std::string whole = folder_.Path("whole.sqlite");
+  const ProgramResult alone = run(whole, {});
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  std::string merged;
+  for (int round = 0; round < 10; ++round) {
+    int exit_code = 0;
+    for (int number = 1; number <= 2; ++number) {
+      std::vector<std::string> options = {"--shard", fmt::format("{}/2", number)};
+      if (!merged.empty()) options.insert(options.end(), {"--merged", merged});
+      exit_code = run(Part(number, 2), options).exit_code;
+      EXPECT_THAT(exit_code, testing::AnyOf(0, 75));
+    }
+    if (exit_code == 0) break;
+    merged = Merged({Part(1, 2), Part(2, 2)}, fmt::format("round_{}", round));
+  }
+  const ProgramResult last = run(merged, {});
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_EQ(last.out, alone.out) << "the table of what was spent";
+  EXPECT_EQ(Bytes(merged), Bytes(whole));
+}
+
 }  // namespace
 }  // namespace rcme
