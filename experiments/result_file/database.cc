@@ -24,7 +24,7 @@ std::string ReasonOf(const SQLite::Exception& error) {
       return "is not an rcme result file, or is damaged at its beginning";
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return "is in use by another run";
+      return "is in use by another run (or on a file system without locks)";
     case SQLITE_FULL:
     case SQLITE_IOERR:
       return fmt::format("cannot be written ({}); trials committed before are safe", error.what());
