@@ -16,6 +16,7 @@
 
 #include "stats/intervals.h"
 #include "tests/estimator/agreement/difference.h"
+#include "tests/estimator/agreement/given_models.h"
 #include "tests/estimator/agreement/loop_replay.h"
 #include "tests/estimator/agreement/refinement_replay.h"
 #include "tests/estimator/agreement/variant.h"
@@ -25,7 +26,7 @@ namespace {
 
 // At most this share of the trials may differ.
 constexpr double kAllowedRate = 0.001;
-constexpr double kAllowedExempt = 0.25;
+constexpr double kAllowedOtherModels = 0.25;
 // False alarm of a test against it: at most 5e-5 a variant.
 constexpr double kConfidence = 0.9999;
 
@@ -43,16 +44,11 @@ Cause CauseAfterTheLoop(const Variant& variant, const MotionProblem& problem, co
 }
 
 constexpr const char* kMissedModel = "missed model";
-// Of a trial in which the solvers find different models, but both find both winners.
-constexpr const char* kOtherWinner = "another choice among the same models";
 
 template <typename Solver>
 Cause FindCauseOf(const Variant& variant, const MotionProblem& problem, std::uint32_t trial,
                   Difference difference, const MotionEstimate& fast, const MotionEstimate& reference) {
-  if (difference == Difference::kMissedModel) {
-    if (IsMissedModel(problem, fast.hypothesis, reference.hypothesis)) return {kMissedModel, 0.0};
-    return {kOtherWinner, RelativeDifference(fast.mean_entropy, reference.mean_entropy)};
-  }
+  if (difference == Difference::kMissedModel) return {kMissedModel, 0.0};
   const RansacOptions options = variant.Options();
   const bool tests_sample = variant.estimator == "rcme" && Solver::kSampleTestDof > 0;
   std::optional<Cause> cause;
@@ -79,11 +75,10 @@ struct Disagreement {
   Cause cause;
 };
 
-// A variant's disagreements, and its trials of whose loop the winner alone was compared, because the solvers
-// found different models.
+// A variant's disagreements, and its trials in which the solvers found different models.
 struct Compared {
   std::vector<Disagreement> found;
-  std::int64_t num_exempt = 0;
+  std::int64_t num_with_other_models = 0;
 };
 
 // Of every variant over `num_trials` trials, on all cores.
@@ -99,12 +94,14 @@ std::vector<Compared> CompareImplementations(std::uint32_t num_trials, const Ran
         const Variant& variant = Variants()[a];
         const MotionEstimate fast = Estimate(variant, fast_options, Implementation::kFast, problem, trial);
         const MotionEstimate reference = Estimate(variant, {}, Implementation::kReference, problem, trial);
-        const bool have_same_models = HaveSameModels(variant, problem, trial);
-        const std::optional<Differing> difference = FindDifference(fast, reference, have_same_models);
+        std::optional<LoopResult> given;
+        if (!HaveSameModels(variant, problem, trial))
+          given = ReferenceOverFastModels(variant, problem, trial);
+        const std::optional<Differing> difference = FindDifference(fast, reference, given);
         std::optional<Cause> cause;
         if (difference) cause = FindCause(variant, problem, trial, difference->kind, fast, reference);
         const std::lock_guard lock(mutex);
-        if (!have_same_models) ++compared[a].num_exempt;
+        if (given) ++compared[a].num_with_other_models;
         if (difference) compared[a].found.push_back({trial, *difference, *cause});
       }
     }
@@ -119,7 +116,7 @@ Compared Together(const std::vector<Compared>& compared) {
   Compared all;
   for (const Compared& one : compared) {
     all.found.insert(all.found.end(), one.found.begin(), one.found.end());
-    all.num_exempt += one.num_exempt;
+    all.num_with_other_models += one.num_with_other_models;
   }
   return all;
 }
@@ -163,7 +160,7 @@ void PrintRow(const std::string& label, std::int64_t n, const Compared& compared
   }
   fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", label, n,
              RateText(Count(found, Difference::kLoop), n), RateText(Count(found, Difference::kEstimate), n),
-             RateText(Count(found, Difference::kEntropy), n), RateText(compared.num_exempt, n),
+             RateText(Count(found, Difference::kEntropy), n), RateText(compared.num_with_other_models, n),
              RateText(Count(found, Difference::kMissedModel), n), text);
 }
 
@@ -179,12 +176,13 @@ void PrintTable(std::int64_t num_trials, const std::vector<Compared>& compared) 
              100.0 * DetectableRate(num_trials), 100.0 * DetectableRate(n));
 }
 
-// Decisions differ in at most 0.1 % of the trials, each a tie within rounding; but for one of 432 trials (386
-// of five_point_rcme_rank_aware), in which the winners differ, and their entropies by 76 %, though both
-// solvers find both: unexplained. Rarer than 1 % are exact ties of the cheirality after the robust fit, which
-// motions of few or far matches have. Printed entropies beyond 1e-9 belong to hypotheses near the singular
-// set of the printed test (score_test.cc), which is where the least mean entropy finds its winner: 96 of
-// 10^5, all but two of prcme_as_printed, the greatest 1.9e-5.
+// Decisions differ in at most 0.1 % of the trials, each a tie within rounding. Rarer than 1 % are winners
+// that differ because one solver misses a model: mostly it is the winner of the other, but in trial 386 of
+// five_point_rcme_rank_aware it has 487 of 500 matches in its support, so that the reference's size condition
+// leaves out the winner of the fast search, which has 157. As rare are exact ties of the cheirality after the
+// robust fit, which motions of few or far matches have. Printed entropies beyond 1e-9 belong to hypotheses
+// near the singular set of the printed test (score_test.cc), which is where the least mean entropy finds its
+// winner: 96 of 10^5, all but two of prcme_as_printed, the greatest 1.9e-5.
 void ExpectAgreement(const std::string& label, std::int64_t n, const std::vector<Disagreement>& found) {
   const std::int64_t num_entropies = Count(found, Difference::kEntropy);
   const std::int64_t num_ties =
@@ -198,7 +196,6 @@ void ExpectAgreement(const std::string& label, std::int64_t n, const std::vector
     EXPECT_LE(ExactBinomialInterval(count, n, kConfidence).lower, 10.0 * kAllowedRate) << label;
   }
   for (const Disagreement& d : found) {
-    if (d.cause.kind == kOtherWinner) continue;  // a decision, bounded above
     const double greatest = d.difference.kind == Difference::kEntropy ? 1e-3 : 1e-8;
     EXPECT_LE(d.cause.margin, greatest)
         << label << ", trial " << d.trial << ": " << d.difference.what << " by " << d.cause.kind;
@@ -207,11 +204,12 @@ void ExpectAgreement(const std::string& label, std::int64_t n, const std::vector
 
 // Eight points always have one model. Of five points' trials 80 of 432 (18.5 [15.0, 22.5] %) hold a sample,
 // of 16, in which one solver finds a solution that the other does not.
-void ExpectFewExempt(const Variant& variant, std::int64_t n, std::int64_t num_exempt) {
+void ExpectFewOtherModels(const Variant& variant, std::int64_t n, std::int64_t num_with_other_models) {
   if (variant.solver == MinimalSolver::kEightPoint) {
-    EXPECT_EQ(num_exempt, 0) << variant.label;
+    EXPECT_EQ(num_with_other_models, 0) << variant.label;
   }
-  EXPECT_LE(ExactBinomialInterval(num_exempt, n, kConfidence).lower, kAllowedExempt) << variant.label;
+  EXPECT_LE(ExactBinomialInterval(num_with_other_models, n, kConfidence).lower, kAllowedOtherModels)
+      << variant.label;
 }
 
 std::uint32_t NumTrials() {
@@ -227,7 +225,7 @@ TEST(Implementations, AgreeOnWholeEstimates) {
   PrintTable(num_trials, compared);
   for (size_t a = 0; a < compared.size(); ++a) {
     ExpectAgreement(Variants()[a].label, num_trials, compared[a].found);
-    ExpectFewExempt(Variants()[a], num_trials, compared[a].num_exempt);
+    ExpectFewOtherModels(Variants()[a], num_trials, compared[a].num_with_other_models);
   }
   ExpectAgreement("all", num_trials * std::ssize(compared), Together(compared).found);
 }

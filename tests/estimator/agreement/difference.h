@@ -66,8 +66,9 @@ inline bool HaveSameModels(const Variant& variant, const MotionProblem& problem,
 }
 
 // What may differ. A winner of eight points that is the same sample and the same one of its four motions is
-// the same to the bit. Where the solvers find different models, the winner alone is compared: it may be
-// one that the other missed (IsMissedModel), else it is the same.
+// the same to the bit. Where the solvers find different models, the fast loop is compared with that of the
+// reference over the models of the fast one (given_models.h); if those agree, the reference may still have
+// another winner, for it had other models to choose from (kMissedModel).
 enum class Difference { kLoop, kEstimate, kEntropy, kMissedModel };
 
 struct Differing {
@@ -80,46 +81,31 @@ inline bool HaveSameWinner(const MotionEstimate& a, const MotionEstimate& b) {
          LocalCoordinates(a.initial_pose, b.initial_pose).norm() < 1e-9;
 }
 
-inline std::optional<Differing> FindDifference(const MotionEstimate& a, const MotionEstimate& b,
-                                               bool have_same_models) {
-  const bool is_other_winner = !HaveSameWinner(a, b);
-  if (!have_same_models) {
-    if (is_other_winner) return Differing{Difference::kMissedModel, "winner"};
-  } else if (!HaveSameCounts(a.counts, b.counts)) {
-    return Differing{Difference::kLoop, "counts"};
-  }
-  if (a.num_support != b.num_support) return Differing{Difference::kLoop, "support"};
+// Two solutions of the fast solver may be one to the reference: then their numbers say nothing.
+inline bool HasWinner(const MotionEstimate& estimate, const LoopResult& loop) {
+  if (!loop.winner) return estimate.hypothesis == HypothesisId();
+  const auto& [id, score, z] = *loop.winner;
+  const bool is_same_model =
+      estimate.hypothesis == id || (estimate.hypothesis.sample == id.sample &&
+                                    RelativeDifference(estimate.mean_entropy, score.mean_entropy) < 1e-9);
+  return is_same_model && estimate.num_support == score.num_inliers;
+}
+
+// `given`: the loop of the reference over the models of the fast solver, where the two find different ones.
+inline std::optional<Differing> FindDifference(const MotionEstimate& fast, const MotionEstimate& reference,
+                                               const std::optional<LoopResult>& given) {
+  const LoopCounts& counts = given ? given->counts : reference.counts;
+  if (!HaveSameCounts(fast.counts, counts)) return Differing{Difference::kLoop, "counts"};
+  if (given && !HasWinner(fast, *given)) return Differing{Difference::kLoop, "winner"};
+  const bool is_other_winner = !HaveSameWinner(fast, reference);
+  if (given && is_other_winner) return Differing{Difference::kMissedModel, "winner"};
+  if (fast.num_support != reference.num_support) return Differing{Difference::kLoop, "support"};
   if (is_other_winner) return Differing{Difference::kLoop, "winner"};
-  if (a.status != b.status) return Differing{Difference::kEstimate, "status"};
-  if (a.inliers != b.inliers) return Differing{Difference::kEstimate, "final inliers"};
-  if (RelativeDifference(a.mean_entropy, b.mean_entropy) > 1e-9)
+  if (fast.status != reference.status) return Differing{Difference::kEstimate, "status"};
+  if (fast.inliers != reference.inliers) return Differing{Difference::kEstimate, "final inliers"};
+  if (RelativeDifference(fast.mean_entropy, reference.mean_entropy) > 1e-9)
     return Differing{Difference::kEntropy, "entropy"};
   return std::nullopt;
-}
-
-// Whether the reference's solver misses a model of the fast one, and the other way round.
-inline bool ReferenceMisses(const MotionProblem& problem, const HypothesisId& id) {
-  const auto model = BlockSource<FivePoint>().FindHypothesis(problem, MatchBlocks(problem), id);
-  const auto others = InstantiateModels<FivePoint>(problem, id.sample);
-  return model && std::ranges::none_of(others, [&](const auto& other) { return AreSame(other, *model); });
-}
-inline bool FastMisses(const MotionProblem& problem, const HypothesisId& id) {
-  const auto models = InstantiateModels<FivePoint>(problem, id.sample);
-  const auto model = std::ranges::find(models, id, &Hypothesis<FivePoint>::id);
-  const MatchBlocks matches(problem);
-  BlockSource<FivePoint> source;
-  for (HypothesisId other = {id.sample, 0}; other.model < FivePoint::kMaxModels; ++other.model) {
-    const auto found = source.FindHypothesis(problem, matches, other);
-    if (model != models.end() && found && AreSame(*model, *found)) return false;
-  }
-  return model != models.end();
-}
-
-// Whether one of two winners is a model that the other's solver misses. No winner: an empty sample.
-inline bool IsMissedModel(const MotionProblem& problem, const HypothesisId& of_fast,
-                          const HypothesisId& of_reference) {
-  return (of_fast.sample.size() > 0 && ReferenceMisses(problem, of_fast)) ||
-         (of_reference.sample.size() > 0 && FastMisses(problem, of_reference));
 }
 
 }  // namespace rcme::agreement

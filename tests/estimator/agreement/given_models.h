@@ -1,0 +1,82 @@
+// The loop of the reference over the models that the fast solver finds: what it decides where the two solvers
+// find different ones. A model that only one of them finds can change the winner without being it: it may
+// have the largest support, from which the size condition of all others follows (candidate_set.h).
+#pragma once
+
+#include <optional>
+
+#include "estimator/estimators/inlier_count.h"
+#include "estimator/kernels/block_search.h"
+#include "estimator/ransac_loop.h"
+#include "estimator/reference_search.h"
+#include "tests/estimator/agreement/loop_replay.h"
+#include "tests/estimator/agreement/variant.h"
+
+namespace rcme::agreement {
+
+// A search for RunRansacLoop: samples and models of the fast search, everything else of the reference. For
+// solvers whose sample cannot be tested.
+template <typename Solver, typename PointTest>
+class SearchOfGivenModels {
+  static_assert(Solver::kSampleTestDof == 0);
+
+ public:
+  SearchOfGivenModels(const MotionProblem& problem, const MatchBlocks& matches, const RansacOptions& options,
+                      RandomStream& rng)
+      : problem_(problem),
+        fast_(problem, matches, options, {ReadingOf<PointTest>(), false, false}, rng),
+        models_(problem, matches, options, {ReadingOf<PointTest>(), false, false}, rng) {}
+
+  const Thresholds& thresholds() const { return fast_.thresholds(); }
+
+  Proposal Next() {
+    Proposal proposal = fast_.Next();
+    judged_.reset();
+    if (proposal.verdict != SampleVerdict::kDegenerate)
+      judged_ = Judged<Solver, PointTest>::From(problem_, models_.FindHypothesis(proposal.id));
+    proposal.verdict = judged_ ? SampleVerdict::kConsistent : SampleVerdict::kDegenerate;
+    return proposal;
+  }
+
+  InlierScore Score() {
+    const HypothesisId& id = judged_->hypothesis.id;
+    return ScoreInliers(problem_, judged_->test, thresholds(),
+                        kScoresTheRest<Solver, PointTest> ? id.sample : Sample());
+  }
+
+ private:
+  const MotionProblem& problem_;
+  BlockSearch<Solver> fast_, models_;  // the second one for single models, which ends its loop
+  std::optional<Judged<Solver, PointTest>> judged_;
+};
+
+// The decisions of prcme and rcme.
+struct EntropyDecisions {
+  static bool InlierSetIsGood(double z, const RansacOptions& options, const Thresholds& thresholds) {
+    return PassesQualityTest(z, thresholds.normal, options.quality_test);
+  }
+  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
+    return a.mean_entropy < b.mean_entropy;
+  }
+};
+
+template <typename Decisions, typename PointTest>
+LoopResult RunOverModels(const RansacOptions& options, const MotionProblem& problem, std::uint32_t trial) {
+  const MatchBlocks matches(problem);
+  RandomStream rng = SamplingStream(trial);
+  SearchOfGivenModels<FivePoint, PointTest> search(problem, matches, options, rng);
+  return RunRansacLoop<Decisions>(options, matches.num_matches(), search);
+}
+
+// Of a variant with five points.
+inline LoopResult ReferenceOverFastModels(const Variant& variant, const MotionProblem& problem,
+                                          std::uint32_t trial) {
+  const RansacOptions options = variant.Options();
+  if (variant.estimator == "standard")
+    return RunOverModels<InlierCountPipeline, KnownPoseTest>(options, problem, trial);
+  return variant.reading == Reading::kRankAware
+             ? RunOverModels<EntropyDecisions, RankAwareTest>(options, problem, trial)
+             : RunOverModels<EntropyDecisions, AsPrintedTest>(options, problem, trial);
+}
+
+}  // namespace rcme::agreement
