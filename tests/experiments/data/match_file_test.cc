@@ -2,25 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "experiments/data/match_folder.h"
-#include "experiments/study/study_file.h"
-#include "experiments/study/study_plan.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
-#include "tests/test_support/paths.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
 namespace {
-
-const std::string kRealFolder = SourceFolder() + "/../shared/real/dev";
 
 // A small file with everything in it; `replace` puts one piece of text in place of another.
 std::string FullText() {
@@ -241,166 +234,6 @@ TEST_F(MatchFileTest, WriteErrors) {
   if (std::filesystem::exists("/dev/full")) {
     EXPECT_TRUE(ThrowsInputError([&] { WriteMatchFile(file, "/dev/full"); }, {"/dev/full", "No space left"}));
   }
-}
-
-// A folder with two scenes: a (two pairs, one packed) and b (one pair).
-class MatchFolderTest : public testing::Test {
- protected:
-  MatchFolderTest() {
-    const std::string rest = MatchHeader() + TruePoseHeader();
-    folder_.Write("a_001.csv", "# scene: a\n" + rest + MatchRows(12, 1));
-    folder_.Write("a_000.csv.gz", Gzip("# scene: a\n" + rest + MatchRows(11, 2)));
-    folder_.Write("b_000.csv", "# scene: b\n" + MatchHeader() + MatchRows(13, 3));
-    folder_.Write("notes.txt", "no match file");
-  }
-  Study FolderStudy() const {
-    return ParseStudy("data: {scene: match_files, folder: '" + folder_.path() +
-                          "', sigma_px: 0.7}\nestimators: [{name: standard}]\ntrials: 3\n",
-                      "folder.yaml");
-  }
-
-  TempFolder folder_;
-};
-
-TEST_F(MatchFolderTest, GroupsByScene) {
-  const StudyPlan plan = MakePlan(FolderStudy());
-  EXPECT_EQ(plan.factor_names, std::vector<std::string>{"pair_scene"});
-  ASSERT_EQ(plan.conditions.size(), 2u);
-  EXPECT_EQ(plan.conditions[0].levels, std::vector<std::string>{"a"});
-  EXPECT_EQ(plan.conditions[1].levels, std::vector<std::string>{"b"});
-  EXPECT_EQ(plan.conditions[0].num_trials, 6);  // three passes over two pairs
-  EXPECT_EQ(plan.conditions[1].num_trials, 3);
-  EXPECT_EQ(plan.NumTrials(), 9);
-}
-
-TEST_F(MatchFolderTest, TrialsWalkThroughThePairsInTheOrderOfNames) {
-  const StudyPlan plan = MakePlan(FolderStudy());
-  const auto made = [&](size_t condition, std::uint32_t trial) {
-    return plan.conditions[condition].source->Make({1, static_cast<std::uint32_t>(condition), trial, 0});
-  };
-  EXPECT_EQ(made(0, 0).origin, "a_000.csv.gz");
-  EXPECT_EQ(made(0, 0).problem.matches.size(), 11u);
-  EXPECT_EQ(made(0, 1).origin, "a_001.csv");
-  EXPECT_EQ(made(0, 2).origin, "a_000.csv.gz");
-  EXPECT_EQ(made(0, 0).problem.sigma_px, 0.7);
-  EXPECT_TRUE(made(0, 0).truth.cam2_from_cam1_true.has_value());
-  EXPECT_TRUE(made(0, 0).truth.is_direction_known);
-  EXPECT_TRUE(made(0, 0).truth.is_inlier_true.empty());
-  EXPECT_FALSE(made(1, 0).truth.cam2_from_cam1_true.has_value());
-}
-
-TEST_F(MatchFolderTest, WeakDirectionsOfTheIndex) {
-  folder_.Write("INDEX.csv", "pair_id,scene,t_gt_weak,note\na_000,a,1,x\na_001,a,0,y\nb_000,b\n");
-  const StudyPlan plan = MakePlan(FolderStudy());
-  EXPECT_EQ(plan.conditions.size(), 2u) << "the index was read as a match file";
-  EXPECT_FALSE(plan.conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
-  EXPECT_TRUE(plan.conditions[0].source->Make({1, 0, 1, 0}).truth.is_direction_known);
-  EXPECT_TRUE(plan.conditions[1].source->Make({1, 1, 0, 0}).truth.is_direction_known);
-  folder_.Write("INDEX.csv", "pair_id,t_gt_weak\r\na_000,0\r\na_001,1\r\n");  // Windows line ends
-  const StudyPlan again = MakePlan(FolderStudy());
-  EXPECT_TRUE(again.conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
-  EXPECT_FALSE(again.conditions[0].source->Make({1, 0, 1, 0}).truth.is_direction_known);
-}
-
-TEST_F(MatchFolderTest, TheIndexMayStandAboveTheFolder) {
-  const TempFolder above;
-  above.Write("INDEX.csv", "pair_id,t_gt_weak\np,1\n");
-  std::filesystem::create_directory(above.Path("pairs"));
-  above.Write("pairs/p.csv", MatchHeader() + TruePoseHeader() + MatchRows(10));
-  for (const std::string name : {"pairs", "pairs/", "pairs/.", "pairs/../pairs"}) {
-    const auto sources = LoadMatchFolder({above.Path(name), 0.5});
-    EXPECT_FALSE(sources.at(0).second->Make({1, 0, 0, 0}).truth.is_direction_known) << name;
-  }
-}
-
-TEST_F(MatchFolderTest, AnIndexWithoutTheColumnsSaysNothing) {
-  folder_.Write("INDEX.csv", "name,weak\na_000,1\n");
-  EXPECT_TRUE(MakePlan(FolderStudy()).conditions[0].source->Make({1, 0, 0, 0}).truth.is_direction_known);
-}
-
-TEST_F(MatchFolderTest, IdentityFollowsTheData) {
-  const std::string before = MakePlan(FolderStudy()).identity;
-  EXPECT_EQ(MakePlan(FolderStudy()).identity, before);
-  const std::string text = ReadBytes(folder_.Path("b_000.csv"));
-  std::string changed = text;
-  const size_t last_digit = changed.find_last_of("0123456789");
-  changed[last_digit] = changed[last_digit] == '1' ? '2' : '1';  // the last digit of the last coordinate
-  folder_.Write("b_000.csv", changed);
-  EXPECT_NE(MakePlan(FolderStudy()).identity, before);
-  folder_.Write("b_000.csv", text + "# a comment changes nothing\n");
-  EXPECT_EQ(MakePlan(FolderStudy()).identity, before);
-  folder_.Write("b_001.csv", text);
-  EXPECT_NE(MakePlan(FolderStudy()).identity, before);
-}
-
-TEST_F(MatchFolderTest, IdentityDoesNotFollowThePath) {
-  const TempFolder other;
-  std::filesystem::copy(folder_.path(), other.Path("moved"));
-  Study moved = FolderStudy();
-  Override(&moved, "folder", other.Path("moved"));
-  EXPECT_EQ(MakePlan(moved).identity, MakePlan(FolderStudy()).identity);
-}
-
-TEST_F(MatchFolderTest, IdentityFollowsTheTruth) {
-  const std::string before = MakePlan(FolderStudy()).identity;
-  folder_.Write("INDEX.csv", "pair_id,t_gt_weak\na_000,1\n");
-  EXPECT_NE(MakePlan(FolderStudy()).identity, before) << "scores change, so the study does";
-  std::filesystem::remove(folder_.Path("INDEX.csv"));
-  folder_.Write("b_000.csv", "# scene: b\n" + MatchHeader() + TruePoseHeader() + MatchRows(13, 3));
-  EXPECT_NE(MakePlan(FolderStudy()).identity, before);
-}
-
-TEST_F(MatchFolderTest, Errors) {
-  const auto load = [](const std::string& path) { LoadMatchFolder({path, 0.5}); };
-  EXPECT_TRUE(ThrowsInputError([&] { load(folder_.Path("none")); }, {"folder", "none", "is not a folder"}));
-  EXPECT_TRUE(ThrowsInputError([&] { load(folder_.Path("a_001.csv")); }, {"folder", "is not a folder"}));
-  const TempFolder empty;
-  EXPECT_TRUE(ThrowsInputError([&] { load(empty.path()); }, {empty.path(), "holds no *.csv"}));
-  folder_.Write("c_000.csv", MatchHeader() + "1,2,3,nan\n");
-  EXPECT_TRUE(ThrowsInputError([&] { load(folder_.path()); }, {"c_000.csv:5: y2", "'nan'"}));
-}
-
-TEST_F(MatchFolderTest, MoreTrialsThanCanBeCounted) {
-  Study study = FolderStudy();
-  study.trials = 2'000'000'000;
-  EXPECT_TRUE(ThrowsInputError([&] { MakePlan(study); }, {"trials", "2000000000 passes over 2 pairs"}));
-}
-
-TEST(RealPairs, AreAllRead) {
-  if (!std::filesystem::is_directory(kRealFolder))
-    GTEST_SKIP() << "the real pairs are not beside the project";
-  int num_files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(kRealFolder)) {
-    const MatchFile file = ReadMatchFile(entry.path().string());
-    ++num_files;
-    EXPECT_GE(file.matches.size(), 8u) << file.path;
-    EXPECT_NE(file.scene, "unnamed") << file.path;
-    ASSERT_TRUE(file.cam2_from_cam1_true.has_value()) << file.path;
-    const RelativePose& pose = *file.cam2_from_cam1_true;
-    EXPECT_LT((pose.R * pose.R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9) << file.path;
-    EXPECT_NEAR(pose.R.determinant(), 1.0, 1e-9) << file.path;
-    EXPECT_NEAR(pose.t.norm(), 1.0, 1e-12) << file.path;
-    for (const Correspondence& match : file.matches) {
-      // Undistorted points may lie outside the image, but not far.
-      EXPECT_LT(match.x1_px.cwiseAbs().maxCoeff(), 2.0 * file.camera1.width) << file.path;
-      EXPECT_LT(match.x2_px.cwiseAbs().maxCoeff(), 2.0 * file.camera2.width) << file.path;
-    }
-  }
-  EXPECT_EQ(num_files, 148);
-}
-
-TEST(RealPairs, WeakDirectionsAreThoseOfTheIndex) {
-  if (!std::filesystem::is_directory(kRealFolder))
-    GTEST_SKIP() << "the real pairs are not beside the project";
-  int num_pairs = 0, num_weak = 0;
-  for (const auto& [scene, source] : LoadMatchFolder({kRealFolder, 0.5})) {
-    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(source->NumTrials(1));
-         ++trial, ++num_pairs) {
-      num_weak += source->Make({1, 0, trial, 0}).truth.is_direction_known ? 0 : 1;
-    }
-  }
-  EXPECT_EQ(num_pairs, 148);
-  EXPECT_EQ(num_weak, 11);  // six of tum_fr1_rpy, five of tum_fr1_xyz
 }
 
 }  // namespace
