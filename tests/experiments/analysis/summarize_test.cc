@@ -127,10 +127,11 @@ TEST_F(SummarizeTest, ScoresAndMedianErrorsComeLast) {
   const std::vector<SummaryRow> rows = SummaryOf("run", true).rows;
   const auto time = std::ranges::find(rows, "time_ms", &SummaryRow::quantity);
   ASSERT_NE(time, rows.end());
-  EXPECT_EQ((time + 1)->quantity, "auc_5_deg");
-  EXPECT_EQ((time + 8)->quantity, "maa_10_deg_answered");
-  EXPECT_EQ((time + 14)->quantity, "max_error_median_deg_answered");
-  EXPECT_EQ((time + 15)->estimator, kSceneLabel);
+  EXPECT_EQ((time + 1)->quantity, "mean_time_ms");
+  EXPECT_EQ((time + 2)->quantity, "auc_5_deg");
+  EXPECT_EQ((time + 9)->quantity, "maa_10_deg_answered");
+  EXPECT_EQ((time + 15)->quantity, "max_error_median_deg_answered");
+  EXPECT_EQ((time + 16)->estimator, kSceneLabel);
 }
 
 // A covariance that is not positive definite has an infinite NEES, which a median survives and a mean does
@@ -269,7 +270,7 @@ TEST_F(SummarizeTest, RowsAreComplete) {
   EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0"});
   EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
   for (const SummaryRow& row : SummaryOf("run").rows)
-    EXPECT_NE(row.quantity, "time_ms") << "times were not asked for";
+    EXPECT_EQ(row.quantity.find("time_ms"), std::string::npos) << "times were not asked for";
 }
 
 TEST_F(SummarizeTest, UnknownTruthIsNotCounted) {
