@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draws success against the time of a call, a point per estimator and file, for comparisons at several budgets; a line joins
-the points of one estimator, and a step the points that no other beats in both.
+"""Draws success against the time of a call, a panel per study in the files and a point per estimator and file, for comparisons
+at several budgets; a line joins the points of one estimator, and a step the points that no other beats in both.
 
 It draws what the files say: values and interval bounds are those of `rcme summarize --pooled --times`.
 """

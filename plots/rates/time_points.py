@@ -1,5 +1,7 @@
 """Success rates against the median time of a call."""
 
+import math
+
 from matplotlib.ticker import FuncFormatter
 
 from common import style
@@ -40,30 +42,58 @@ def draw_point(axes, look, point):
     axes.plot(time, success, **{**look.line(), "linestyle": "none"})
 
 
-def draw(summaries):
-    """The whole figure."""
+def points_by_estimator(summaries):
+    """{estimator: [(time, success), ...] by time} of one study's summaries."""
     by_estimator = {}
     for summary in summaries:
         for name, point in points_of(summary).items():
             by_estimator.setdefault(name, []).append(point)
-    looks = style.equal_looks_of(list(by_estimator))
-    figure, panels = style.new_figure(1, 1)
-    axes = panels[0, 0]
+    return {name: sorted(points) for name, points in by_estimator.items()}
+
+
+def draw_panel(axes, looks, by_estimator):
     for name, points in by_estimator.items():
-        points.sort()
         axes.plot([time[0] for time, _ in points], [success[0] for _, success in points], color=looks[name].color,
                   linestyle=looks[name].dashes, linewidth=0.9)
         for point in points:
             draw_point(axes, looks[name], point)
     front = front_of([(time[0], success[0]) for points in by_estimator.values() for time, success in points])
     axes.step(*zip(*front), where="post", color="0.75", linewidth=4, alpha=0.5, zorder=0)
-    axes.set(xscale="log", xlabel="Time of a call (ms)", ylabel="Success (%)")
+    axes.set_xscale("log")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda ms, _: f"{ms:g}"))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g}"))
-    figure.set_size_inches(5.2, 3.9)
-    handles = [axes.plot([], [], **looks[name].line())[0] for name in by_estimator]
-    studies = ", ".join(dict.fromkeys(summary.rows.study.iloc[0] for summary in summaries))
-    style.add_legend_and_caption(figure, handles, f"Study {studies}; success: neither failed nor refused, over all conditions, "
+
+
+def panels_for(count):
+    """A figure and as many panels of it, row by row, two beside each other."""
+    columns = min(count, 2)
+    figure, axes = style.new_figure(math.ceil(count / columns), columns)
+    for blank in axes.flat[count:]:
+        blank.set_axis_off()
+    if count == 1:
+        figure.set_size_inches(5.2, 3.9)
+    for bottom in axes[-1]:
+        bottom.set_xlabel("Time of a call (ms)")
+    for left in axes[:, 0]:
+        left.set_ylabel("Success (%)")
+    return figure, list(axes.flat[:count])
+
+
+def draw(summaries):
+    """The whole figure, a panel per study."""
+    by_study = {}
+    for summary in summaries:
+        by_study.setdefault(summary.rows.study.iloc[0], []).append(summary)
+    panels = {study: points_by_estimator(files) for study, files in by_study.items()}
+    looks = style.equal_looks_of(list(dict.fromkeys(name for points in panels.values() for name in points)))
+    figure, axes = panels_for(len(panels))
+    for panel, letter, (study, by_estimator) in zip(axes, style.letters(len(panels)), panels.items()):
+        draw_panel(panel, looks, by_estimator)
+        if len(panels) > 1:
+            panel.set_title(letter + style.in_words(study))
+    handles = [axes[0].plot([], [], **look.line())[0] for look in looks.values()]
+    which = "A panel per study" if len(panels) > 1 else f"Study {next(iter(panels))}"
+    style.add_legend_and_caption(figure, handles, f"{which}; success: neither failed nor refused, over all conditions, "
                                  "with its 95 % interval; time: median with its 95 % interval; a line joins one estimator's "
                                  "budgets; grey: the points that no other beats in both.")
     return figure

@@ -64,9 +64,24 @@ def estimators_of(program):
     return {line.split()[0] for line in listed.stdout.splitlines() if line}
 
 
+def with_name(value, name):
+    """A value of an entry with the name in the place of {each}."""
+    if isinstance(value, list):
+        return [with_name(part, name) for part in value]
+    if isinstance(value, dict):
+        return {key: with_name(part, name) for key, part in value.items()}
+    return value.replace("{each}", name) if isinstance(value, str) else value
+
+
+def written_out(entry):
+    """The entries that one entry stands for."""
+    common = {key: value for key, value in entry.items() if key != "each"}
+    return [with_name(common, name) for name in entry["each"]] if "each" in entry else [common]
+
+
 def read_recipes(path=RECIPES):
     with open(path, "rb") as file:
-        entries = tomllib.load(file)["result"]
+        entries = [one for entry in tomllib.load(file)["result"] for one in written_out(entry)]
     recipes = {}
     for entry in entries:
         unknown = set(entry) - KEYS
@@ -155,7 +170,7 @@ def keep(recipe, out, cpu_seconds):
 
 def code_version():
     """The last commit that changed the programs or the plots, and whether there are changes that are in no commit."""
-    code = ["CMakeLists.txt", "cmake", "parameters", "stats", "estimator", "simulator", "experiments", "plots",
+    code = ["CMakeLists.txt", "cmake", "parameters", "stats", "estimator", "peers", "simulator", "experiments", "plots",
             ":!experiments/results", ":!*.md"]
 
     def git(*words):

@@ -4,7 +4,7 @@ import json
 import re
 
 from recipes import MADE, RESULTS, ROOT, read_recipes
-from tables import as_number, is_level, levels_of, read_table, scientific, select, the_row
+from tables import as_number, is_level, levels_of, rate, read_table, scientific, select, the_row
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
 
@@ -219,7 +219,28 @@ def least_coverage(spec):
             f"errors covers as little as {plain:.3f}.")
 
 
+def winners(spec):
+    """Of each study and each kind of table who succeeds most often, whose interval overlaps the winner's, and which of all
+    these is fastest."""
+    kinds = spec.parts("tables")
+    body = []
+    for study in spec.argument.split():
+        line = [study.rpartition("/")[2]]
+        for suffix, _ in kinds:
+            rows = read_table(f"{study}_{suffix}")
+            rates = {row["estimator"]: row for row in select(rows, "quantity=success")}
+            best = max(rates, key=lambda name: (float(rates[name]["lower"]), float(rates[name]["value"])))
+            equals = [name for name in rates
+                      if name != best and float(rates[name]["upper"]) >= float(rates[best]["lower"])]
+            times = {name: float(the_row(rows, f"{name}, quantity=mean_time_ms")["value"]) for name in [best, *equals]}
+            fastest = min(times, key=times.get)
+            line += [f"{best} {rate(rates[best])}", ", ".join(equals) or "-", f"{fastest} ({times[fastest]:.2g} ms)"]
+        body.append(line)
+    head = [part for _, words in kinds for part in (words, "intervals overlap", "fastest of these (mean time)")]
+    return markdown(["study", *head], body)
+
+
 SPECIAL = {"made": made, "list": all_results, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
            "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
            "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "transfer": transfer,
-           "least_coverage": least_coverage}
+           "least_coverage": least_coverage, "winners": winners}

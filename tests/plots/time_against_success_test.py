@@ -41,6 +41,25 @@ class TimeAgainstSuccess(unittest.TestCase):
         drawn = {tuple(line.get_xydata()[0]) for line in axes.lines if len(line.get_xydata()) == 1}
         self.assertLessEqual({(0.1, 0.5), (10.0, 0.9)}, drawn)
 
+    def test_a_panel_per_study(self):
+        other = self.folder / "other.csv"
+        other.write_text("\n".join([HEAD, *(row.replace("peers,", "others,") for row in ROWS)]) + "\n")
+        first = read_summary(self.summary(ROWS))
+        figure = draw([first, read_summary(other), first])
+        panels = [axes for axes in figure.axes if axes.axison]
+        self.assertEqual([axes.get_title(loc="left") for axes in panels], ["(a) Peers", "(b) Others"])
+        counts = [sum(len(line.get_xydata()) == 1 and line.get_marker() != "None" for line in axes.lines)
+                  for axes in panels]
+        self.assertEqual(counts, [4, 2])
+
+    def test_no_panel_is_left_empty_with_axes(self):
+        summaries = []
+        for study in ("one", "two", "three"):
+            path = self.folder / f"{study}.csv"
+            path.write_text("\n".join([HEAD, *(row.replace("peers,", f"{study},") for row in ROWS)]) + "\n")
+            summaries.append(read_summary(path))
+        self.assertEqual([axes.axison for axes in draw(summaries).axes], [True, True, True, False])
+
     def test_refuses_what_is_not_pooled_or_has_no_times(self):
         for rows, words in ((ROWS[::2], "--times"), (ROWS + ROWS, "several conditions")):
             with self.assertRaisesRegex(PlotError, words):
