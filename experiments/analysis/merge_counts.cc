@@ -7,6 +7,7 @@
 #include <set>
 
 #include "experiments/analysis/run_counts.h"
+#include "experiments/analysis/summary_quantities.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/result_file/checksum.h"
 #include "experiments/result_file/counts_tables.h"
@@ -23,7 +24,7 @@ std::vector<std::uint32_t> DigestOf(const RunCounts& counts) {
     std::vector<std::string> texts;
     for (const auto& [shard, places] : condition.places) texts.insert(texts.end(), {shard, places.Text()});
     for (const CountedQuantity& row : condition.cell.Texts()) {
-      if (row.quantity == "time_ms") continue;
+      if (IsOfTimes(row.quantity)) continue;
       texts.insert(texts.end(), {row.quantity, std::to_string(row.n), row.sum, row.sum_squares, row.cells});
     }
     digest.push_back(ChecksumOf(texts));

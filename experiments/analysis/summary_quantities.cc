@@ -119,8 +119,6 @@ bool IsOfProbabilities(const std::string& quantity) {
          quantity == "failure_probability" || quantity == "brier" || quantity == "failure_of_sure";
 }
 
-bool IsOfTimes(const std::string& quantity) { return quantity == "time_ms" || quantity == "mean_time_ms"; }
-
 // No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
 // problem and not the estimator is to blame.
 bool IsImpossible(const ProblemRecord& problem, const FailureBounds& bounds) {
@@ -167,6 +165,8 @@ const std::vector<ProblemQuantity>& ProblemQuantities() {
   }();
   return all;
 }
+
+bool IsOfTimes(const std::string& quantity) { return quantity == "time_ms" || quantity == "mean_time_ms"; }
 
 void LeaveOutRows(bool with_times, Summary* summary) {
   std::vector<SummaryRow>& rows = summary->rows;

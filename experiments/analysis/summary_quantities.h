@@ -41,6 +41,9 @@ struct Collected {
 // Of trials without weights. `row` has what all rows of its cell share; `num_trials` are those of the cell.
 void FillRow(const Collected& collected, std::int64_t num_trials, SummaryRow* row);
 
+// Of what is not the same when a run is made again.
+bool IsOfTimes(const std::string& quantity);
+
 // Takes away the rows of times, unless asked for, and of probabilities, where no estimator states any.
 void LeaveOutRows(bool with_times, Summary* summary);
 
