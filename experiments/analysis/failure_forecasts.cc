@@ -158,4 +158,31 @@ std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, 
   return all;
 }
 
+void AddForecastsOfRun(std::vector<FailureForecasts> run, std::vector<FailureForecasts>* all) {
+  std::int64_t next_scene = 0;
+  for (const FailureForecasts& known : *all) {
+    for (const Forecast& forecast : known.forecasts) next_scene = std::max(next_scene, forecast.cluster + 1);
+    for (const std::int64_t scene : known.refused_scenes) next_scene = std::max(next_scene, scene + 1);
+  }
+  for (FailureForecasts& added : run) {
+    for (Forecast& forecast : added.forecasts) forecast.cluster += next_scene;
+    for (std::int64_t& scene : added.refused_scenes) scene += next_scene;
+    const auto same = std::ranges::find_if(*all, [&](const FailureForecasts& known) {
+      return known.estimator == added.estimator && known.group == added.group;
+    });
+    if (same == all->end()) {
+      all->push_back(std::move(added));
+      continue;
+    }
+    if (same->source != added.source) {
+      throw InputError(fmt::format("{}: its probabilities of failure are {} in one run and {} in another",
+                                   added.estimator, Name(same->source), Name(added.source)));
+    }
+    same->forecasts.insert(same->forecasts.end(), added.forecasts.begin(), added.forecasts.end());
+    same->refused_scenes.insert(same->refused_scenes.end(), added.refused_scenes.begin(),
+                                added.refused_scenes.end());
+    same->num_without += added.num_without;
+  }
+}
+
 }  // namespace rcme

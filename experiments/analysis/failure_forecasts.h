@@ -46,4 +46,8 @@ struct FailureForecasts {
 // trial and estimator. Throws InputError on a factor that the run does not have.
 std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, const std::string& by = {});
 
+// Adds those of another run: to the same estimator and group, or as new ones. No scene of one run is a scene
+// of the other. Throws InputError where the source of an estimator's probabilities differs between the runs.
+void AddForecastsOfRun(std::vector<FailureForecasts> run, std::vector<FailureForecasts>* all);
+
 }  // namespace rcme

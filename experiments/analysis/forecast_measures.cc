@@ -120,12 +120,18 @@ ForecastMeasures MeasureForecasts(const FailureForecasts& of, std::uint64_t seed
   return measures;
 }
 
-std::vector<ForecastMeasures> MeasureFailureForecasts(const ResultStore& store, const std::string& by) {
-  const std::uint64_t seed = store.Description().seed;
+std::vector<ForecastMeasures> MeasureFailureForecasts(std::span<const ResultStore> runs,
+                                                      const std::string& by) {
+  std::vector<FailureForecasts> forecasts;
+  for (const ResultStore& run : runs) AddForecastsOfRun(CollectFailureForecasts(run, by), &forecasts);
   std::vector<ForecastMeasures> all;
-  for (const FailureForecasts& forecasts : CollectFailureForecasts(store, by))
-    all.push_back(MeasureForecasts(forecasts, seed));
+  for (const FailureForecasts& of : forecasts)
+    all.push_back(MeasureForecasts(of, runs.front().Description().seed));
   return all;
+}
+
+std::vector<ForecastMeasures> MeasureFailureForecasts(const ResultStore& run, const std::string& by) {
+  return MeasureFailureForecasts(std::span(&run, 1), by);
 }
 
 }  // namespace rcme

@@ -1,6 +1,7 @@
 // How good an estimator's probabilities of failure are.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,9 @@ std::vector<double> HistogramEdges();
 // `seed`: of the outcomes that are drawn to see what right probabilities would give.
 ForecastMeasures MeasureForecasts(const FailureForecasts& forecasts, std::uint64_t seed);
 
-std::vector<ForecastMeasures> MeasureFailureForecasts(const ResultStore& store, const std::string& by = {});
+// Of every estimator in every group; of several runs all trials together.
+std::vector<ForecastMeasures> MeasureFailureForecasts(std::span<const ResultStore> runs,
+                                                      const std::string& by = {});
+std::vector<ForecastMeasures> MeasureFailureForecasts(const ResultStore& run, const std::string& by = {});
 
 }  // namespace rcme

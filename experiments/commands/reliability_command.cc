@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -10,7 +11,7 @@ namespace rcme {
 
 void AddReliabilityCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "reliability", "Do motions fail as often as their stated probabilities say? From a result file");
+      "reliability", "Do motions fail as often as their stated probabilities say? From result files");
   command->footer(
       "Of every estimator, over the answers whose truth is known: Brier and logarithmic score with "
       "intervals,\n"
@@ -25,13 +26,16 @@ void AddReliabilityCommand(CLI::App& app) {
       "Examples:\n"
       "  rcme reliability run.sqlite\n"
       "  rcme reliability run.sqlite --by outlier_ratio\n"
+      "  rcme reliability indoor.sqlite outdoor.sqlite\n"
       "  rcme reliability run.sqlite --format json --out reliability.json\n"
       "  rcme plot reliability reliability.json --out figure");
   struct Arguments {
-    std::string run, by, format = "table", out;
+    std::vector<std::string> runs;
+    std::string by, format = "table", out;
   };
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("run", arguments->run, "result file of `rcme run`")->required();
+  command->add_option("runs", arguments->runs, "result files of `rcme run`; of several all trials together")
+      ->required();
   command->add_option("--by", arguments->by,
                       "a factor of the study: one line per level, not one for all trials");
   command->add_option("--format", arguments->format, "table (for people) or json (for programs and figures)")
@@ -39,11 +43,17 @@ void AddReliabilityCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {
-    const ResultStore store = ResultStore::OpenForReading(arguments->run);
-    const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(store, arguments->by);
-    PrintOrWrite(arguments->out, arguments->format == "json"
-                                     ? ForecastsAsJson(store.Description().study, arguments->by, measures)
-                                     : ForecastsAsTable(measures, arguments->by));
+    std::vector<ResultStore> runs;
+    std::vector<std::string> studies;
+    for (const std::string& path : arguments->runs) {
+      runs.push_back(ResultStore::OpenForReading(path));
+      studies.push_back(runs.back().Description().study);
+    }
+    const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(runs, arguments->by);
+    PrintOrWrite(arguments->out,
+                 arguments->format == "json"
+                     ? ForecastsAsJson(fmt::format("{}", fmt::join(studies, ", ")), arguments->by, measures)
+                     : ForecastsAsTable(measures, arguments->by));
   });
 }
 

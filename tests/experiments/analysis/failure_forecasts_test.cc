@@ -183,6 +183,32 @@ TEST_F(FailureForecastsTest, MeasuresOfRightProbabilities) {
   EXPECT_EQ(m.histogram[13], 0) << "from .4225 on";
 }
 
+TEST(AddForecastsOfRun, KeepsTheScenesOfTwoRunsApart) {
+  const FailureForecasts first{"a", "", ForecastSource::kStated, {{0.1, false, 0}, {0.2, true, 3}}, {5}, 1};
+  const FailureForecasts second{"a", "", ForecastSource::kStated, {{0.3, true, 0}}, {2}, 2};
+  const FailureForecasts other{"b", "", ForecastSource::kStated, {{0.4, false, 0}}, {}, 0};
+  std::vector<FailureForecasts> all;
+  AddForecastsOfRun({first}, &all);
+  AddForecastsOfRun({second, other}, &all);
+  ASSERT_EQ(all.size(), 2U);
+  ASSERT_EQ(all[0].forecasts.size(), 3U);
+  EXPECT_EQ(all[0].forecasts[2].cluster, 6);
+  EXPECT_EQ(all[0].refused_scenes, (std::vector<std::int64_t>{5, 8}));
+  EXPECT_EQ(all[0].num_without, 3);
+  EXPECT_EQ(all[1].forecasts[0].cluster, 6);
+}
+
+TEST(AddForecastsOfRun, RefusesProbabilitiesOfTwoKinds) {
+  std::vector<FailureForecasts> all = {{"a", "", ForecastSource::kStated, {}, {}, 0}};
+  try {
+    AddForecastsOfRun({{"a", "", ForecastSource::kInlierShare, {}, {}, 0}}, &all);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "a: its probabilities of failure are stated in one run and inlier_share in another");
+  }
+}
+
 TEST_F(FailureForecastsTest, TableAndFileSayTheSame) {
   const ResultStore store =
       Stored({Motion(0, 0.05, 50, false), Motion(1, 0.75, 50, true), Motion(2, 0.05, 50, true), Refusal(3)});
