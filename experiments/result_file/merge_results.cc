@@ -78,14 +78,18 @@ void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, M
   report->missing_shards.assign(shards.begin(), shards.end());
 }
 
-// The merged file with its trials.
+// The merged file with its trials, in one transaction: the trials of a part lie on almost every page, which
+// would be written again with each.
 class MergedTrials {
  public:
   MergedTrials(const std::string& out, const RunDescription& run) : file_(out, run) {
-    NamingFile(out, [&] { writer_.emplace(&file_.file()); });
+    NamingFile(out, [&] {
+      writer_.emplace(&file_.file());
+      transaction_.emplace(file_.file().database);
+    });
   }
   void Add(const StoredTrial& trial) {
-    NamingFile(file_.path(), [&] { writer_->Add({trial.problem}, trial.records); });
+    NamingFile(file_.path(), [&] { writer_->AddTrial(trial.problem, trial.records); });
   }
   StoredTrial Read(std::uint32_t condition, std::uint32_t trial) {
     return NamingFile(file_.path(), [&] {
@@ -93,7 +97,11 @@ class MergedTrials {
     });
   }
   void Finish(const RunDescription& run) {
-    NamingFile(file_.path(), [&] { writer_->Commit(); });
+    NamingFile(file_.path(), [&] {
+      file_.file().totals.WriteChanged(file_.file().database);
+      transaction_->commit();
+    });
+    transaction_.reset();
     writer_.reset();
     file_.Finish(run);
   }
@@ -101,6 +109,7 @@ class MergedTrials {
  private:
   NewResultFile file_;
   std::optional<TrialWriter> writer_;
+  std::optional<SQLite::Transaction> transaction_;
 };
 
 }  // namespace
