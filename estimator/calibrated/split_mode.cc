@@ -13,10 +13,11 @@ namespace {
 
 constexpr int kMostSteps = 15, kShareSteps = 6, kMostSamples = 512, kCandidates = 8;
 constexpr double kTightScale = 1.5;   // of the soft score, in units of the assumed sigma
+constexpr double kWideScale = 1.15;   // of the noise level of one motion: it may be a compromise between two
 constexpr size_t kLeastMatches = 12;  // of a second motion
 constexpr double kLeastGain = 40.0;   // nats: the search for the second motion, its five parameters, a margin
 
-// The matches that the mode explains, or does not.
+// The matches that the mode does not explain.
 std::vector<size_t> Unexplained(const Explanation& explanation) {
   std::vector<size_t> found;
   for (size_t i = 0; i < explanation.probability.size(); ++i) {
@@ -108,6 +109,17 @@ std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, con
     FitShares(matches, prior, found);
   }
   return std::pair{*first, *second};
+}
+
+void SplitCompromise(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
+                     std::vector<Mode>* modes, RandomStream& rng) {
+  if (modes->empty() || modes->front().mixture.scale < kWideScale * NoiseLaw().scale_of_gaussian) return;
+  const auto split = SplitMode(problem, matches, prior, modes->front(), rng);
+  if (!split) return;
+  const double scale = std::max(split->first.mixture.scale, split->second.mixture.scale);
+  std::erase_if(*modes, [&](const Mode& mode) { return mode.mixture.scale > kWideScale * scale; });
+  modes->push_back(split->first);
+  modes->push_back(split->second);
 }
 
 }  // namespace rcme

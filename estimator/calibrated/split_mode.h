@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "estimator/calibrated/mixture_fit.h"
 #include "estimator/motion_problem.h"
@@ -17,5 +18,10 @@ namespace rcme {
 std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, const MatchBlocks& matches,
                                                const MixturePrior& prior, const Mode& mode,
                                                RandomStream& rng);
+
+// Where the most likely of the modes, the first, has more than 1.15 times the assumed noise level and can be
+// split: the two motions in place of all modes that are as much noisier than these.
+void SplitCompromise(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
+                     std::vector<Mode>* modes, RandomStream& rng);
 
 }  // namespace rcme

@@ -8,10 +8,10 @@
 #include <numeric>
 
 #include "estimator/calibrated/candidates.h"
-#include "estimator/calibrated/direction_posterior.h"
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/mode_covariance.h"
+#include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
 #include "estimator/calibrated/weigh_modes.h"
 #include "estimator/problem_check.h"
@@ -23,12 +23,6 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kNegligibleWeight = 1e-5;
 // Of a mode whose observed curvature is not worth ten passes over the matches.
 constexpr double kSmallWeight = 0.01;
-// Parallax in standard deviations of its noise (UsualDepthInNoise) below which the direction is not normal.
-constexpr double kLowParallax = 6.0;
-constexpr int kMostSteps = 15;
-// Of the assumed noise level: a mode with more may be a compromise between two motions.
-constexpr double kWideScale = 1.15;
-constexpr double kSettled = 0.8;  // a direction that is at least so likely to be within the bounds stays
 constexpr double kNotableWeight = 1e-4;  // of a mode that is reported
 
 // The matches in an order that means nothing: order[i] is the index of the i-th.
@@ -170,8 +164,7 @@ class RcmeCalibrated : public MotionEstimator {
     const HypothesisSearch search = SearchHypotheses(matches, score_matches, options_, rng);
     std::vector<Mode> found =
         FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
-    if (!found.empty() && options_.leave_out != CalibratedStep::kSplit)
-      SplitCompromise(shuffled, matches, prior, &found, rng);
+    if (options_.leave_out != CalibratedStep::kSplit) SplitCompromise(shuffled, matches, prior, &found, rng);
     std::vector<ExplainedMode> modes = ExplainMatches(shuffled, matches, prior, options_, std::move(found));
     MotionEstimate estimate;
     estimate.counts = search.counts;
@@ -184,8 +177,11 @@ class RcmeCalibrated : public MotionEstimator {
       return estimate;
     }
     const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
-    const std::optional<double> direction_mass =
-        SettleDirection(shuffled, matches, prior, &modes[weights.answer]);
+    std::optional<double> direction_mass;
+    if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
+      direction_mass =
+          SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
+    }
     const Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, rng);
     FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
     FillMatches(modes[weights.answer].explanation, order, &estimate);
@@ -201,38 +197,6 @@ class RcmeCalibrated : public MotionEstimator {
  private:
   MotionBounds Bounds() const {
     return {kRadPerDeg * options_.max_rotation_error_deg, kRadPerDeg * options_.max_direction_error_deg};
-  }
-
-  // Where the most likely mode is a compromise between two motions, these in place of all such modes.
-  void SplitCompromise(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
-                       std::vector<Mode>* modes, RandomStream& rng) const {
-    if (modes->front().mixture.scale < kWideScale * NoiseLaw().scale_of_gaussian) return;
-    const auto split = SplitMode(problem, matches, prior, modes->front(), rng);
-    if (!split) return;
-    const double scale = std::max(split->first.mixture.scale, split->second.mixture.scale);
-    std::erase_if(*modes, [&](const Mode& mode) { return mode.mixture.scale > kWideScale * scale; });
-    modes->push_back(split->first);
-    modes->push_back(split->second);
-  }
-
-  // Where the parallax is hardly more than the noise: moves the answer to where its direction is more
-  // probable; the probability that the direction is within the bounds of the answer's.
-  std::optional<double> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
-                                        const MixturePrior& prior, ExplainedMode* answer) const {
-    if (options_.leave_out == CalibratedStep::kDirectionPosterior ||
-        UsualDepthInNoise(answer->explanation) > kLowParallax)
-      return std::nullopt;
-    const double bound = Bounds().direction_rad;
-    DirectionPosterior posterior = PosteriorOfDirection(problem, *answer, answer->mode.pose.t, bound);
-    if (posterior.mass_within > kSettled) return posterior.mass_within;
-    ExplainedMode moved{posterior.best, {}};
-    if (!FitMode(matches, prior, kMostSteps, &moved.mode)) return posterior.mass_within;
-    moved.explanation = Explain(matches, moved.mode);
-    if (moved.explanation.num_explained <= 5) return posterior.mass_within;
-    const double mass = PosteriorOfDirection(problem, moved, moved.mode.pose.t, bound).mass_within;
-    if (mass <= posterior.mass_within) return posterior.mass_within;
-    *answer = std::move(moved);
-    return mass;
   }
 
   // The covariance is the second moment, about the answer, of the modes within the bounds.

@@ -12,7 +12,7 @@
 //   5  contrast      calibrated/contrast.h             which of two modes explains more where they differ
 //   6  odds          calibrated/mode_weights.h         of the other modes, a second motion, no motion
 //   7  P(fail)       calibrated/failure_probability.h  the mass of all modes beyond the failure bounds
-//                    calibrated/direction_posterior.h  where the parallax is hardly more than the noise
+//                    calibrated/settle_direction.h     where the parallax is hardly more than the noise
 //   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds
 #pragma once
 

@@ -68,5 +68,37 @@ TEST(SplitMode, LeavesAModeOfGreaterNoiseAlone) {
   }
 }
 
+TEST(SplitCompromise, PutsBothMotionsInPlaceOfTheCompromise) {
+  int num_split = 0;
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    const TwoBodies two = FitTwoBodies(trial);
+    if (two.merged.mode.mixture.scale < 1.5) continue;
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2795});
+    Mode narrow = two.merged.mode;
+    narrow.mixture.scale = 0.5;
+    std::vector<Mode> modes = {two.merged.mode, narrow};
+    SplitCompromise(two.merged.problem, two.merged.matches, two.merged.prior, &modes, rng);
+    if (modes.size() == 2) continue;  // not split: as they were
+    ++num_split;
+    ASSERT_EQ(modes.size(), 3U);
+    EXPECT_EQ(modes[0].mixture.scale, 0.5) << "the narrow one stays";
+    EXPECT_LT(modes[1].mixture.scale, 1.5);
+    EXPECT_LT(modes[2].mixture.scale, 1.5);
+  }
+  EXPECT_GE(num_split, 4);
+}
+
+TEST(SplitCompromise, LeavesNoModeAndModesOfTheAssumedNoiseAsTheyAre) {
+  const FittedMode f = FitScene(100, 0.5, 0.2, 1);
+  RandomStream rng({.seed = 1, .purpose = 2796});
+  std::vector<Mode> modes;
+  SplitCompromise(f.problem, f.matches, f.prior, &modes, rng);
+  EXPECT_TRUE(modes.empty());
+  modes = {f.mode};
+  SplitCompromise(f.problem, f.matches, f.prior, &modes, rng);
+  ASSERT_EQ(modes.size(), 1U);
+  EXPECT_EQ(modes[0].pose.t, f.mode.pose.t);
+}
+
 }  // namespace
 }  // namespace rcme

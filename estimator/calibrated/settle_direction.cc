@@ -1,0 +1,33 @@
+#include "estimator/calibrated/settle_direction.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kLowParallax = 6.0, kSettled = 0.8;
+constexpr int kMostSteps = 15;
+
+// The mode at its optimum from the most likely direction; nothing where it explains no more matches than any
+// motion through them.
+std::optional<ExplainedMode> MovedTo(const MatchBlocks& matches, const MixturePrior& prior, Mode mode) {
+  if (!FitMode(matches, prior, kMostSteps, &mode)) return std::nullopt;
+  ExplainedMode moved{mode, Explain(matches, mode)};
+  if (moved.explanation.num_explained <= 5) return std::nullopt;
+  return moved;
+}
+
+}  // namespace
+
+std::optional<double> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
+                                      const MixturePrior& prior, double angle_rad, ExplainedMode* answer) {
+  if (UsualDepthInNoise(answer->explanation) > kLowParallax) return std::nullopt;
+  const DirectionPosterior posterior = PosteriorOfDirection(problem, *answer, answer->mode.pose.t, angle_rad);
+  if (posterior.mass_within > kSettled) return posterior.mass_within;
+  std::optional<ExplainedMode> moved = MovedTo(matches, prior, posterior.best);
+  if (!moved) return posterior.mass_within;
+  const double mass = PosteriorOfDirection(problem, *moved, moved->mode.pose.t, angle_rad).mass_within;
+  if (mass <= posterior.mass_within) return posterior.mass_within;
+  *answer = std::move(*moved);
+  return mass;
+}
+
+}  // namespace rcme

@@ -1,0 +1,62 @@
+#include "estimator/calibrated/settle_direction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "tests/test_support/calibrated_mode.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kBound = 15.0 * std::numbers::pi / 180.0;
+
+// Points from `near` to twice as many baselines away, noise 0.5 px; the answer is the fit from `start`.
+struct FarCase {
+  RandomProblem random;
+  FittedMode fitted;
+  ExplainedMode answer;
+};
+FarCase MakeFar(std::uint32_t trial, double near, bool starts_at_truth) {
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2797});
+  RandomProblem random =
+      MakeRandomProblem(rng, {.num_matches = 200, .min_depth = near, .max_depth = 2.0 * near});
+  AddNoise(0.5, rng, &random.problem);
+  RelativePose start = random.pose_true;
+  if (!starts_at_truth) start.t = start.t.unitOrthogonal();
+  FittedMode fitted = FitFromTruth(random.problem, start);
+  ExplainedMode answer{fitted.mode, Explain(fitted.matches, fitted.mode)};
+  return {random, fitted, answer};
+}
+
+TEST(SettleDirection, LeavesAClearParallaxAlone) {
+  FarCase far = MakeFar(0, 5.0, true);
+  EXPECT_FALSE(
+      SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer));
+}
+
+// 200 baselines away the parallax is some pixels' noise: a fit that began across the true direction ends at
+// it or states that it is lost.
+TEST(SettleDirection, MovesAWrongAnswerOrDoubtsIt) {
+  int num_low = 0, num_right = 0, num_sure_and_wrong = 0;
+  constexpr int kTrials = 30;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    FarCase far = MakeFar(trial, 200.0, false);
+    const auto mass =
+        SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer);
+    if (!mass) continue;
+    ++num_low;
+    EXPECT_GE(*mass, 0.0);
+    EXPECT_LE(*mass, 1.0 + 1e-12);
+    const bool is_right = AngleBetween(far.answer.mode.pose.t, far.random.pose_true.t) <= kBound;
+    num_right += is_right;
+    num_sure_and_wrong += !is_right && *mass > 0.9;
+  }
+  EXPECT_GE(num_low, kTrials * 2 / 3);
+  EXPECT_GE(num_right, num_low / 2);
+  EXPECT_LE(num_sure_and_wrong, 2);
+}
+
+}  // namespace
+}  // namespace rcme
