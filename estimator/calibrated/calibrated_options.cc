@@ -16,9 +16,11 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
       P::Integer("num_candidates", &o.num_candidates, {1, 1000}, "hypotheses that are refined a little"),
       P::Integer("num_modes", &o.num_modes, {1, 100}, "of these, how many are refined to the optimum"),
       P::Real("max_rotation_error_deg", &o.max_rotation_error_deg, {1e-6, 180.0}, "deg",
-              "the stated probability of failure is that of a greater error of the rotation"),
+              "the stated probability of failure is that of a greater error of the rotation; in a study its "
+              "own bound, "
+              "where no other is given"),
       P::Real("max_direction_error_deg", &o.max_direction_error_deg, {1e-6, 180.0}, "deg",
-              "or of a greater error of the direction"),
+              "or of a greater error of the direction, likewise"),
       P::Real("max_failure_probability", &o.max_failure_probability, {0.0, 1.0}, "",
               "a motion that is more likely than this to be wrong is refused (too_uncertain); 1: none is"),
       P::Choice("sigma", &o.sigma,

@@ -229,6 +229,19 @@ EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
                   options.empty() ? "none" : fmt::format("{}", fmt::join(options, ", "))));
 }
 
+// An estimator that states the probability of a failure has bounds of its own: the study's, where its entry
+// gives no others. Those of estimator files stay as they are there.
+void FollowFailureBounds(const YAML::Node& entries, Study* study) {
+  for (size_t i = 0; i < study->estimators.size(); ++i) {
+    EstimatorSpec& spec = study->estimators[i];
+    if (!entries[i].IsMap() || entries[i]["file"]) continue;
+    for (const Parameter& bound : Parameters(study->failure)) {
+      const bool is_given = entries[i]["options"] && entries[i]["options"][bound.name()];
+      if (!is_given && HasOption(spec, bound.name())) SetOptions(&spec, {{bound.name(), bound.Value()}});
+    }
+  }
+}
+
 Study ReadStudy(const std::string& yaml, const std::string& path) {
   const Place place(path);
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
@@ -271,6 +284,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
   }
   if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
+  FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
   return study;
@@ -288,8 +302,8 @@ void Override(Study* study, const std::string& key, const std::string& value) {
     return OverrideOption(key.substr(dot + 1), value, &LabelledEstimator(key.substr(0, dot), study));
   }
   if (IsIn(DataKeys(*study), key)) return OverrideData(key, value, study);
-  if (IsIn(BoundKeys(), key)) return FindParameter(Parameters(study->failure), key).SetFromText(value);
-  bool has_any = false;
+  bool has_any = IsIn(BoundKeys(), key);
+  if (has_any) FindParameter(Parameters(study->failure), key).SetFromText(value);
   for (EstimatorSpec& spec : study->estimators) {
     if (!HasOption(spec, key)) continue;
     OverrideOption(key, value, &spec);

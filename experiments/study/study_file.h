@@ -34,9 +34,9 @@ Study LoadStudy(const std::string& path);
 // The same from text; `path` is what the messages call it.
 Study ParseStudy(const std::string& yaml, const std::string& path);
 
-// One `--set key=value`: a data key; a failure bound; or an option, of all estimators that have it (`mu`), or
-// of the one with a label (`rcme.mu`), which may be named like a data key. A factor that is set becomes that
-// one level. Throws InputError that lists what there is, also where the options of an estimator then
+// One `--set key=value`: a data key; a failure bound, of the study and of all estimators that have it; or an
+// option, of all estimators that have it (`mu`), or of the one with a label (`rcme.mu`), which may be named
+// like a data key. A factor that is set becomes that one level. Throws InputError that lists what there is, also where the options of an estimator then
 // contradict each other.
 void Override(Study* study, const std::string& key, const std::string& value);
 
