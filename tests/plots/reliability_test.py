@@ -56,7 +56,7 @@ class ReliabilityTest(unittest.TestCase):
     def test_those_that_state_probabilities_come_first(self):
         file = self.read(entry("standard", source="inlier_share"), entry())
         self.assertEqual([axes.get_title("left") for axes in draw(file).axes if axes.get_title("left")],
-                         ["(a) rcme_calibrated", "(b) Risk and coverage"])
+                         ["(a) RCME, calibrated", "(b) Risk and coverage"])
         named = draw(file, ["standard"])
         self.assertEqual(named.axes[0].get_title("left"), "(a) Standard, P from inlier share")
 

@@ -283,7 +283,7 @@ class Page(ReportTest):
         (self.data / "run_0001" / "reliability.json").write_text(json.dumps(
             fake_reliability.content(fake_reliability.entry(), fake_reliability.entry("mine", source="inlier_share"))))
         page = self.page()
-        for words in ("Probability of failure", "rcme_calibrated", "inlier share", "0.0310", "[0.0200, 0.0500]", "1.25 %",
+        for words in ("Probability of failure", "RCME, calibrated", "inlier share", "0.0310", "[0.0200, 0.0500]", "1.25 %",
                       "75.00 %", "if right: 0.0130", "rcme plot reliability", "rcme reliability"):
             self.assertIn(words, page)
 
