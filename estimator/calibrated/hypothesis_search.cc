@@ -37,7 +37,7 @@ class Rounds {
   // Draws until `num_samples` are drawn in all, scores their models.
   void Draw(int num_samples) {
     const int first_end = std::min(kFirstMatches, scores_.num_matches());
-    fresh_.reserve(static_cast<size_t>(kModelsOfSample * (num_samples - num_drawn_)));
+    fresh_.reserve(static_cast<size_t>(kModelsOfSample * std::max(num_samples - num_drawn_, 0)));
     while (num_drawn_ < num_samples) {
       source_.FillNext(matches_, RequestedOutputs::kNone, rng_, &block_, &proposals_);
       for (int lane = 0; lane < kBlockSize; ++lane) {
