@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "experiments/base/for_each_index.h"
 #include "experiments/base/message.h"
@@ -55,16 +56,14 @@ double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
   return elapsed.count() / num_timed * static_cast<double>(check.limits.Max(run.budget)) / threads;
 }
 
-// Work of each check of the claims, in their order.
-std::vector<double> WorkPerCheck(const std::vector<Claim>& claims, const AuditOptions& options) {
-  std::vector<double> work;
-  for (const Claim& claim : claims) {
-    for (size_t i = 0; i < claim.checks.size(); ++i) {
-      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, 0.0};
-      work.push_back(WorkOf(claim.checks[i], run, NumThreads(options.num_threads)));
-    }
-  }
-  return work;
+CheckRun RunOf(const Audit& plan, const CheckPlace& place) {
+  const AuditOptions& options = plan.options;
+  return {options.seed, StreamCondition(plan.claims[place.claim].id, place.check), options.budget,
+          plan.confidence, options.num_threads};
+}
+
+const Check& CheckAt(const Audit& plan, const CheckPlace& place) {
+  return plan.claims[place.claim].checks[place.check];
 }
 
 }  // namespace
@@ -86,33 +85,52 @@ std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector
 Audit PlanAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   Audit audit{options, CountTargets(all), 0.0, SelectClaims(all, options.only), {}};
   audit.confidence = 1.0 - kAuditErrorRate / std::max(audit.num_targets, 1);
+  for (const Claim& claim : audit.claims) {
+    audit.results.emplace_back().checks.resize(claim.checks.size());
+  }
   return audit;
+}
+
+std::vector<CheckPlace> PlacesOf(const Audit& plan) {
+  std::vector<CheckPlace> places;
+  for (size_t claim = 0; claim < plan.claims.size(); ++claim) {
+    for (size_t check = 0; check < plan.claims[claim].checks.size(); ++check)
+      places.push_back({claim, check});
+  }
+  return places;
+}
+
+void DecideChecks(const Audit& plan, const std::vector<CheckPlace>& places,
+                  const std::function<void(const CheckPlace&, CheckResult)>& keep) {
+  const int num_threads = NumThreads(plan.options.num_threads);
+  std::vector<double> work;
+  double total_work = 0.0;
+  for (const CheckPlace& place : places) {
+    work.push_back(WorkOf(CheckAt(plan, place), RunOf(plan, place), num_threads));
+    total_work += work.back();
+  }
+  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
+               plan.claims.size(), places.size(), DurationInWords(total_work), num_threads);
+  Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
+  double done_work = 0.0;
+  for (size_t i = 0; i < places.size(); ++i) {
+    keep(places[i], DecideCheck(CheckAt(plan, places[i]), RunOf(plan, places[i])));
+    const auto seconds_before = static_cast<std::int64_t>(done_work);
+    done_work += work[i];
+    progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
+  }
+}
+
+void JudgeClaims(Audit* audit) {
+  for (size_t i = 0; i < audit->claims.size(); ++i) JudgeClaim(audit->claims[i], &audit->results[i]);
 }
 
 Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   Audit audit = PlanAudit(all, options);
-  const std::vector<double> work = WorkPerCheck(audit.claims, options);
-  double total_work = 0.0;
-  for (const double seconds : work) total_work += seconds;
-  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
-               audit.claims.size(), work.size(), DurationInWords(total_work),
-               NumThreads(options.num_threads));
-  Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
-  double done_work = 0.0;
-  size_t next = 0;
-  for (const Claim& claim : audit.claims) {
-    ClaimResult result;
-    for (size_t i = 0; i < claim.checks.size(); ++i) {
-      const CheckRun run{options.seed, StreamCondition(claim.id, i), options.budget, audit.confidence,
-                         options.num_threads};
-      result.checks.push_back(DecideCheck(claim.checks[i], run));
-      const auto seconds_before = static_cast<std::int64_t>(done_work);
-      done_work += work[next++];
-      progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
-    }
-    JudgeClaim(claim, &result);
-    audit.results.push_back(std::move(result));
-  }
+  DecideChecks(audit, PlacesOf(audit), [&](const CheckPlace& place, CheckResult result) {
+    audit.results[place.claim].checks[place.check] = std::move(result);
+  });
+  JudgeClaims(&audit);
   return audit;
 }
 

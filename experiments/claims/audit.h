@@ -1,6 +1,8 @@
 // The claim audit: every claim decided, with an error rate for the whole.
 #pragma once
 
+#include <compare>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,9 +14,10 @@ struct AuditOptions {
   std::vector<std::string> only;  // ids or their beginnings ("inlier", "sigma_p.theta"); empty: all
   Budget budget = Budget::kQuick;
   std::uint64_t seed = 1;
-  int num_threads = 0;  // 0: one per core; the results do not depend on it
-  std::string study;    // name of the study that the claims are made on; empty: the built-in scenes
-  Settings conditions;  // of all checks, where they do not say else
+  int num_threads = 0;         // 0: one per core; the results do not depend on it
+  std::string study;           // name of the study that the claims are made on; empty: the built-in scenes
+  std::string study_identity;  // as in StudyPlan
+  Settings conditions;         // of all checks, where they do not say else
 };
 
 struct Audit {
@@ -22,7 +25,7 @@ struct Audit {
   int num_targets = 0;      // claimed targets of all claims, whether they were run or not
   double confidence = 0.0;  // of each target's interval
   std::vector<Claim> claims;
-  std::vector<ClaimResult> results;  // as claims
+  std::vector<ClaimResult> results;  // as claims; of a plan without trials
 };
 
 // The probability of any false verdict in an audit of all claims: a claimed number outside its allowed range
@@ -34,6 +37,22 @@ std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector
 
 // The selected claims of `all` and the confidence of their targets: what can be said before any trial.
 Audit PlanAudit(const std::vector<Claim>& all, const AuditOptions& options);
+
+// A check of an audit: indices into Audit::claims and into the claim's checks.
+struct CheckPlace {
+  size_t claim = 0, check = 0;
+  auto operator<=>(const CheckPlace&) const = default;
+};
+
+// All of them in their order.
+std::vector<CheckPlace> PlacesOf(const Audit& plan);
+
+// Decides these checks, one after the other, hands over each result, and shows progress.
+void DecideChecks(const Audit& plan, const std::vector<CheckPlace>& places,
+                  const std::function<void(const CheckPlace&, CheckResult)>& keep);
+
+// The verdicts of the claims from those of their checks, of which there is one in audit->results for each.
+void JudgeClaims(Audit* audit);
 
 // Decides the selected claims of `all`, each target at confidence 1 - kAuditErrorRate / num_targets
 // (Bonferroni), and shows progress. A claim's result does not depend on which others are run: its random

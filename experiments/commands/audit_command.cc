@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "estimator/estimator_registry.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/message.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/claims/audit_output.h"
+#include "experiments/claims/audit_part.h"
 #include "experiments/claims/case.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/claims/study_claims.h"
@@ -14,6 +16,7 @@
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/study/shard.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -24,6 +27,8 @@ struct AuditArguments {
   StudyChanges changes;
   std::vector<std::string> only;
   std::string budget = "quick", out;
+  std::string shard;               // empty: all checks
+  std::vector<std::string> parts;  // to be merged; empty: none
   bool only_plan = false;
   int threads = 0;
 };
@@ -38,8 +43,30 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
   const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
   options->seed = plan.study.seed;
   options->study = plan.study.name;
+  options->study_identity = plan.identity;
   options->conditions = plan.study.data;
   return StudyClaims(plan);
+}
+
+// The audit of the parts. Where checks are missing, the shards that have them go to standard output, for the
+// shell.
+Audit Merged(const std::vector<Claim>& all, const AuditOptions& options,
+             const std::vector<std::string>& parts) {
+  MergedAudit merged = MergeAuditParts(all, options, parts);
+  if (merged.num_missing == 0) return std::move(merged.audit);
+  const std::string shards = ArrayText(merged.missing_shards);
+  PrintMessage("{} checks are missing, of the shards {} of {}; nothing was written\n", merged.num_missing,
+               shards, merged.num_shards);
+  fmt::print("{}\n", shards);
+  throw EndWith{kTryAgain};
+}
+
+void WriteAudit(const Audit& audit, const std::string& out) {
+  fmt::print("{}", AuditAsTable(audit));
+  WriteFileWhole(out + "/audit.json", AuditAsJson(audit));
+  WriteFileWhole(out + "/audit.md", AuditAsMarkdown(audit));
+  DrawFigures("audit", {out});
+  PrintMessage("done: {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", out);
 }
 
 void RunAuditCommand(const AuditArguments& arguments) {
@@ -56,13 +83,20 @@ void RunAuditCommand(const AuditArguments& arguments) {
   if (arguments.out.empty())
     throw InputError("--out is missing: the folder for the results (or ask for --plan)");
   SelectClaims(all, options.only);
+  if (!arguments.shard.empty()) {
+    const Shard shard = ParseShard(arguments.shard, ThisEnvironment());
+    RunAuditPart(all, options, shard, arguments.out);
+    PrintMessage("done: shard {} of {} in {}; next, with all of them: the same command, --merge PARTS\n",
+                 shard.number, shard.count, arguments.out);
+    return;
+  }
+  if (!arguments.parts.empty()) {
+    const Audit audit = Merged(all, options, arguments.parts);
+    MakeResultFolder(arguments.out);
+    return WriteAudit(audit, arguments.out);
+  }
   MakeResultFolder(arguments.out);
-  const Audit audit = RunAudit(all, options);
-  fmt::print("{}", AuditAsTable(audit));
-  WriteFileWhole(arguments.out + "/audit.json", AuditAsJson(audit));
-  WriteFileWhole(arguments.out + "/audit.md", AuditAsMarkdown(audit));
-  DrawFigures("audit", {arguments.out});
-  PrintMessage("done: {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", arguments.out);
+  WriteAudit(RunAudit(all, options), arguments.out);
 }
 
 }  // namespace
@@ -93,7 +127,14 @@ void AddAuditCommand(CLI::App& app) {
       "\n"
       "  rcme audit study.yaml --out audit                        all conditions; says the time beforehand\n"
       "  rcme audit study.yaml --set outlier_ratio=0.3 --out audit    one level of a factor\n"
-      "  rcme audit study.yaml --only estimator --out audit       only what the study's estimators report");
+      "  rcme audit study.yaml --only estimator --out audit       only what the study's estimators report\n"
+      "\n"
+      "On many machines each decides a share of the checks; the parts give the same bytes as one run "
+      "(docs/many_machines.md):\n"
+      "\n"
+      "  rcme audit --budget full --shard 3/8 --out parts/3.json  the third of 8; the same command resumes "
+      "it\n"
+      "  rcme audit --budget full --merge parts/*.json --out audit    all of them");
   auto arguments = std::make_shared<AuditArguments>();
   command->add_option("study", arguments->study,
                       "study file (YAML): the claims about calibration on its scene, cameras, motion, noise, "
@@ -107,9 +148,23 @@ void AddAuditCommand(CLI::App& app) {
       ->add_option("--budget", arguments->budget, "quick (minutes) or full (up to hours; says so beforehand)")
       ->check(CLI::IsMember({"quick", "full"}))
       ->capture_default_str();
-  command->add_option("-o,--out", arguments->out, "folder for the results; made if missing");
-  command->add_flag("--plan", arguments->only_plan,
-                    "only print the plan: margins, trials, and what each claim finds with probability 0.9");
+  command->add_option("-o,--out", arguments->out,
+                      "folder for the results, made if missing; with --shard the file of the part");
+  CLI::Option* plan = command->add_flag(
+      "--plan", arguments->only_plan,
+      "only print the plan: margins, trials, and what each claim finds with probability 0.9");
+  CLI::Option* shard = command->add_option(
+      "--shard", arguments->shard,
+      "I/N: the I-th of N shares of every claim's checks, into a file of its own; auto/N or auto: which one "
+      "this is in a Slurm array or a Kubernetes indexed job (docs/many_machines.md)");
+  command
+      ->add_option(
+          "--merge", arguments->parts,
+          "the files of all shards, given with the study and options that they were made with; where "
+          "checks are missing, prints the shards that have them (3,17-19) and ends with exit code 75")
+      ->excludes(shard)
+      ->excludes(plan);
+  shard->excludes(plan);
   AddStudyOptions(command, &arguments->changes);
   command
       ->add_option("--threads", arguments->threads,

@@ -1,12 +1,16 @@
 // `rcme audit` as a user runs it.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/temp_folder.h"
@@ -50,6 +54,87 @@ TEST(Audit, GivesTheSameBytesForAnyNumberOfThreads) {
     if (first.empty()) first = json;
     EXPECT_EQ(json, first);
   }
+}
+
+// A shard of these options, into a file that is returned.
+std::string AuditPart(const TempFolder& folder, const std::vector<std::string>& options, int number,
+                      int count) {
+  const std::string path = folder.Path(fmt::format("{}_of_{}.json", number, count));
+  std::vector<std::string> command = {"audit", "--shard", fmt::format("{}/{}", number, count), "--out", path};
+  command.insert(command.begin() + 1, options.begin(), options.end());
+  const ProgramResult result = RunRcme(command);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return path;
+}
+
+ProgramResult MergeAudit(const std::vector<std::string>& options, const std::vector<std::string>& parts,
+                         const std::string& out) {
+  std::vector<std::string> command = {"audit"};
+  command.insert(command.end(), options.begin(), options.end());
+  command.emplace_back("--merge");
+  command.insert(command.end(), parts.begin(), parts.end());
+  command.insert(command.end(), {"--out", out});
+  return RunRcme(command);
+}
+
+TEST(Audit, InShardsGivesTheSameBytes) {
+  const TempFolder folder;
+  std::ofstream(folder.Path("study.yaml"))
+      << "name: mine\ndata: {scene: uniform_volume, num_matches: 20, sigma_px: 0.1}\n"
+         "factors: {outlier_ratio: [0, 0.3, 0.95]}\nestimators: [{name: standard}]\n";
+  const std::vector<std::vector<std::string>> audits = {
+      {"--only", "sampson,mu.rank_aware.separation"},
+      {folder.Path("study.yaml"), "--only", "inlier.true_pose.rank_aware,sigma_f", "--seed", "3"}};
+  for (const std::vector<std::string>& options : audits) {
+    std::vector<std::string> command = {"audit", "--out", folder.Path("whole")};
+    command.insert(command.begin() + 1, options.begin(), options.end());
+    const ProgramResult whole = RunRcme(command);
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    for (const int count : {1, 3, 7}) {
+      std::vector<std::string> parts;
+      for (int number = count; number >= 1; --number) {
+        parts.push_back(AuditPart(folder, options, number, count));
+      }
+      const ProgramResult merged = MergeAudit(options, parts, folder.Path("merged"));
+      EXPECT_EQ(merged.exit_code, 0) << merged.err;
+      EXPECT_EQ(merged.out, whole.out);
+      for (const char* file : {"/audit.json", "/audit.md"}) {
+        EXPECT_EQ(Contents(folder.Path("merged") + file), Contents(folder.Path("whole") + file)) << count;
+      }
+      for (const std::string& part : parts) std::filesystem::remove(part);
+    }
+  }
+}
+
+TEST(Audit, ThatLacksShardsNamesThemAndWritesNothing) {
+  const TempFolder folder;
+  const std::vector<std::string> options = {"--only", "sampson"};
+  const std::vector<std::string> parts = {AuditPart(folder, options, 2, 3)};
+  const ProgramResult lacking = MergeAudit(options, parts, folder.Path("out"));
+  EXPECT_EQ(lacking.exit_code, 75);
+  EXPECT_EQ(lacking.out, "1,3\n");
+  EXPECT_THAT(lacking.err, HasSubstr("of the shards 1,3 of 3; nothing was written"));
+  const ProgramResult seed = MergeAudit({"--only", "sampson", "--seed", "2"}, parts, folder.Path("out"));
+  EXPECT_EQ(seed.exit_code, 2);
+  EXPECT_THAT(seed.err, HasSubstr("'seed: 1' there, 'seed: 2' here"));
+  EXPECT_FALSE(std::filesystem::exists(folder.Path("out")));
+}
+
+// SIGTERM in the midst of it keeps what is decided; SIGKILL leaves a part as it was, or none.
+TEST(Audit, AShardThatIsStoppedOrKilledGoesOn) {
+  const TempFolder folder;
+  const std::vector<std::string> options = {"--only", "sigma_p,inlier", "--threads", "1"};
+  const std::string whole = Contents(AuditPart(folder, options, 1, 2)), path = folder.Path("stopped.json");
+  std::vector<std::string> command = {"audit", "--shard", "1/2", "--out", path};
+  command.insert(command.end(), options.begin(), options.end());
+  for (const int signal : {SIGTERM, SIGKILL, SIGTERM}) {
+    RunningProgram program(RcmeCommand(command));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    program.Send(signal);
+    program.Wait();
+  }
+  EXPECT_EQ(RunRcme(command).exit_code, 0);
+  EXPECT_EQ(Contents(path), whole);
 }
 
 TEST(Audit, OnAStudySpeaksOfItsConditions) {
