@@ -16,6 +16,7 @@
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/commands/time_limit.h"
 #include "experiments/study/shard.h"
 #include "parameters/input_error.h"
 
@@ -27,7 +28,7 @@ struct AuditArguments {
   StudyChanges changes;
   std::vector<std::string> only;
   std::string budget = "quick", out;
-  std::string shard;               // empty: all checks
+  std::string shard, max_time;     // empty: all checks, no limit
   std::vector<std::string> parts;  // to be merged; empty: none
   bool only_plan = false;
   int threads = 0;
@@ -71,6 +72,7 @@ void WriteAudit(const Audit& audit, const std::string& out) {
 
 void RunAuditCommand(const AuditArguments& arguments) {
   const StopOnSignals stop;
+  StartTimeLimit(arguments.max_time);
   AuditOptions options;
   options.only = arguments.only;
   options.budget = arguments.budget == "full" ? Budget::kFull : Budget::kQuick;
@@ -165,6 +167,7 @@ void AddAuditCommand(CLI::App& app) {
       ->excludes(shard)
       ->excludes(plan);
   shard->excludes(plan);
+  AddTimeLimit(command, "checks", &arguments->max_time)->needs(shard);
   AddStudyOptions(command, &arguments->changes);
   command
       ->add_option("--threads", arguments->threads,

@@ -1,23 +1,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <optional>
 
 #include "experiments/analysis/count_study.h"
 #include "experiments/base/columns.h"
-#include "experiments/base/duration.h"
 #include "experiments/base/message.h"
 #include "experiments/base/progress.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/commands/time_limit.h"
 #include "experiments/result_file/first_difference.h"
 #include "experiments/run/run_until.h"
 #include "parameters/input_error.h"
-#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -111,8 +109,7 @@ void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, Result
 
 void Run(const RunArguments& arguments) {
   const StopOnSignals stop;
-  if (!arguments.max_time.empty())
-    StopAfter(std::chrono::duration<double>(ParseDuration(arguments.max_time).value()));
+  StartTimeLimit(arguments.max_time);
   const Shard shard = arguments.shard.empty() ? Shard() : ParseShard(arguments.shard, ThisEnvironment());
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
   const bool keeps_counts = arguments.keep == "counts";
@@ -193,15 +190,7 @@ void AddRunCommand(CLI::App& app) {
       ->capture_default_str()
       ->excludes(until)
       ->excludes(repeats);
-  command
-      ->add_option(
-          "--max-time", arguments->max_time,
-          "end after this time (55m, 1h30m, 90s) between two trials; if some are left, with exit code "
-          "75: the same command resumes")
-      ->check([](const std::string& text) {
-        return ParseDuration(text) ? std::string()
-                                   : Quoted(text) + " is not allowed; give a time as 55m, 1h30m or 90s";
-      });
+  AddTimeLimit(command, "trials", &arguments->max_time);
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")

@@ -133,8 +133,12 @@ TEST(Audit, AShardThatIsStoppedOrKilledGoesOn) {
     program.Send(signal);
     program.Wait();
   }
+  std::vector<std::string> limited = command;
+  limited.insert(limited.end(), {"--max-time", "0.5s"});
+  EXPECT_EQ(RunRcme(limited).exit_code, 75);
   EXPECT_EQ(RunRcme(command).exit_code, 0);
   EXPECT_EQ(Contents(path), whole);
+  EXPECT_EQ(RunRcme(limited).exit_code, 0);  // nothing is left
 }
 
 TEST(Audit, OnAStudySpeaksOfItsConditions) {
