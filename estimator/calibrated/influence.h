@@ -2,7 +2,8 @@
 //
 // A wrong match that happens to lie on its epipolar line has a parallax of any size. Where it is far greater
 // than that of the scene, the match decides on the motion by itself, and its residual is zero: nothing but
-// its influence shows that it is wrong.
+// its influence shows that it is wrong. A right match of a point far nearer than all others is left out with
+// it: the motion loses precision, and on a plane the point that would tell its two motions apart.
 #pragma once
 
 #include "estimator/calibrated/explanation.h"

@@ -54,13 +54,15 @@ TEST(HypothesisSearch, StopsAtTheGreatestNumber) {
             SearchSamples(problem, 500).counts.num_hypotheses);
 }
 
-// Samples are drawn eight models at a time, so that more may be there already than a next round asks for.
+// Samples are drawn eight models at a time, so that more may be there already than a next round, here of one
+// more sample, asks for.
 TEST(HypothesisSearch, GoesOnFromMoreSamplesThanItAskedFor) {
   const MotionProblem problem = TwoCameraProblem(100, 0.5, 1.0, 2);
   CalibratedOptions options;
-  options.min_samples = 8;
-  for (options.max_samples = 9; options.max_samples < 40; ++options.max_samples)
-    EXPECT_FALSE(Search(problem, options).candidates.empty()) << options.max_samples;
+  for (options.min_samples = 8; options.min_samples < 80; ++options.min_samples) {
+    options.max_samples = options.min_samples + 1;
+    EXPECT_FALSE(Search(problem, options).candidates.empty()) << options.min_samples;
+  }
 }
 
 double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {

@@ -45,8 +45,8 @@ TEST(WrongByInfluence, IsZeroForMatchesThatTheModeDoesNotExplain) {
   EXPECT_GE(num_zero, 70);
 }
 
-// Of 200 matches 100 are wrong. One of them, of a point ten times nearer than all others, lies on its
-// epipolar line.
+// Of 200 matches 100 are wrong, and one lies on its epipolar line as a point ten times nearer than all others
+// would: the geometry does not tell a wrong match there from a right one of such a point.
 TEST(WrongByInfluence, FindsAWrongMatchOnItsEpipolarLine) {
   int num_found = 0, num_planted = 0, num_false = 0, num_right = 0;
   for (std::uint32_t trial = 0; trial < 40; ++trial) {
