@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kFewSteps = 3, kMostSteps = 15;
+constexpr int kFewSteps = 3, kMostSteps = 18;
 constexpr int kMatchesOfCandidates = 192;  // that refine and rank the candidates; a whole number of blocks
 constexpr int kFirstMatches = 128;         // that a first scale is estimated from
 constexpr int kCheiralityBlocks = 32;      // of matches: decide on which side the cameras are
@@ -87,7 +87,8 @@ MatchMask MatchesOfCandidates(const MatchBlocks& matches) {
   return mask;
 }
 
-// Of every candidate a mode after a few steps at a fixed scale, by some of the matches.
+// Of every candidate that does not become the same as one before it a mode after a few steps at a fixed
+// scale, by some of the matches.
 std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& prior,
                                 const std::vector<ScoredEssential>& candidates) {
   std::vector<Mode> modes;
@@ -99,7 +100,14 @@ std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& 
     mode.pose = PoseInFront(matches, candidate.E);
     mode.mixture = common;
     mode.used = some;
-    FitMode(matches, prior, kFewSteps, &mode, MixtureUpdate::kNone);
+    ModeFit fit(matches, prior, &mode, MixtureUpdate::kNone);
+    bool is_new = true;
+    for (int step = 0; step < kFewSteps && !fit.is_converged() && is_new; ++step) {
+      is_new = fit.Step() &&
+               std::ranges::none_of(modes, [&](const Mode& other) { return IsSameMode(other, mode); });
+    }
+    if (!is_new) continue;
+    fit.Finish();
     if (mode.hessian.diagonal().minCoeff() > 0.0) modes.push_back(std::move(mode));
   }
   return modes;
@@ -114,17 +122,20 @@ std::vector<Mode> AtScale(const MatchBlocks& matches, std::vector<Mode> modes, d
   return modes;
 }
 
-// Adds the optimum from `mode` by all matches, unless it is known; whether it is shows after a few steps.
+// Adds the optimum from `mode` by all matches, unless it is known; whether it is often shows after a step or
+// two.
 void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode, std::vector<Mode>* optima) {
-  mode.used = matches.All();
-  for (const int steps : {kFewSteps, kMostSteps}) {
-    const bool is_converged = FitMode(matches, prior, steps, &mode);
-    const bool is_known = std::ranges::any_of(*optima, [&](const Mode& other) {
+  const auto is_known = [&] {
+    return std::ranges::any_of(*optima, [&](const Mode& other) {
       return IsSameMode(other, mode) && std::abs(std::log(other.mixture.scale / mode.mixture.scale)) < 0.7;
     });
-    if (is_known) return;
-    if (steps == kMostSteps && is_converged) optima->push_back(std::move(mode));
+  };
+  mode.used = matches.All();
+  ModeFit fit(matches, prior, &mode);
+  for (int step = 0; step < kMostSteps && !fit.is_converged(); ++step) {
+    if (!fit.Step() || (step < kFewSteps && is_known())) return;
   }
+  if (fit.Finish() && !is_known()) optima->push_back(std::move(mode));
 }
 
 }  // namespace

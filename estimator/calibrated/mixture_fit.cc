@@ -3,9 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-
-#include "estimator/kernels/mixture_sums.h"
 
 namespace rcme {
 namespace {
@@ -49,48 +46,57 @@ MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inl
   return guess;
 }
 
+ModeFit::ModeFit(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode, MixtureUpdate update)
+    : matches_(matches), prior_(prior), mode_(mode), update_(update), num_used_(CountIn(mode->used)) {
+  at_ = SumMixture(matches_, mode->used, mode->pose, mode->mixture);
+}
+
+bool ModeFit::Step() {
+  Matrix5d damped = at_.hessian;
+  damped.diagonal() *= 1.0 + damping_;
+  const Vector5d move = -damped.llt().solve(at_.gradient);
+  if (!move.allFinite()) return false;
+  const RelativePose pose = Retract(mode_->pose, move);
+  MixtureParameters mixture = mode_->mixture;
+  if (update_ == MixtureUpdate::kAll) mixture = Updated(mixture, at_, num_used_, prior_);
+  const MixtureSums there = SumMixture(matches_, mode_->used, pose, mixture);
+  if (!std::isfinite(there.log_likelihood)) return false;
+  if (there.log_likelihood < at_.log_likelihood - kTolerance) {
+    // The motion's step or the mixture's? The density of wrong matches has no normalisation, so that its
+    // update may lower the likelihood.
+    mode_->mixture = mixture;
+    at_ = SumMixture(matches_, mode_->used, mode_->pose, mode_->mixture);
+    if (there.log_likelihood < at_.log_likelihood - kTolerance) {
+      damping_ = std::max(10.0 * damping_, 0.1);
+      return damping_ <= 1e6;
+    }
+  }
+  damping_ = std::max(0.1 * damping_, 1e-6);
+  decrement_ = -move.dot(at_.gradient);
+  is_converged_ = decrement_ < kNegligibleDecrement &&
+                  std::abs(mixture.scale - mode_->mixture.scale) < 2e-3 * mixture.scale;
+  mode_->pose = pose;
+  mode_->mixture = mixture;
+  at_ = there;
+  return true;
+}
+
+bool ModeFit::Finish() {
+  const Eigen::LLT<Matrix5d> llt(at_.hessian);
+  if (llt.info() != Eigen::Success) return false;
+  mode_->log_likelihood = at_.log_likelihood;
+  mode_->hessian = at_.hessian;
+  mode_->inverse_hessian = llt.solve(Matrix5d::Identity());
+  return decrement_ < kSmallDecrement && mode_->inverse_hessian.allFinite();
+}
+
 bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
              MixtureUpdate update) {
-  const int num_used = CountIn(mode->used);
-  MixtureSums at = SumMixture(matches, mode->used, mode->pose, mode->mixture);
-  double damping = 1e-3;
-  bool is_converged = false;
-  double decrement = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < max_steps && !is_converged; ++step) {
-    Matrix5d damped = at.hessian;
-    damped.diagonal() *= 1.0 + damping;
-    const Vector5d move = -damped.llt().solve(at.gradient);
-    if (!move.allFinite()) return false;
-    Mode next = *mode;
-    next.pose = Retract(mode->pose, move);
-    if (update == MixtureUpdate::kAll) next.mixture = Updated(mode->mixture, at, num_used, prior);
-    const MixtureSums there = SumMixture(matches, mode->used, next.pose, next.mixture);
-    if (!std::isfinite(there.log_likelihood)) return false;
-    if (there.log_likelihood < at.log_likelihood - kTolerance) {
-      // The motion's step or the mixture's? The density of wrong matches has no normalisation, so that its
-      // update may lower the likelihood.
-      mode->mixture = next.mixture;
-      at = SumMixture(matches, mode->used, mode->pose, mode->mixture);
-      if (there.log_likelihood < at.log_likelihood - kTolerance) {
-        damping = std::max(10.0 * damping, 0.1);
-        if (damping > 1e6) return false;
-        continue;
-      }
-    }
-    damping = std::max(0.1 * damping, 1e-6);
-    decrement = -move.dot(at.gradient);
-    is_converged = decrement < kNegligibleDecrement &&
-                   std::abs(next.mixture.scale - mode->mixture.scale) < 2e-3 * next.mixture.scale;
-    mode->pose = next.pose;
-    mode->mixture = next.mixture;
-    at = there;
+  ModeFit fit(matches, prior, mode, update);
+  for (int step = 0; step < max_steps && !fit.is_converged(); ++step) {
+    if (!fit.Step()) return false;
   }
-  const Eigen::LLT<Matrix5d> llt(at.hessian);
-  if (llt.info() != Eigen::Success) return false;
-  mode->log_likelihood = at.log_likelihood;
-  mode->hessian = at.hessian;
-  mode->inverse_hessian = llt.solve(Matrix5d::Identity());
-  return decrement < kSmallDecrement && mode->inverse_hessian.allFinite();
+  return fit.Finish();
 }
 
 void FitShares(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode) {

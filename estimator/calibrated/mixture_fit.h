@@ -3,7 +3,10 @@
 // the density of wrong matches.
 #pragma once
 
+#include <limits>
+
 #include "estimator/calibrated/mode.h"
+#include "estimator/kernels/mixture_sums.h"
 
 namespace rcme {
 
@@ -18,9 +21,32 @@ enum class MixtureUpdate { kNone, kAll };
 
 MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inlier_ratio);
 
-// At most `max_steps` steps; fewer where one is negligible (below 0.02 standard deviations of the motion and
-// 0.2 % of the scale). Returns whether the last one was below a standard deviation; a mode whose
-// Hessian cannot be inverted does not converge.
+// A fit step by step. The mode's motion and mixture follow; its likelihood and Hessian only with Finish.
+class ModeFit {
+ public:
+  ModeFit(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode,
+          MixtureUpdate update = MixtureUpdate::kAll);
+  // False: no further step can be taken, and the mode is not to be used.
+  bool Step();
+  // The last step was negligible: below 0.02 standard deviations of the motion and 0.2 % of the scale.
+  bool is_converged() const { return is_converged_; }
+  // Whether the last step was below a standard deviation; a mode whose Hessian cannot be inverted does not
+  // converge.
+  bool Finish();
+
+ private:
+  const MatchBlocks& matches_;
+  const MixturePrior& prior_;
+  Mode* mode_;
+  MixtureUpdate update_;
+  int num_used_;
+  MixtureSums at_;
+  double damping_ = 1e-3;
+  double decrement_ = std::numeric_limits<double>::infinity();
+  bool is_converged_ = false;
+};
+
+// At most `max_steps` steps; fewer where one is negligible. Returns what Finish does.
 bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
              MixtureUpdate update = MixtureUpdate::kAll);
 

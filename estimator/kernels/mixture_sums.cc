@@ -25,9 +25,8 @@ struct MixtureModel {
   RayScale rays;
   double inverse_noise_rad;  // of the angle between two rays
 };
-// log_likelihood, num_right, sum_squares, num_wrong_near, num_near, then gradient and the Hessian's lower
-// triangle.
-inline constexpr int kNumScalars = 5, kNumMixtureSums = kNumScalars + 20;
+// log_likelihood, num_right, sum_squares, num_wrong_near, then gradient and the Hessian's lower triangle.
+inline constexpr int kNumScalars = 4, kNumMixtureSums = kNumScalars + 20;
 
 }  // namespace rcme
 #endif
@@ -35,49 +34,66 @@ inline constexpr int kNumScalars = 5, kNumMixtureSums = kNumScalars + 20;
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// x^-k, k >= 1.
-HWY_INLINE Vec InversePower(Vec x, int k) {
-  const Vec inverse = Set(1.0) / x;
-  Vec power = inverse;
-  for (int i = 1; i < k; ++i) power = power * inverse;
+// x^k, k >= 1.
+HWY_INLINE Vec Power(Vec x, int k) {
+  Vec power = x;
+  for (int i = 1; i < k; ++i) power = power * x;
   return power;
 }
 
-// The parts of the density at some matches.
+// Squared gradient of g, the residual's squared standard deviation, kept from zero.
+HWY_INLINE Vec SquaredGradient(const Constraint& c) {
+  return Greater(Dot4(c.gradient, c.gradient), Set(1e-100));
+}
+
+// The parts of the density at some matches, r = g / n.
 struct MixtureTerms {
+  Vec inverse_n2, r2;                   // 1 / n^2, r^2
   Vec total, right, weight, curvature;  // density, p, v, p psi' - p (1 - p) psi^2 bounded from below
 };
-HWY_INLINE MixtureTerms EvaluateMixture(Vec r, Vec z, const MixtureParameters& m) {
-  const Vec one = Set(1.0), u = r * Set(1.0 / m.scale), u2 = u * u;
-  const Vec q = FusedMulAdd(u2, Set(1.0 / m.noise.dof()), one), inverse_q = one / q;
-  const Vec beyond = Lesser(FusedMulAdd(z, Set(1.0 / m.scale), one), Set(0.0));
-  const Vec d = one / FusedMulAdd(beyond, beyond, one);
-  const Vec inlier = Set(m.inlier_ratio * m.noise.peak / m.scale) * InversePower(q, m.noise.power) * (d * d);
+// Divisions and roots are what takes time: c(z)^(-1/2) = 1 + min(z / s + 1, 0)^2 is a ratio of polynomials in
+// the depth's `along` and sqrt(square), 1 + u^2 / dof one in g and n^2, and three inverses come from one.
+HWY_INLINE MixtureTerms EvaluateMixture(Vec g, Vec n2, const DepthAngle& depth, double inverse_noise_rad,
+                                        const MixtureParameters& m) {
+  const Vec one = Set(1.0), inverse_s2 = Set(1.0 / (m.scale * m.scale)), g2 = g * g;
+  const Vec beyond =
+      Lesser(FusedMulAdd(depth.along, Set(inverse_noise_rad / m.scale), hn::Sqrt(depth.square)), Set(0.0));
+  const Vec e = FusedMulAdd(beyond, beyond, depth.square);                   // square c(z)^(-1/2)
+  const Vec q = FusedMulAdd(g2, Set(1.0 / m.noise.dof()) * inverse_s2, n2);  // n^2 (1 + u^2 / dof)
+  const Vec qe = q * e, inverse_all = one / (n2 * qe);
+  const Vec d = depth.square * (inverse_all * (n2 * q)), inverse_q = n2 * (inverse_all * (n2 * e));
   MixtureTerms terms;
+  terms.inverse_n2 = inverse_all * qe;
+  terms.r2 = g2 * terms.inverse_n2;
+  const Vec inlier = Set(m.inlier_ratio * m.noise.peak / m.scale) * Power(inverse_q, m.noise.power) * (d * d);
   terms.total = inlier + Set((1.0 - m.inlier_ratio) * m.outlier_density);
   terms.right = inlier / terms.total;
   terms.weight = Set(2.0 * m.noise.power / m.noise.dof()) * inverse_q;
-  // psi' = v (2 / q - 1), psi^2 = v^2 u^2
+  // psi' = v (2 / (1 + u^2 / dof) - 1), psi^2 = v^2 u^2
   const Vec bend = FusedMulSub(Set(2.0), inverse_q, one);
-  const Vec doubt = (one - terms.right) * (terms.weight * u2);
+  const Vec doubt = (one - terms.right) * (terms.weight * (terms.r2 * inverse_s2));
   terms.curvature = terms.right * terms.weight * Greater(bend - doubt, Set(0.6));
   return terms;
 }
 
-// r and its derivatives along the motion's five coordinates (kernels/sampson_equations.h).
-struct Residual {
-  Vec r, derivative[5];
-};
-HWY_INLINE Residual EvaluateResidual(const MixtureModel& model, const Matches& m) {
-  const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
-  const Vec inverse_n = Set(1.0) / hn::Sqrt(Greater(Dot4(c.gradient, c.gradient), Set(1e-200)));
-  const Vec r = c.g * inverse_n, u = r * inverse_n;
-  Residual residual{r, {}};
+// n dr / dp along the motion's five coordinates (kernels/sampson_equations.h), u = g / n^2: for every
+// derivative D of F, x2' D x1 - u (gradient of g)' (gradient of x2' D x1) = sum D_ij W_ij.
+HWY_INLINE void EvaluateSlopes(const MixtureModel& model, const Matches& m, const Constraint& c, Vec u,
+                               Vec* slopes) {
+  const Vec x = FusedNegMulAdd(u, c.gradient[2], m.x2), y = FusedNegMulAdd(u, c.gradient[3], m.y2);
+  const Vec du = u * c.gradient[0], dv = u * c.gradient[1];
+  const Vec W[8] = {FusedMulSub(x, m.x1, m.x2 * du),
+                    FusedMulSub(x, m.y1, m.x2 * dv),
+                    x,
+                    FusedMulSub(y, m.x1, m.y2 * du),
+                    FusedMulSub(y, m.y1, m.y2 * dv),
+                    y,
+                    m.x1 - du,
+                    m.y1 - dv};
   for (int k = 0; k < 5; ++k) {
-    const Constraint d = EvaluateConstraint(Broadcast{model.dF[k]}, m);
-    residual.derivative[k] = FusedNegMulAdd(u, Dot4(c.gradient, d.gradient), d.g) * inverse_n;
+    slopes[k] = Set(model.dF[k][8]);
+    for (int i = 0; i < 8; ++i) slopes[k] = FusedMulAdd(Set(model.dF[k][i]), W[i], slopes[k]);
   }
-  return residual;
 }
 
 void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
@@ -96,26 +112,28 @@ void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, co
       if (bits == 0) continue;
       const Mask is_used = MaskFromBits(bits >> lane);
       const Matches m = LoadMatches(matches[b], lane);
-      const Residual residual = EvaluateResidual(model, m);
-      const Vec z = DepthInNoise(model.pose, model.rays, m).least * Set(model.inverse_noise_rad);
-      const MixtureTerms terms = EvaluateMixture(residual.r, z, parameters);
+      const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
+      const DepthAngle depth = Least(EvaluateDepths(model.pose, model.rays, m));
+      const MixtureTerms terms =
+          EvaluateMixture(c.g, SquaredGradient(c), depth, model.inverse_noise_rad, parameters);
+      const Vec u = c.g * terms.inverse_n2;
+      Vec slopes[5];
+      EvaluateSlopes(model, m, c, u, slopes);
       const Vec right = hn::IfThenElseZero(is_used, terms.right);
       product = product * hn::IfThenElse(is_used, terms.total, one);
       const Vec weight = right * terms.weight;
-      const Vec pull = weight * residual.r;
       sums[1] = sums[1] + right;
-      sums[2] = FusedMulAdd(pull, residual.r, sums[2]);
-      const Mask is_near = hn::And(is_used, hn::Abs(residual.r) <= Set(kNearResidual));
+      sums[2] = FusedMulAdd(weight, terms.r2, sums[2]);
+      const Mask is_near = hn::And(is_used, terms.r2 <= Set(kNearResidual * kNearResidual));
       sums[3] = sums[3] + hn::IfThenElseZero(is_near, one - terms.right);
-      sums[4] = sums[4] + hn::IfThenElseZero(is_near, one);
-      const Vec scaled_pull = pull * inverse_s2;
-      const Vec curvature = hn::IfThenElseZero(is_used, terms.curvature) * inverse_s2;
+      const Vec pull = weight * u * inverse_s2;
+      const Vec curvature = hn::IfThenElseZero(is_used, terms.curvature) * terms.inverse_n2 * inverse_s2;
       for (int k = 0; k < 5; ++k) {
-        sums[kNumScalars + k] = FusedMulAdd(scaled_pull, residual.derivative[k], sums[kNumScalars + k]);
+        sums[kNumScalars + k] = FusedMulAdd(pull, slopes[k], sums[kNumScalars + k]);
       }
       for (int row = 0, i = kNumScalars + 5; row < 5; ++row) {
-        const Vec weighted = curvature * residual.derivative[row];
-        for (int c = 0; c <= row; ++c, ++i) sums[i] = FusedMulAdd(weighted, residual.derivative[c], sums[i]);
+        const Vec weighted = curvature * slopes[row];
+        for (int col = 0; col <= row; ++col, ++i) sums[i] = FusedMulAdd(weighted, slopes[col], sums[i]);
       }
     }
     sums[0] = sums[0] + LogOf(Tag(), product);
@@ -129,12 +147,15 @@ void ListTerms(const MatchBlocks& matches, const MixtureModel& model, double* co
   for (int b = 0; b < matches.num_blocks(); ++b) {
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
       const Matches m = LoadMatches(matches[b], lane);
-      const Residual residual = EvaluateResidual(model, m);
-      const Vec z = DepthInNoise(model.pose, model.rays, m).least * Set(model.inverse_noise_rad);
+      const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
+      const Vec inverse_n = Set(1.0) / hn::Sqrt(SquaredGradient(c)), r = c.g * inverse_n;
+      const Vec z = AngleOf(Least(EvaluateDepths(model.pose, model.rays, m))) * Set(model.inverse_noise_rad);
+      Vec slopes[5];
+      EvaluateSlopes(model, m, c, r * inverse_n, slopes);
       const int at = b * kBlockSize + lane;
-      hn::StoreU(residual.r, Tag(), lists[0] + at);
+      hn::StoreU(r, Tag(), lists[0] + at);
       hn::StoreU(z, Tag(), lists[1] + at);
-      for (int k = 0; k < 5; ++k) hn::StoreU(residual.derivative[k], Tag(), lists[2 + k] + at);
+      for (int k = 0; k < 5; ++k) hn::StoreU(slopes[k] * inverse_n, Tag(), lists[2 + k] + at);
     }
   }
 }
@@ -150,7 +171,8 @@ double SumCheiralityOverMatches(const MatchBlocks& matches, int num_blocks, cons
       const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
       const Vec n2 = Dot4(c.gradient, c.gradient);
       const Vec v = n2 / FusedMulAdd(c.g * c.g, inverse_s2, n2);
-      const Vec z = DepthInNoise(model.pose, model.rays, m).mean * Set(model.inverse_noise_rad);
+      const DepthAngles depths = EvaluateDepths(model.pose, model.rays, m);
+      const Vec z = (AngleOf(depths.in1) + AngleOf(depths.in2)) * Set(0.5 * model.inverse_noise_rad);
       const Vec term = v * z / hn::Sqrt(FusedMulAdd(z, z, one));
       const Mask are_matches =
           hn::And(AreMatches(b * kBlockSize + lane, matches.num_matches()), term == term);
@@ -194,7 +216,7 @@ MixtureSums SumMixture(const MatchBlocks& matches, const MatchMask& mask, const 
   double totals[kNumMixtureSums];
   HWY_DYNAMIC_DISPATCH(SumMixtureOverMatches)
   (matches, mask, ModelAt(matches, pose, true), parameters, totals);
-  MixtureSums sums{totals[0], totals[1], totals[2], totals[3], totals[4], Vector5d::Zero(), Matrix5d::Zero()};
+  MixtureSums sums{totals[0], totals[1], totals[2], totals[3], Vector5d::Zero(), Matrix5d::Zero()};
   sums.gradient = Eigen::Map<const Vector5d>(totals + kNumScalars);
   for (int row = 0, i = kNumScalars + 5; row < 5; ++row) {
     for (int c = 0; c <= row; ++c, ++i) sums.hessian(row, c) = sums.hessian(c, row) = totals[i];

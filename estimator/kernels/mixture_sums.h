@@ -19,7 +19,6 @@ struct MixtureSums {
   double num_right = 0.0;                // sum p
   double sum_squares = 0.0;              // sum p v r^2
   double num_wrong_near = 0.0;           // sum 1 - p over matches with |r| <= kNearResidual
-  double num_near = 0.0;                 // how many these are
   Vector5d gradient = Vector5d::Zero();  // of -log_likelihood, by the motion's tangent; c(z) held fixed
   // sum max(p psi' - p (1 - p) psi^2, 0.6 p v) r_p' r_p / s^2: the Hessian, kept positive.
   Matrix5d hessian = Matrix5d::Zero();

@@ -138,10 +138,10 @@ constexpr int kRankAwareOperations = 17 + 41 + 1 + 1;
 constexpr int kPrintedOperations =
     17 + 8 + 5 * (12 + 10 + 4 + 1) + 16 + 2 * 6 + 8 + (4 + 5 + 5 + 2) + (1 + 1 + 12 + 1);
 
-// SumMixture: EvaluateConstraint 12 for F and each of five derivatives, Dot4 4 for each, r 1, u 1, two for
-// each derivative; DepthInNoise 34; EvaluateMixture 22; 10 of the sums beside the five of the gradient and
-// the 5 + 15 of the Hessian.
-constexpr int kMixtureOperations = 6 * (12 + 4) + 2 + 5 * 2 + 34 + 22 + 10 + 5 + 20;
+// SumMixture: EvaluateConstraint 12, Dot4 4; EvaluateDepths 37 (rays 4, R ray1 9, five Dot 15, `both` 1,
+// along 4, square 4), Least 4; EvaluateMixture 29; u 1; EvaluateSlopes 14 and 8 for each of five derivatives;
+// 10 of the sums beside the five of the gradient and the 5 + 15 of the Hessian.
+constexpr int kMixtureOperations = 12 + 4 + 37 + 4 + 29 + 1 + 14 + 5 * 8 + 10 + 5 + 20;
 
 // Share of the peak that a scan of all hypotheses reaches.
 PerRound ShareOfPeak(const PerRound& scan_seconds, int operations, const PerRound& seconds_per_fma) {

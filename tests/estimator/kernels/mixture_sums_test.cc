@@ -59,7 +59,6 @@ MixtureSums ScalarSums(const Case& c) {
     sums.sum_squares += d.right * d.weight * terms.residual * terms.residual;
     const bool is_near = std::abs(terms.residual) <= kNearResidual;
     sums.num_wrong_near += is_near ? 1.0 - d.right : 0.0;
-    sums.num_near += is_near ? 1.0 : 0.0;
     sums.gradient += d.right * d.weight * terms.residual / s2 * terms.derivative;
     sums.hessian += d.curvature / s2 * terms.derivative * terms.derivative.transpose();
   }
@@ -77,7 +76,6 @@ TEST_F(MixtureSumsOf, EqualTheScalarTwin) {
       EXPECT_NEAR(sums.num_right, expected.num_right, 1e-9 * n) << n;
       EXPECT_NEAR(sums.sum_squares, expected.sum_squares, 1e-9 * n) << n;
       EXPECT_NEAR(sums.num_wrong_near, expected.num_wrong_near, 1e-9 * n) << n;
-      EXPECT_EQ(sums.num_near, expected.num_near) << n;
       EXPECT_JACOBIAN_NEAR(sums.gradient, expected.gradient, 1e-9) << n;
       EXPECT_JACOBIAN_NEAR(sums.hessian, expected.hessian, 1e-9) << n;
     });
@@ -146,7 +144,6 @@ TEST_F(MixtureSumsOf, MatchesOutsideTheMaskAddNothing) {
   Run([&] {
     const MixtureSums before = c.Sum(c.pose), after = other.Sum(c.pose);
     EXPECT_EQ(after.log_likelihood, before.log_likelihood);
-    EXPECT_EQ(after.num_near, before.num_near);
     EXPECT_EQ(after.gradient, before.gradient);
     EXPECT_EQ(after.hessian, before.hessian);
   });
