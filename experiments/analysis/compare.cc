@@ -24,7 +24,7 @@ size_t IndexOf(const std::string& label, const RunDescription& run) {
                                fmt::join(labels, ", ")));
 }
 
-// The pairs of one condition, estimator and thing compared, growing trial by trial.
+// The pairs of one group, estimator and thing compared, growing trial by trial.
 class Pairs {
  public:
   Pairs(ComparedKind kind, bool has_repeats) : kind_(kind), has_repeats_(has_repeats) {}
@@ -108,22 +108,25 @@ class Pairs {
   StreamMedian error_difference_;
 };
 
-// The pairs of every condition, estimator and thing compared; of the reference with itself too, which no one
+// The pairs of every group, estimator and thing compared; of the reference with itself too, which no one
 // reads.
 class AllPairs {
  public:
-  AllPairs(const RunDescription& run, size_t reference, const std::vector<Compared>& compared)
+  AllPairs(const RunDescription& run, const TrialGroups& groups, size_t reference,
+           const std::vector<Compared>& compared)
       : bounds_(run.failure),
+        groups_(groups),
         reference_(reference),
         num_estimators_(run.estimators.size()),
         compared_(compared) {
-    for (size_t cell = 0; cell < run.conditions.size() * num_estimators_; ++cell) {
+    for (size_t cell = 0; cell < groups.levels.size() * num_estimators_; ++cell) {
       for (const Compared& each : compared_) cells_.emplace_back(each.kind, run.repeats_per_scene > 1);
     }
   }
 
   void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first_of_scene) {
     ++num_trials_;
+    group_ = groups_.group_of(problem);
     is_weighted_ = is_weighted_ || problem.weight != 1.0;
     for (size_t v = 0; v < compared_.size(); ++v) {
       const std::optional<double> of_reference = compared_[v].of(records[reference_], bounds_);
@@ -131,28 +134,29 @@ class AllPairs {
       for (size_t e = 0; e < num_estimators_; ++e) {
         const std::optional<double> of_estimator = compared_[v].of(records[e], bounds_);
         if (!of_estimator) continue;
-        cells_[IndexOfCell(problem.condition, e, v)].Add(*of_estimator, *of_reference, is_first_of_scene);
+        cells_[IndexOfCell(group_, e, v)].Add(*of_estimator, *of_reference, is_first_of_scene);
       }
     }
   }
 
-  void EndScene(std::uint32_t condition) {
-    for (size_t i = IndexOfCell(condition, 0, 0); i < IndexOfCell(condition + 1, 0, 0); ++i)
-      cells_[i].EndScene();
+  void EndScene() {
+    for (size_t i = IndexOfCell(group_, 0, 0); i < IndexOfCell(group_ + 1, 0, 0); ++i) cells_[i].EndScene();
   }
 
-  const Pairs& Of(size_t condition, size_t estimator, size_t compared) const {
-    return cells_[IndexOfCell(condition, estimator, compared)];
+  const Pairs& Of(size_t group, size_t estimator, size_t compared) const {
+    return cells_[IndexOfCell(group, estimator, compared)];
   }
   std::int64_t num_trials() const { return num_trials_; }
   bool is_weighted() const { return is_weighted_; }
 
  private:
-  size_t IndexOfCell(size_t condition, size_t estimator, size_t compared) const {
-    return (condition * num_estimators_ + estimator) * compared_.size() + compared;
+  size_t IndexOfCell(size_t group, size_t estimator, size_t compared) const {
+    return (group * num_estimators_ + estimator) * compared_.size() + compared;
   }
 
   FailureBounds bounds_;
+  const TrialGroups& groups_;
+  size_t group_ = 0;  // of the last trial
   size_t reference_, num_estimators_;
   std::vector<Compared> compared_;
   std::vector<Pairs> cells_;
@@ -182,16 +186,17 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
   const std::vector<DescribedEstimator>& estimators = run.estimators;
   const size_t reference_index = IndexOf(reference, run);
   const std::vector<Compared> compared = ComparedByName(options.compared);
-  AllPairs pairs(run, reference_index, compared);
+  const TrialGroups groups = options.pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(run);
+  AllPairs pairs(run, groups, reference_index, compared);
   ForEachTrialByScene(
       store, run.repeats_per_scene,
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
         pairs.Add(problem, records, is_first);
       },
-      [&](std::uint32_t condition) { pairs.EndScene(condition); });
+      [&](std::uint32_t) { pairs.EndScene(); });
   Comparison comparison{run.study,
                         estimators[reference_index].label,
-                        run.factors,
+                        groups.factor_names,
                         compared,
                         {},
                         pairs.num_trials(),
@@ -203,13 +208,13 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
     return comparison;
   }
   const bool is_anytime_valid = options.is_anytime_valid || !run.stopping_rule.empty();
-  for (std::uint32_t c = 0; c < run.conditions.size(); ++c) {
+  for (std::uint32_t c = 0; c < groups.levels.size(); ++c) {
     for (size_t e = 0; e < estimators.size(); ++e) {
       if (e == reference_index) continue;
       for (size_t v = 0; v < compared.size(); ++v) {
         ComparisonRow row;
         row.condition = c;
-        row.levels = run.conditions[c].levels;
+        row.levels = groups.levels[c];
         row.estimator = estimators[e].label;
         row.event = compared[v].name;
         pairs.Of(c, e, v).Fill(is_anytime_valid, &row);

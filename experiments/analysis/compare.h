@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "experiments/analysis/compared.h"
+#include "experiments/analysis/trial_groups.h"
 #include "experiments/result_file/result_store.h"
 #include "stats/intervals.h"
 #include "stats/paired.h"
@@ -26,7 +27,8 @@ namespace rcme {
 
 struct CompareOptions {
   std::vector<std::string> compared = {"events"};  // as ComparedByName takes them
-  bool is_anytime_valid = false;                   // even where the number of trials was fixed beforehand
+  Pooling pooling = Pooling::kPerCondition;
+  bool is_anytime_valid = false;  // even where the number of trials was fixed beforehand
 };
 
 // One event, score or error of one estimator and the reference in one condition.
@@ -55,6 +57,8 @@ struct Comparison {
   std::string caution;  // why there are no rows; empty: no reason
 };
 
+// Pooled: all trials of all conditions as if they were of one, which has no levels.
+//
 // One pass over the raw trials, in memory that does not grow with them. `reference` is a label of the study;
 // empty: its first. Throws InputError if the study has no such label, or ComparedByName does.
 Comparison Compare(const ResultStore& store, const std::string& reference,

@@ -218,29 +218,29 @@ std::string KindName(SummaryRow::Kind kind) {
 }
 
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
-  RunDescription run = store.Description();
-  const std::int64_t num_planned = run.NumTrials();
-  const bool is_pooled = pooling == Pooling::kPooled;
-  if (is_pooled) {
-    run.factors.clear();
-    run.conditions = {{}};
-  }
-  Summary summary{run.study, run.factors, {}, {}, 0, num_planned, run.repeats_per_scene};
+  return Summarize(store, with_times,
+                   pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(store.Description()));
+}
+
+Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups) {
+  const RunDescription run = store.Description();
+  Summary summary{run.study, groups.factor_names, {}, {}, 0, run.NumTrials(), run.repeats_per_scene};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
-  std::vector<Cell> cells(run.conditions.size(), Cell(run.estimators.size(), run.repeats_per_scene));
-  const auto cell_of = [&](std::uint32_t condition) -> Cell& { return cells[is_pooled ? 0 : condition]; };
+  std::vector<Cell> cells(groups.levels.size(), Cell(run.estimators.size(), run.repeats_per_scene));
+  Cell* of_scene = nullptr;
   ForEachTrialByScene(
       store, run.repeats_per_scene,
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
         ++summary.num_trials_done;
-        cell_of(problem.condition).Add(problem, records, is_first, run.failure);
+        of_scene = &cells[groups.group_of(problem)];
+        of_scene->Add(problem, records, is_first, run.failure);
       },
-      [&](std::uint32_t condition) { cell_of(condition).EndScene(); });
-  for (std::uint32_t c = 0; c < run.conditions.size(); ++c) {
+      [&](std::uint32_t) { of_scene->EndScene(); });
+  for (std::uint32_t c = 0; c < cells.size(); ++c) {
     SummaryRow row;
     row.condition = c;
-    row.levels = run.conditions[c].levels;
+    row.levels = groups.levels[c];
     if (!run.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
     cells[c].AppendRows(run, row, &summary.rows);
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/analysis/coverage_verdict.h"
+#include "experiments/analysis/trial_groups.h"
 #include "experiments/result_file/result_store.h"
 #include "stats/intervals.h"
 
@@ -77,7 +78,8 @@ const std::vector<QuantityHelp>& SummaryQuantities();
 // one pass, in memory that does not grow with the trials. Times (which no two runs share) only if asked for.
 //
 // Pooled: all trials of all conditions as if they were of one, which has no levels.
-enum class Pooling { kPerCondition, kPooled };
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling = Pooling::kPerCondition);
+// The same with the trials put together otherwise.
+Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups);
 
 }  // namespace rcme

@@ -12,6 +12,7 @@ namespace {
 
 struct CompareArguments {
   std::string run, against, format = "table", out;
+  bool is_pooled = false;
   CompareOptions options;
 };
 
@@ -68,13 +69,18 @@ void AddCompareCommand(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
+  command->add_flag("--pooled", arguments->is_pooled,
+                    "all conditions as one, every pair with the same weight");
   command->add_flag("--anytime", arguments->options.is_anytime_valid,
                     "intervals and p-values that hold however often somebody has looked");
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
       ->check(CLI::IsMember({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
-  command->callback([arguments] { RunCompare(*arguments); });
+  command->callback([arguments] {
+    if (arguments->is_pooled) arguments->options.pooling = Pooling::kPooled;
+    RunCompare(*arguments);
+  });
 }
 
 }  // namespace rcme

@@ -8,6 +8,7 @@
 #include "experiments/analysis/trial_table.h"
 #include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -38,7 +39,7 @@ void AddSummarizeCommand(CLI::App& app) {
       "summarize",
       "Rates, scores and medians with 95 % intervals, means with standard errors, from a result file");
   struct Arguments {
-    std::string run, format = "table", raw, out;
+    std::string run, format = "table", raw, fifths_of, out;
     bool with_times = false, is_pooled = false;
   };
   command->footer(
@@ -61,6 +62,7 @@ void AddSummarizeCommand(CLI::App& app) {
       "Examples:\n"
       "  rcme summarize run.sqlite\n"
       "  rcme summarize run.sqlite --format csv --out summary.csv\n"
+      "  rcme summarize run.sqlite --fifths-of crb_direction_deg\n"
       "  rcme summarize run.sqlite --raw csv --out trials.csv");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
@@ -78,15 +80,27 @@ void AddSummarizeCommand(CLI::App& app) {
       ->add_flag("--pooled", arguments->is_pooled,
                  "all conditions as one: rates over the whole study, every trial with the same weight")
       ->excludes("--raw");
+  command
+      ->add_option(
+          "--fifths-of", arguments->fifths_of,
+          "a number of the problem (rcme list quantities: crb_direction_deg, planarity): five groups with "
+          "equally many trials in place of the conditions, those with the least of it first")
+      ->excludes("--raw")
+      ->excludes("--pooled");
   command->callback([arguments] {
     const Pooling pooling = arguments->is_pooled ? Pooling::kPooled : Pooling::kPerCondition;
     if (arguments->raw.empty() && KeepsCounts(arguments->run)) {
+      if (!arguments->fifths_of.empty())
+        throw InputError(arguments->run + ": --fifths-of needs all trials, not counts (rcme run --keep all)");
       const Summary summary = SummarizeCounts(OpenCounts(arguments->run), arguments->with_times, pooling);
       return PrintOrWrite(arguments->out, TextOf(summary, arguments->format));
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
-    const Summary summary = Summarize(store, arguments->with_times, pooling);
+    const Summary summary =
+        arguments->fifths_of.empty()
+            ? Summarize(store, arguments->with_times, pooling)
+            : Summarize(store, arguments->with_times, GroupByFifth(store, arguments->fifths_of));
     PrintOrWrite(arguments->out,
                  arguments->format == "table" ? Tables(store, summary) : TextOf(summary, arguments->format));
   });

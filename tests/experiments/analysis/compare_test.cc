@@ -75,6 +75,23 @@ class CompareTest : public testing::Test {
   Study study_ = SmallStudy();  // estimators standard, ours; two conditions
 };
 
+// Of condition 0: 3 fail for the first alone, 1 for ours alone; of condition 1: 2 for the first alone.
+TEST_F(CompareTest, PooledConditionsAreOne) {
+  Write("run", {{"fs", 3}, {"sf", 1}, {"ss", 4}});
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_));
+    for (std::uint32_t trial = 0; trial < 2; ++trial) AddRecords(store, Trial(1, trial, "fs"));
+  }
+  CompareOptions options;
+  options.pooling = Pooling::kPooled;
+  const Comparison pooled = ComparisonOf("run", "", options);
+  EXPECT_TRUE(pooled.factor_names.empty());
+  const ComparisonRow row = Row(pooled, "failure");
+  ExpectCounts(row.counts, {.both = 0, .first_only = 1, .second_only = 5, .neither = 4});
+  EXPECT_NEAR(row.p_value, 2.0 * (1.0 + 6.0) / 64.0, 1e-12);  // two-sided binomial of 1 in 6
+  EXPECT_EQ(Row(ComparisonOf("run"), "failure", "ours", 1).counts.second_only, 2);
+}
+
 TEST_F(CompareTest, CountsByHand) {
   Write("run", {{"ss", 5}, {"sf", 1}, {"fs", 3}, {"ff", 2}, {"rs", 4}, {"sr", 1}, {"fr", 2}, {"rr", 1}});
   const Comparison comparison = ComparisonOf("run");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiments/analysis/summary_output.h"
+#include "parameters/input_error.h"
 #include "stats/confidence_sequence.h"
 #include "stats/score_mean.h"
 #include "tests/test_support/summarized_run.h"
@@ -354,6 +355,37 @@ TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
     }
   }
   EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [6.76, 93.24]"), std::string::npos);
+}
+
+// Twelve problems with the numbers 11, 10, ..., 0, the last two unknown; of the two hardest the rotation is
+// off by 5 deg.
+TEST_F(SummarizeTest, FifthsOfANumberOfTheProblem) {
+  std::vector<ProblemRecord> problems(12);
+  std::vector<TrialRecord> records;
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    problems[i].trial = i;
+    if (i < 10) problems[i].severity.crb_direction_deg = 11.0 - i;
+    records.push_back(Motion(i, i < 2 ? 5.0 : 1.0, 1.0, 1.0));
+  }
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("fifths"), MakePlan(study_));
+    store.Add(problems, records);
+  }
+  const ResultStore store = ResultStore::OpenForReading(folder_.Path("fifths"));
+  const Summary summary = Summarize(store, false, GroupByFifth(store, "crb_direction_deg"));
+  EXPECT_EQ(summary.factor_names, (std::vector<std::string>{"fifth", "crb_direction_deg"}));
+  const std::vector<std::string> fifths = {"1", "2", "3", "4", "5", "unknown"},
+                                 levels = {"up to 3", "3 to 5", "5 to 7", "7 to 9", "above 9", "unknown"};
+  std::vector<double> failed;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.quantity != "failure") continue;
+    EXPECT_EQ(row.n, 2) << row.condition;
+    EXPECT_EQ(row.levels, (std::vector<std::string>{fifths.at(row.condition), levels.at(row.condition)}));
+    failed.push_back(row.value);
+  }
+  EXPECT_EQ(failed, (std::vector<double>{0, 0, 0, 0, 1, 0}));
+  EXPECT_THROW(GroupByFifth(store, "parallax"), InputError);
+  EXPECT_THROW(GroupByFifth(store, "planarity"), InputError) << "of no trial";
 }
 
 TEST_F(SummarizeTest, TrialsThatStoppedByTheirOutcomesHaveAnytimeValidIntervals) {
