@@ -26,6 +26,7 @@ enum class CalibratedStep {
   kTwistedPair,
   kOppositeWay,
   kDirectionPosterior,
+  kNoiseChoice,
 };
 
 // Options of rcme_calibrated.

@@ -24,6 +24,7 @@ struct NoiseLaw {
 
   double dof() const { return 2.0 * power - 1.0; }
 };
+inline constexpr NoiseLaw kStudent15{8, 0.3923531628, 0.9419};  // fifteen: where there are hardly any tails
 
 struct MixtureParameters {
   double scale = 1.0;             // s

@@ -11,6 +11,7 @@
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/mode_covariance.h"
+#include "estimator/calibrated/noise_choice.h"
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
 #include "estimator/calibrated/weigh_modes.h"
@@ -177,6 +178,8 @@ class RcmeCalibrated : public MotionEstimator {
       return estimate;
     }
     const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
+    if (options_.leave_out != CalibratedStep::kNoiseChoice)
+      ChooseNoiseLaw(matches, prior, &modes[weights.answer]);
     std::optional<double> direction_mass;
     if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
       direction_mass =

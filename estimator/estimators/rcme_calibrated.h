@@ -11,6 +11,7 @@
 //   4  twisted pair  calibrated/twisted_pair.h         the other motion of a plane; every mode the other way
 //   5  contrast      calibrated/contrast.h             which of two modes explains more where they differ
 //   6  odds          calibrated/mode_weights.h         of the other modes, a second motion, no motion
+//                    calibrated/noise_choice.h         the answer's tails: five degrees of freedom or fifteen
 //   7  P(fail)       calibrated/failure_probability.h  the mass of all modes beyond the failure bounds
 //                    calibrated/settle_direction.h     where the parallax is hardly more than the noise
 //   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds

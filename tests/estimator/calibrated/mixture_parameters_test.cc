@@ -20,18 +20,22 @@ double IntegralOf(const std::function<double(double)>& f) {
   return sum;
 }
 
-TEST(NoiseLaw, IsADensityOfStudentsLaw) {
-  const NoiseLaw noise;
+class NoiseLawOf : public testing::TestWithParam<NoiseLaw> {};
+
+TEST_P(NoiseLawOf, IsADensityOfStudentsLaw) {
+  const NoiseLaw noise = GetParam();
   EXPECT_NEAR(IntegralOf([&](double u) { return NoiseDensity(noise, u); }), 1.0, 1e-8);
-  EXPECT_EQ(noise.dof(), 5.0);
-  EXPECT_NEAR(noise.peak, std::tgamma(3.0) / (std::sqrt(noise.dof() * std::numbers::pi) * std::tgamma(2.5)),
-              1e-9);
+  EXPECT_NEAR(
+      noise.peak,
+      std::tgamma(noise.power) / (std::sqrt(noise.dof() * std::numbers::pi) * std::tgamma(noise.power - 0.5)),
+      1e-9);
   // The variance of Student's law is dof / (dof - 2).
-  EXPECT_NEAR(IntegralOf([&](double u) { return u * u * NoiseDensity(noise, u); }), 5.0 / 3.0, 1e-5);
+  EXPECT_NEAR(IntegralOf([&](double u) { return u * u * NoiseDensity(noise, u); }),
+              noise.dof() / (noise.dof() - 2.0), 1e-5);
 }
 
-TEST(NoiseLaw, TheWeightIsTheSlopeOfTheLogDensityOverTheResidual) {
-  const NoiseLaw noise;
+TEST_P(NoiseLawOf, TheWeightIsTheSlopeOfTheLogDensityOverTheResidual) {
+  const NoiseLaw noise = GetParam();
   for (const double u : {0.1, 1.0, 4.0}) {
     constexpr double h = 1e-5;
     const double slope =
@@ -40,8 +44,8 @@ TEST(NoiseLaw, TheWeightIsTheSlopeOfTheLogDensityOverTheResidual) {
   }
 }
 
-TEST(NoiseLaw, TheScaleOfGaussianNoiseIsThatOfMaximumLikelihood) {
-  const NoiseLaw noise;
+TEST_P(NoiseLawOf, TheScaleOfGaussianNoiseIsThatOfMaximumLikelihood) {
+  const NoiseLaw noise = GetParam();
   const auto expected_weighted_square = [&](double s) {
     return IntegralOf([&](double x) {
       const double normal = std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
@@ -52,6 +56,8 @@ TEST(NoiseLaw, TheScaleOfGaussianNoiseIsThatOfMaximumLikelihood) {
   EXPECT_GT(expected_weighted_square(noise.scale_of_gaussian - 1e-4), 1.0);
   EXPECT_LT(expected_weighted_square(noise.scale_of_gaussian + 1e-4), 1.0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, NoiseLawOf, testing::Values(NoiseLaw(), kStudent15));
 
 }  // namespace
 }  // namespace rcme
