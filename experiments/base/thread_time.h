@@ -4,11 +4,14 @@
 
 namespace rcme {
 
-// Processor time of this thread, s, from an unknown start.
-inline double ThreadSeconds() {
+inline double SecondsOf(clockid_t clock) {
   timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  clock_gettime(clock, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
+
+// Processor time, s, from an unknown start: of this thread, and of the whole process.
+inline double ThreadSeconds() { return SecondsOf(CLOCK_THREAD_CPUTIME_ID); }
+inline double ProcessSeconds() { return SecondsOf(CLOCK_PROCESS_CPUTIME_ID); }
 
 }  // namespace rcme

@@ -10,6 +10,7 @@
 #include "experiments/base/for_each_index.h"
 #include "experiments/base/message.h"
 #include "experiments/base/progress.h"
+#include "experiments/base/thread_time.h"
 #include "experiments/claims/decide_check.h"
 #include "parameters/input_error.h"
 
@@ -101,7 +102,7 @@ std::vector<CheckPlace> PlacesOf(const Audit& plan) {
 }
 
 void DecideChecks(const Audit& plan, const std::vector<CheckPlace>& places,
-                  const std::function<void(const CheckPlace&, CheckResult)>& keep) {
+                  const std::function<void(const CheckPlace&, CheckResult, double)>& keep) {
   const int num_threads = NumThreads(plan.options.num_threads);
   std::vector<double> work;
   double total_work = 0.0;
@@ -114,7 +115,9 @@ void DecideChecks(const Audit& plan, const std::vector<CheckPlace>& places,
   Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
   double done_work = 0.0;
   for (size_t i = 0; i < places.size(); ++i) {
-    keep(places[i], DecideCheck(CheckAt(plan, places[i]), RunOf(plan, places[i])));
+    const double before = ProcessSeconds();
+    CheckResult result = DecideCheck(CheckAt(plan, places[i]), RunOf(plan, places[i]));
+    keep(places[i], std::move(result), ProcessSeconds() - before);
     const auto seconds_before = static_cast<std::int64_t>(done_work);
     done_work += work[i];
     progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
@@ -127,7 +130,7 @@ void JudgeClaims(Audit* audit) {
 
 Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   Audit audit = PlanAudit(all, options);
-  DecideChecks(audit, PlacesOf(audit), [&](const CheckPlace& place, CheckResult result) {
+  DecideChecks(audit, PlacesOf(audit), [&](const CheckPlace& place, CheckResult result, double) {
     audit.results[place.claim].checks[place.check] = std::move(result);
   });
   JudgeClaims(&audit);

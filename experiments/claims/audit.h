@@ -47,9 +47,10 @@ struct CheckPlace {
 // All of them in their order.
 std::vector<CheckPlace> PlacesOf(const Audit& plan);
 
-// Decides these checks, one after the other, hands over each result, and shows progress.
+// Decides these checks, one after the other, hands over each result with the processor time that it took, and
+// shows progress.
 void DecideChecks(const Audit& plan, const std::vector<CheckPlace>& places,
-                  const std::function<void(const CheckPlace&, CheckResult)>& keep);
+                  const std::function<void(const CheckPlace&, CheckResult, double seconds)>& keep);
 
 // The verdicts of the claims from those of their checks, of which there is one in audit->results for each.
 void JudgeClaims(Audit* audit);

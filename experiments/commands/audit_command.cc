@@ -15,9 +15,9 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
-#include "experiments/study/shard.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -28,8 +28,7 @@ struct AuditArguments {
   StudyChanges changes;
   std::vector<std::string> only;
   std::string budget = "quick", out;
-  std::string shard, max_time;     // empty: all checks, no limit
-  std::vector<std::string> parts;  // to be merged; empty: none
+  ShardArguments shards;
   bool only_plan = false;
   int threads = 0;
 };
@@ -49,17 +48,11 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
   return StudyClaims(plan);
 }
 
-// The audit of the parts. Where checks are missing, the shards that have them go to standard output, for the
-// shell.
 Audit Merged(const std::vector<Claim>& all, const AuditOptions& options,
              const std::vector<std::string>& parts) {
   MergedAudit merged = MergeAuditParts(all, options, parts);
-  if (merged.num_missing == 0) return std::move(merged.audit);
-  const std::string shards = ArrayText(merged.missing_shards);
-  PrintMessage("{} checks are missing, of the shards {} of {}; nothing was written\n", merged.num_missing,
-               shards, merged.num_shards);
-  fmt::print("{}\n", shards);
-  throw EndWith{kTryAgain};
+  RequireNoneMissing(PiecesOfAudit(merged.audit), merged.missing, merged.num_shards);
+  return std::move(merged.audit);
 }
 
 void WriteAudit(const Audit& audit, const std::string& out) {
@@ -72,7 +65,7 @@ void WriteAudit(const Audit& audit, const std::string& out) {
 
 void RunAuditCommand(const AuditArguments& arguments) {
   const StopOnSignals stop;
-  StartTimeLimit(arguments.max_time);
+  StartTimeLimit(arguments.shards.max_time);
   AuditOptions options;
   options.only = arguments.only;
   options.budget = arguments.budget == "full" ? Budget::kFull : Budget::kQuick;
@@ -85,15 +78,13 @@ void RunAuditCommand(const AuditArguments& arguments) {
   if (arguments.out.empty())
     throw InputError("--out is missing: the folder for the results (or ask for --plan)");
   SelectClaims(all, options.only);
-  if (!arguments.shard.empty()) {
-    const Shard shard = ParseShard(arguments.shard, ThisEnvironment());
+  if (!arguments.shards.shard.empty()) {
+    const Shard shard = arguments.shards.ThisShard();
     RunAuditPart(all, options, shard, arguments.out);
-    PrintMessage("done: shard {} of {} in {}; next, with all of them: the same command, --merge PARTS\n",
-                 shard.number, shard.count, arguments.out);
-    return;
+    return PrintPartIsDone(shard, arguments.out);
   }
-  if (!arguments.parts.empty()) {
-    const Audit audit = Merged(all, options, arguments.parts);
+  if (!arguments.shards.parts.empty()) {
+    const Audit audit = Merged(all, options, arguments.shards.parts);
     MakeResultFolder(arguments.out);
     return WriteAudit(audit, arguments.out);
   }
@@ -155,19 +146,9 @@ void AddAuditCommand(CLI::App& app) {
   CLI::Option* plan = command->add_flag(
       "--plan", arguments->only_plan,
       "only print the plan: margins, trials, and what each claim finds with probability 0.9");
-  CLI::Option* shard = command->add_option(
-      "--shard", arguments->shard,
-      "I/N: the I-th of N shares of every claim's checks, into a file of its own; auto/N or auto: which one "
-      "this is in a Slurm array or a Kubernetes indexed job (docs/many_machines.md)");
-  command
-      ->add_option(
-          "--merge", arguments->parts,
-          "the files of all shards, given with the study and options that they were made with; where "
-          "checks are missing, prints the shards that have them (3,17-19) and ends with exit code 75")
-      ->excludes(shard)
-      ->excludes(plan);
-  shard->excludes(plan);
-  AddTimeLimit(command, "checks", &arguments->max_time)->needs(shard);
+  const ShardOptions shards = AddShardOptions(command, "checks", &arguments->shards);
+  shards.shard->excludes(plan);
+  shards.merge->excludes(plan);
   AddStudyOptions(command, &arguments->changes);
   command
       ->add_option("--threads", arguments->threads,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "experiments/base/file_output.h"
 #include "experiments/base/for_each_index.h"
@@ -11,10 +12,11 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/validity/map_part.h"
 #include "experiments/validity/study_samples.h"
-#include "experiments/validity/validity_map.h"
-#include "experiments/validity/validity_reference.h"
 
 namespace rcme {
 namespace {
@@ -25,49 +27,76 @@ struct MapArguments {
   std::string study;  // empty: the built-in scene
   StudyChanges changes;
   std::string out;
+  ShardArguments shards;
   int trials = ValidityMapOptions{}.trials;
   int threads = 0;
 };
 
-// Puts the study's conditions and noise levels into the map, and the study's seed.
-void UseStudy(const MapArguments& arguments, ValidityMapOptions* map) {
+// The study's conditions and noise levels, and its seed.
+MapWork WorkOnStudy(const MapArguments& arguments) {
   const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
-  map->seed = plan.study.seed;
-  map->condition_key = "condition";
-  map->conditions = MapConditionsOf(plan);
-  for (const double sigma_px : SigmasOf(plan)) map->sigmas_px.push_back(sigma_px);
-  std::ranges::sort(map->sigmas_px);
-  map->sigmas_px.erase(std::unique(map->sigmas_px.begin(), map->sigmas_px.end()), map->sigmas_px.end());
+  MapWork work{{}, std::nullopt, plan.identity};
+  ValidityMapOptions& map = work.map;
+  map.seed = plan.study.seed;
+  map.condition_key = "condition";
+  map.conditions = MapConditionsOf(plan);
+  for (const double sigma_px : SigmasOf(plan)) map.sigmas_px.push_back(sigma_px);
+  std::ranges::sort(map.sigmas_px);
+  map.sigmas_px.erase(std::unique(map.sigmas_px.begin(), map.sigmas_px.end()), map.sigmas_px.end());
+  return work;
 }
 
-void WriteReference(const MapArguments& arguments, const std::string& path) {
-  ValidityReferenceOptions reference;
+MapWork WorkOnBuiltInScene(const MapArguments& arguments) {
+  MapWork work;
+  work.map.seed = SeedWithoutStudy(arguments.changes);
+  ValidityReferenceOptions& reference = work.reference.emplace();
   reference.num_draws = kDrawsPerSample;
   reference.num_samples = std::max(1, arguments.trials / kDrawsPerSample);
-  reference.seed = SeedWithoutStudy(arguments.changes);
+  reference.seed = work.map.seed;
   reference.num_threads = arguments.threads;
-  WriteFileWhole(path, ValidityReferenceCsv(reference));
+  return work;
+}
+
+void WriteTable(const MapArguments& arguments, const std::string& name, const std::string& table) {
+  const std::string path = (std::filesystem::path(arguments.out) / name).string();
+  WriteFileWhole(path, table);
   fmt::print("{}\n", path);
+}
+
+// Where `parts` are null the tables are computed.
+void WriteTables(const MapArguments& arguments, const MapWork& work, const PiecePlan& pieces,
+                 const MergedParts* parts) {
+  WriteTable(arguments, "validity_map.csv",
+             parts ? ValidityMapCsv(work.map, TrialsIn(work, pieces, *parts)) : ValidityMapCsv(work.map));
+  if (!work.reference) return;
+  WriteTable(arguments, "validity_reference.csv",
+             parts ? ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, *parts))
+                   : ValidityReferenceCsv(*work.reference));
 }
 
 void Map(const MapArguments& arguments) {
   const StopOnSignals stop;
-  const std::filesystem::path folder(arguments.out);
-  ValidityMapOptions map;
-  map.trials = arguments.trials;
-  map.num_threads = arguments.threads;
-  if (arguments.study.empty()) {
-    map.seed = SeedWithoutStudy(arguments.changes);
-  } else {
-    UseStudy(arguments, &map);
+  StartTimeLimit(arguments.shards.max_time);
+  MapWork work = arguments.study.empty() ? WorkOnBuiltInScene(arguments) : WorkOnStudy(arguments);
+  work.map.trials = arguments.trials;
+  work.map.num_threads = arguments.threads;
+  const PiecePlan pieces = PiecesOfMap(work);
+  if (!arguments.shards.shard.empty()) {
+    const Shard shard = arguments.shards.ThisShard();
+    RunMapPart(work, shard, arguments.out);
+    return PrintPartIsDone(shard, arguments.out);
+  }
+  if (!arguments.shards.parts.empty()) {
+    const MergedParts merged = MergeParts(pieces, arguments.shards.parts);
+    RequireNoneMissing(pieces, MissingIn(pieces, merged, 0, pieces.groups.size()), merged.num_shards);
+    MakeResultFolder(arguments.out);
+    return WriteTables(arguments, work, pieces, &merged);
   }
   MakeResultFolder(arguments.out);  // minutes before the first table is written
-  PrintMessage("map: {} conditions, {} cells; about {} on {} threads\n", map.conditions.size(), NumCells(map),
-               DurationInWords(SecondsOfWork(map)), NumThreads(map.num_threads));
-  const std::string map_path = (folder / "validity_map.csv").string();
-  WriteFileWhole(map_path, ValidityMapCsv(map));
-  fmt::print("{}\n", map_path);
-  if (arguments.study.empty()) WriteReference(arguments, (folder / "validity_reference.csv").string());
+  PrintMessage("map: {} conditions, {} cells; about {} on {} threads\n", work.map.conditions.size(),
+               NumCells(work.map), DurationInWords(SecondsOfWork(work.map)),
+               NumThreads(work.map.num_threads));
+  WriteTables(arguments, work, pieces, nullptr);
 }
 
 }  // namespace
@@ -99,10 +128,16 @@ void AddMapCommand(CLI::App& app) {
       "Example:\n"
       "  rcme map --out map\n"
       "  rcme map study.yaml --set outlier_ratio=0 --out map\n"
-      "  rcme plot validity_map map");
+      "  rcme plot validity_map map\n"
+      "  rcme map --shard 3/64 --out parts/3.json        one of 64 machines' share (docs/many_machines.md)\n"
+      "  rcme map --merge parts/*.json --out map         all of them: the bytes of one machine");
   auto arguments = std::make_shared<MapArguments>();
   command->add_option("study", arguments->study, "study file (YAML); without one: the built-in scene");
-  command->add_option("-o,--out", arguments->out, "folder for the tables; made if it is missing")->required();
+  command
+      ->add_option("-o,--out", arguments->out,
+                   "folder for the tables; made if it is missing; with --shard the file of the part")
+      ->required();
+  AddShardOptions(command, "trials", &arguments->shards);
   command
       ->add_option("--trials", arguments->trials,
                    "trials per cell of the map; the reference takes a hundredth as many samples, with 100 "

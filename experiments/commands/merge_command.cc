@@ -5,9 +5,11 @@
 
 #include "experiments/analysis/merge_counts.h"
 #include "experiments/analysis/summarize_counts.h"
+#include "experiments/base/file_output.h"
 #include "experiments/base/message.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
+#include "experiments/pieces/divided_work.h"
 #include "experiments/result_file/merge_results.h"
 #include "experiments/study/shard.h"
 #include "parameters/input_error.h"
@@ -52,7 +54,22 @@ void CheckMissing(const MergeArguments& arguments) {
   throw EndWith{kTryAgain};
 }
 
-void MergeParts(const MergeArguments& arguments) {
+// Of another command than `rcme run` (pieces/part_file.h): which pieces its work has, that command alone
+// knows.
+void JoinTheParts(const MergeArguments& arguments) {
+  if (!arguments.is_partial) {
+    throw InputError(
+        "these are parts of `rcme audit`, `tune`, `transfer` or `map`: the same command with --merge puts "
+        "them together and says what is missing; --partial makes one part of several");
+  }
+  CheckIsNoInput(arguments.out, arguments.parts);
+  const Part joined = JoinParts(arguments.parts);
+  WriteFileWhole(arguments.out, PartAsJson(joined));
+  PrintMessage("{} parts of a {}, {} pieces -> {}\n", arguments.parts.size(), joined.work,
+               joined.results.size(), arguments.out);
+}
+
+void MergeResultFiles(const MergeArguments& arguments) {
   const StopOnSignals stop;
   const auto merge = KeepCounts(arguments.parts) ? MergeCounts : MergeResults;
   const MergeReport report = merge(arguments.parts, arguments.out, arguments.is_partial, arguments.options);
@@ -84,7 +101,12 @@ void AddMergeCommand(CLI::App& app) {
       "  sbatch --array=$(rcme merge parts/*.sqlite --check) job.sh    what is missing, again\n"
       "  rcme merge parts/1*.sqlite --partial --out some.sqlite        to be merged further, or to look at");
   auto arguments = std::make_shared<MergeArguments>();
-  command->add_option("parts", arguments->parts, "result files of `rcme run` or `rcme merge`")->required();
+  command
+      ->add_option(
+          "parts", arguments->parts,
+          "result files of `rcme run` or `rcme merge`; with --partial also parts of `rcme audit`, `tune`, "
+          "`transfer` or `map`")
+      ->required();
   CLI::Option* out = command->add_option("-o,--out", arguments->out, "new result file (SQLite)");
   CLI::Option* check =
       command
@@ -99,9 +121,11 @@ void AddMergeCommand(CLI::App& app) {
                     "parts of machines with different instruction sets: their trials may differ in the last "
                     "bits of a number");
   command->callback([arguments] {
-    if (arguments->is_check) return CheckMissing(*arguments);
-    if (arguments->out.empty()) throw InputError("--out: give the path of the merged file, or --check");
-    MergeParts(*arguments);
+    const bool are_parts = std::ranges::any_of(arguments->parts, IsPart);
+    if (arguments->is_check && !are_parts) return CheckMissing(*arguments);
+    if (arguments->out.empty() && !arguments->is_check)
+      throw InputError("--out: give the path of the merged file, or --check");
+    are_parts ? JoinTheParts(*arguments) : MergeResultFiles(*arguments);
   });
 }
 

@@ -2,27 +2,51 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "experiments/base/file_output.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/commands/shard_options.h"
+#include "experiments/commands/time_limit.h"
 #include "experiments/commands/tuning_source.h"
 #include "experiments/tuning/transfer_output.h"
+#include "experiments/tuning/tune_part.h"
 
 namespace rcme {
 namespace {
 
 struct TransferArguments : TuningArguments {
   std::string out, by;
+  ShardArguments shards;
 };
+
+TransferResult TransferFromParts(const TransferArguments& arguments, const StudyPlan& plan,
+                                 const SettingPlan& settings) {
+  const TuningPieces work = PiecesOfTransfer(plan);
+  const MergedParts merged = MergeParts(work.pieces, arguments.shards.parts);
+  RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, 0, work.num_first), merged.num_shards);
+  return MeasureTransfer(plan, settings, arguments.by, CountsOf(plan, settings, work, merged));
+}
 
 void RunTransfer(const TransferArguments& arguments) {
   const StopOnSignals stop;
+  StartTimeLimit(arguments.shards.max_time);
   const StudyPlan plan = TuningPlanOf(arguments);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
+  if (!arguments.shards.shard.empty()) {
+    FamiliesOf(plan, arguments.by);  // or no merge will do
+    const Shard shard = arguments.shards.ThisShard();
+    RunTuningPart(plan, settings, PiecesOfTransfer(plan), {}, shard, arguments.threads, arguments.out);
+    return PrintPartIsDone(shard, arguments.out);
+  }
+  const bool is_merge = !arguments.shards.parts.empty();
+  std::optional<TransferResult> merged;  // before a folder is made for what may be refused
+  if (is_merge) merged = TransferFromParts(arguments, plan, settings);
   MakeResultFolder(arguments.out);
-  const TransferResult result = MeasureTransfer(plan, settings, arguments.by, arguments.threads);
+  const TransferResult result =
+      is_merge ? *merged : MeasureTransfer(plan, settings, arguments.by, arguments.threads);
   const std::filesystem::path folder(arguments.out);
   const std::string table = TransferAsTable(plan, result), json = (folder / "transfer.json").string();
   WriteFileWhole((folder / "transfer.txt").string(), table);
@@ -47,13 +71,20 @@ void AddTransferCommand(CLI::App& app) {
       "\n"
       "Examples:\n"
       "  rcme transfer experiments/studies/transfer_mu.yaml --out transfer\n"
-      "  rcme transfer experiments/studies/tune_mu_lambda.yaml --by scene --out by_scene");
+      "  rcme transfer experiments/studies/tune_mu_lambda.yaml --by scene --out by_scene\n"
+      "  rcme transfer STUDY --shard 3/64 --out parts/3.json         one of 64 machines' share of the "
+      "trials\n"
+      "  rcme transfer STUDY --merge parts/*.json --out transfer     all of them: the bytes of one machine");
   auto arguments = std::make_shared<TransferArguments>();
   AddTuningOptions(command, arguments.get());
   command->add_option("--by", arguments->by,
                       "factor whose levels are the families; default: every condition");
-  command->add_option("-o,--out", arguments->out, "folder for transfer.txt, transfer.json and the figures")
+  command
+      ->add_option(
+          "-o,--out", arguments->out,
+          "folder for transfer.txt, transfer.json and the figures; with --shard the file of the part")
       ->required();
+  AddShardOptions(command, "trials", &arguments->shards);
   command->callback([arguments] { RunTransfer(*arguments); });
 }
 

@@ -9,10 +9,13 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/shard_options.h"
+#include "experiments/commands/time_limit.h"
 #include "experiments/commands/tuning_source.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
+#include "experiments/tuning/tune_part.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -20,14 +23,62 @@ namespace {
 
 struct TuneArguments : TuningArguments {
   std::string out, figures;
+  ShardArguments shards;
+  std::vector<std::string> merged;  // parts of the first round
   int repeat = 0;
 };
+
+// One shard's part; of its second round where there is one to do.
+void RunPart(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings) {
+  const TuningPieces work = PiecesOfTuning(plan);
+  const Shard shard = arguments.shards.ThisShard();
+  const MergedParts merged = MergeParts(work.pieces, arguments.merged);
+  const MissingPieces missing =
+      RunTuningPart(plan, settings, work, merged, shard, arguments.threads, arguments.out);
+  if (missing.num_pieces == 0) return PrintPartIsDone(shard, arguments.out);
+  if (!arguments.merged.empty()) {
+    PrintMessage("--merged: {} {}s of the first round are missing, of the shards {} of {}\n",
+                 missing.num_pieces, work.pieces.piece_name, ArrayText(missing.shards), merged.num_shards);
+  }
+  PrintMessage(
+      "the first round of shard {} is done; when those of all are: the same command, --merged PARTS\n",
+      shard.Text());
+  throw EndWith{kTryAgain};
+}
+
+// The tuning that the parts of all shards give.
+struct Tuned {
+  TuneResult result;
+  std::vector<EntropyRoc> rocs;
+};
+
+Tuned TuneFromParts(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,
+                    Unreached unreached) {
+  const TuningPieces work = PiecesOfTuning(plan);
+  const MergedParts merged = MergeParts(work.pieces, arguments.shards.parts);
+  RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, 0, work.num_first), merged.num_shards);
+  const TuningSource source = CountsOf(plan, settings, work, merged);
+  if (ChooseFrom(plan, settings, source).setting) {
+    const size_t end = work.pieces.groups.size();
+    RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, work.num_first, end), merged.num_shards);
+  }
+  Tuned tuned{Tune(plan, settings, unreached, source), {}};
+  if (!tuned.result.verified.empty()) tuned.rocs = RocsOf(plan, EntropiesIn(plan, work, merged));
+  return tuned;
+}
 
 std::vector<EntropyRoc> MeasureRocs(const StudyPlan& plan, int num_threads) {
   const TrialRange trials = TuningTrials(*plan.study.tuning).verify;
   Progress progress("trials for the curves",
                     static_cast<std::int64_t>(plan.conditions.size()) * (trials.end - trials.first));
   return MeasureEntropyRocs(plan, trials, num_threads, &progress);
+}
+
+Tuned TuneHere(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,
+               Unreached unreached) {
+  Tuned tuned{Tune(plan, settings, unreached, arguments.threads), {}};
+  if (!tuned.result.verified.empty()) tuned.rocs = MeasureRocs(plan, arguments.threads);
+  return tuned;
 }
 
 void WriteFigures(const std::string& folder, const std::string& json) {
@@ -54,6 +105,7 @@ void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const
 
 void RunTune(const TuneArguments& arguments) {
   const StopOnSignals stop;
+  StartTimeLimit(arguments.shards.max_time);
   const StudyPlan plan = TuningPlanOf(arguments);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   if (arguments.repeat > 0) {
@@ -63,12 +115,14 @@ void RunTune(const TuneArguments& arguments) {
   }
   if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
   CheckIsNoInput(arguments.out, {arguments.study});
+  CheckIsNoInput(arguments.out, arguments.shards.parts);
+  if (!arguments.shards.shard.empty()) return RunPart(arguments, plan, settings);
   CheckCanBeWritten(arguments.out);  // minutes before it is
   if (!arguments.figures.empty()) MakeResultFolder(arguments.figures);
   const Unreached unreached = arguments.figures.empty() ? Unreached::kStop : Unreached::kVerifyAll;
-  const TuneResult result = Tune(plan, settings, unreached, arguments.threads);
-  std::vector<EntropyRoc> rocs;
-  if (!result.verified.empty()) rocs = MeasureRocs(plan, arguments.threads);
+  const auto [result, rocs] = arguments.shards.parts.empty()
+                                  ? TuneHere(arguments, plan, settings, unreached)
+                                  : TuneFromParts(arguments, plan, settings, unreached);
   fmt::print("{}", TuneAsTable(plan, result, rocs));
   if (result.choice.setting) WriteEstimator(arguments, plan, settings, result);
   if (!arguments.figures.empty()) {
@@ -102,6 +156,14 @@ void AddTuneCommand(CLI::App& app) {
       "trials\n"
       "would do (exit code 2).\n"
       "\n"
+      "On many machines each does a share of the trials; the parts give the bytes of one tuning, in two "
+      "rounds\n"
+      "(docs/many_machines.md): the second needs what the first has chosen.\n"
+      "\n"
+      "  rcme tune STUDY --shard 3/64 --out parts/3.json                           exit code 75: round one\n"
+      "  rcme tune STUDY --shard 3/64 --out parts/3.json --merged parts/*.json     round two\n"
+      "  rcme tune STUDY --merge parts/*.json --out tuned.yaml\n"
+      "\n"
       "Examples:\n"
       "  rcme tune experiments/studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned\n"
       "  rcme tune STUDY --out tuned.yaml --tune target=false_refusal --tune at_most=0.02\n"
@@ -113,17 +175,24 @@ void AddTuneCommand(CLI::App& app) {
   AddTuningOptions(command, arguments.get());
   CLI::Option* out = command->add_option("-o,--out", arguments->out,
                                          "the tuned estimator, a file for studies "
-                                         "and `rcme estimate`");
+                                         "and `rcme estimate`; with --shard the file of the part");
   CLI::Option* figures =
       command->add_option("--figures", arguments->figures,
                           "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
+  const ShardOptions shards = AddShardOptions(command, "trials", &arguments->shards);
+  shards.shard->excludes(figures);
+  command
+      ->add_option("--merged", arguments->merged,
+                   "the files of all shards after the first round, for the second of --shard")
+      ->needs(shards.shard);
   command
       ->add_option(
           "--repeat", arguments->repeat,
           "number of repetitions: tune again with fresh seeds, and count how often the target is violated")
       ->transform(WholeNumberIn(1, 100'000))
       ->excludes(out)
-      ->excludes(figures);
+      ->excludes(figures)
+      ->excludes(shards.merge);
   command->callback([arguments] { RunTune(*arguments); });
 }
 

@@ -34,7 +34,7 @@ void ForEachTrial(const std::vector<TrialsOfCondition>& trials, int num_threads,
     const auto offset = static_cast<std::uint32_t>(index - first_index[p]);
     const TrialsOfCondition& part = trials[p];
     work(*part.condition, part.shard.TrialAt(part.trials.first + offset), index);
-    progress->Advance(1);
+    if (progress) progress->Advance(1);
   });
 }
 

@@ -27,8 +27,8 @@ std::int64_t NumTrials(const std::vector<TrialsOfCondition>& trials);
 using TrialWork = std::function<void(const Condition& condition, std::uint32_t trial, std::int64_t index)>;
 
 // Calls `work` for each of the trials, once, on `num_threads` threads (0: one per core), and advances
-// `progress` by one after each. The first exception ends it and is thrown on; so does a request to stop, as
-// Stopped.
+// `progress`, if there is one, by one after each. The first exception ends it and is thrown on; so does a
+// request to stop, as Stopped.
 void ForEachTrial(const std::vector<TrialsOfCondition>& trials, int num_threads, Progress* progress,
                   const TrialWork& work);
 

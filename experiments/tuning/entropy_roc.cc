@@ -12,16 +12,11 @@
 namespace rcme {
 namespace {
 
-// psi of what a trial shows of each kind.
-struct Entropies {
-  std::optional<double> good_sample, bad_sample, good_winner, bad_winner;
-};
-
 bool IsAllTrue(const Sample& sample, const std::vector<bool>& is_inlier_true) {
   return std::ranges::all_of(sample, [&](int i) { return is_inlier_true[static_cast<size_t>(i)]; });
 }
 
-void AddSamples(const HypothesisTrace& trace, const Truth& truth, Entropies* entropies) {
+void AddSamples(const HypothesisTrace& trace, const Truth& truth, TrialEntropies* entropies) {
   if (truth.is_inlier_true.empty()) return;
   for (const ScoredHypothesis& hypothesis : trace.hypotheses) {
     if (hypothesis.proposal.verdict != SampleVerdict::kConsistent || hypothesis.score.num_inliers == 0)
@@ -32,9 +27,9 @@ void AddSamples(const HypothesisTrace& trace, const Truth& truth, Entropies* ent
   }
 }
 
-Entropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, StreamName name,
-                      const FailureBounds& bounds) {
-  Entropies entropies;
+TrialEntropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, StreamName name,
+                           const FailureBounds& bounds) {
+  TrialEntropies entropies;
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
   const HypothesisTrace trace = estimator.Trace(data.problem, rng);
   AddSamples(trace, data.truth, &entropies);
@@ -85,9 +80,9 @@ std::vector<size_t> ScenesOf(const StudyPlan& plan, std::int64_t trials_per_cond
   return scenes;
 }
 
-void AddRoc(size_t estimator, const std::string& population, const std::vector<Entropies>& trials,
-            const std::vector<size_t>& scenes, std::optional<double> Entropies::*good,
-            std::optional<double> Entropies::*bad, std::vector<EntropyRoc>* rocs) {
+void AddRoc(size_t estimator, const std::string& population, const std::vector<TrialEntropies>& trials,
+            const std::vector<size_t>& scenes, std::optional<double> TrialEntropies::*good,
+            std::optional<double> TrialEntropies::*bad, std::vector<EntropyRoc>* rocs) {
   EntropyRoc roc{estimator, population, {}, {}, {}};
   std::vector<ScoreCluster> clusters(scenes.empty() ? 0 : 1 + std::ranges::max(scenes));
   for (size_t t = 0; t < trials.size(); ++t) {
@@ -107,12 +102,12 @@ void AddRoc(size_t estimator, const std::string& population, const std::vector<E
 
 }  // namespace
 
-std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange trials, int num_threads,
-                                           Progress* progress) {
+EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials, int num_threads,
+                                   Progress* progress) {
   const auto estimators = WithoutQualityTest(plan);
   const std::vector<TrialsOfCondition> all = TrialsOfEach(plan, trials);
-  std::vector<std::vector<Entropies>> entropies(estimators.size(),
-                                                std::vector<Entropies>(static_cast<size_t>(NumTrials(all))));
+  EntropiesOfTrials entropies(estimators.size(),
+                              std::vector<TrialEntropies>(static_cast<size_t>(NumTrials(all))));
   ForEachTrial(all, num_threads, progress,
                [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
                  const StreamName name = NameOfTrial(plan, condition, trial);
@@ -123,13 +118,25 @@ std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange tri
                        EntropiesOf(*estimators[e], data, name, plan.study.failure);
                  }
                });
-  const std::vector<size_t> scenes = ScenesOf(plan, trials.end - trials.first);
+  return entropies;
+}
+
+std::vector<EntropyRoc> RocsOf(const StudyPlan& plan, const EntropiesOfTrials& entropies) {
+  const auto num_trials = static_cast<std::int64_t>(entropies.front().size() / plan.conditions.size());
+  const std::vector<size_t> scenes = ScenesOf(plan, num_trials);
   std::vector<EntropyRoc> rocs;
-  for (size_t e = 0; e < estimators.size(); ++e) {
-    AddRoc(e, "samples", entropies[e], scenes, &Entropies::good_sample, &Entropies::bad_sample, &rocs);
-    AddRoc(e, "winners", entropies[e], scenes, &Entropies::good_winner, &Entropies::bad_winner, &rocs);
+  for (size_t e = 0; e < entropies.size(); ++e) {
+    AddRoc(e, "samples", entropies[e], scenes, &TrialEntropies::good_sample, &TrialEntropies::bad_sample,
+           &rocs);
+    AddRoc(e, "winners", entropies[e], scenes, &TrialEntropies::good_winner, &TrialEntropies::bad_winner,
+           &rocs);
   }
   return rocs;
+}
+
+std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange trials, int num_threads,
+                                           Progress* progress) {
+  return RocsOf(plan, MeasureEntropies(plan, trials, num_threads, progress));
 }
 
 }  // namespace rcme

@@ -2,6 +2,7 @@
 // at all.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,22 @@ struct EntropyRoc {
   AreaUnderCurve area;
 };
 
-// For every estimator of the plan that has entropies; without those where no good or no bad one was seen.
-// Advances `progress` by one per trial.
+// psi of what a trial shows of each kind to one estimator.
+struct TrialEntropies {
+  std::optional<double> good_sample, bad_sample, good_winner, bad_winner;
+};
+
+// [estimator][trial], the conditions one after the other; nothing of estimators whose loop cannot be taken
+// apart. Advances `progress`, if there is one, by one per trial.
+using EntropiesOfTrials = std::vector<std::vector<TrialEntropies>>;
+EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials, int num_threads,
+                                   Progress* progress);
+
+// For every estimator of the plan that has entropies; without those where no good or no bad one was seen. The
+// trials are the same of every condition.
+std::vector<EntropyRoc> RocsOf(const StudyPlan& plan, const EntropiesOfTrials& entropies);
+
+// Both.
 std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange trials, int num_threads,
                                            Progress* progress);
 

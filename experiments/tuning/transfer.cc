@@ -70,26 +70,35 @@ void CheckFamilies(const StudyPlan& plan, const std::vector<Family>& families) {
 
 }  // namespace
 
+std::vector<Family> FamiliesOf(const StudyPlan& plan, const std::string& by) {
+  std::vector<Family> families = FamiliesBy(plan, by);
+  CheckFamilies(plan, families);
+  return families;
+}
+
 TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
-                               int num_threads) {
+                               const TuningSource& source) {
   const Tuning& tuning = *plan.study.tuning;
   TransferResult result;
-  result.families = FamiliesBy(plan, by);
-  CheckFamilies(plan, result.families);
+  result.families = FamiliesOf(plan, by);
   result.settings = SettingsInWords(tuning, settings);
   const TuningTrials trials(tuning);
-  Progress progress("trials", (trials.verify.end - 0LL) * static_cast<std::int64_t>(plan.conditions.size()));
-  const auto count = [&](TrialRange range) {
-    return CountOutcomes(plan, settings, range, num_threads, &progress);
-  };
-  const SettingCounts explored = count(trials.explore), calibrated = count(trials.calibrate);
-  const SettingCounts verified = count(trials.verify);
+  const SettingCounts explored = source.count(trials.explore), calibrated = source.count(trials.calibrate);
+  const SettingCounts verified = source.count(trials.verify);
   for (Family& family : result.families) {
     family.choice = ChooseSetting(tuning, result.settings, SumOver(explored, family.conditions),
                                   SumOver(calibrated, family.conditions));
     result.verified.push_back(SumOver(verified, family.conditions));
   }
   return result;
+}
+
+TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
+                               int num_threads) {
+  FamiliesOf(plan, by);  // before any trial
+  const std::int64_t per_condition = TuningTrials(*plan.study.tuning).verify.end;
+  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
+  return MeasureTransfer(plan, settings, by, ComputedCounts(plan, settings, num_threads, &progress));
 }
 
 }  // namespace rcme

@@ -21,14 +21,6 @@ std::vector<SettingCount> CountAll(const StudyPlan& plan, const SettingPlan& set
   return SumOver(CountOutcomes(plan, settings, trials, num_threads, progress), AllConditions(plan));
 }
 
-// The plan of the study with the tuned estimator before its own.
-StudyPlan PlanWithTuned(const StudyPlan& plan, const SettingPlan& settings, size_t tuned) {
-  StudyPlan with = plan;
-  with.study.estimators.insert(with.study.estimators.begin(), settings.settings[tuned].spec);
-  with.estimators.insert(with.estimators.begin(), settings.estimators[tuned]);
-  return with;
-}
-
 // What the plain estimator does must be what was decided from traces.
 void CheckAgreement(const VerifiedEstimator& plain, const SettingCount& decided) {
   if (plain.failure.errors == decided.failures && plain.refusal.errors == decided.refusals) return;
@@ -68,25 +60,58 @@ std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan
   return names;
 }
 
-TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached, int num_threads) {
+StudyPlan PlanWithTuned(const StudyPlan& plan, const SettingPlan& settings, size_t tuned) {
+  StudyPlan with = plan;
+  with.study.estimators.insert(with.study.estimators.begin(), settings.settings[tuned].spec);
+  with.estimators.insert(with.estimators.begin(), settings.estimators[tuned]);
+  return with;
+}
+
+TuningSource ComputedCounts(const StudyPlan& plan, const SettingPlan& settings, int num_threads,
+                            Progress* progress) {
+  return {[&plan, &settings, num_threads, progress](TrialRange trials) {
+            return CountOutcomes(plan, settings, trials, num_threads, progress);
+          },
+          [&plan, &settings, num_threads, progress](size_t tuned) {
+            return VerifyEstimators(PlanWithTuned(plan, settings, tuned),
+                                    TuningTrials(*plan.study.tuning).verify, num_threads, progress);
+          }};
+}
+
+TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached,
+                const TuningSource& source) {
   const Tuning& tuning = *plan.study.tuning;
   CheckTrialsSuffice(tuning, plan.conditions.size());
   const TuningTrials trials(tuning);
+  const auto count_all = [&](TrialRange range) { return SumOver(source.count(range), AllConditions(plan)); };
   TuneResult result;
-  const std::int64_t per_condition = tuning.explore + tuning.calibrate + 2LL * tuning.verify;
-  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
   result.settings = SettingsInWords(tuning, settings);
-  result.explored = CountAll(plan, settings, trials.explore, num_threads, &progress);
-  result.calibrated = CountAll(plan, settings, trials.calibrate, num_threads, &progress);
+  result.explored = count_all(trials.explore);
+  result.calibrated = count_all(trials.calibrate);
   result.choice = ChooseSetting(tuning, result.settings, result.explored, result.calibrated);
   if (!result.choice.setting && unreached == Unreached::kStop) return result;
-  result.verified = CountAll(plan, settings, trials.verify, num_threads, &progress);
+  result.verified = count_all(trials.verify);
   if (!result.choice.setting) return result;
   const size_t tuned = *result.choice.setting;
-  result.estimators =
-      VerifyEstimators(PlanWithTuned(plan, settings, tuned), trials.verify, num_threads, &progress);
+  result.estimators = source.verify(tuned);
   CheckAgreement(result.estimators.front(), result.verified[tuned]);
   return result;
+}
+
+TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached, int num_threads) {
+  const Tuning& tuning = *plan.study.tuning;
+  CheckTrialsSuffice(tuning, plan.conditions.size());
+  const std::int64_t per_condition = tuning.explore + tuning.calibrate + 2LL * tuning.verify;
+  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
+  return Tune(plan, settings, unreached, ComputedCounts(plan, settings, num_threads, &progress));
+}
+
+Choice ChooseFrom(const StudyPlan& plan, const SettingPlan& settings, const TuningSource& source) {
+  const Tuning& tuning = *plan.study.tuning;
+  const TuningTrials trials(tuning);
+  const auto count_all = [&](TrialRange range) { return SumOver(source.count(range), AllConditions(plan)); };
+  return ChooseSetting(tuning, SettingsInWords(tuning, settings), count_all(trials.explore),
+                       count_all(trials.calibrate));
 }
 
 Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int n, int num_threads) {

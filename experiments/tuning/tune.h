@@ -1,6 +1,8 @@
 // From a study with a `tune` block to a setting that is certified, and measured on fresh trials.
 #pragma once
 
+#include <functional>
+
 #include "experiments/trial/trial_range.h"
 #include "experiments/tuning/choose_setting.h"
 #include "experiments/tuning/setting_counts.h"
@@ -13,6 +15,19 @@ struct TuningTrials {
   TrialRange explore, calibrate, verify;
   explicit TuningTrials(const Tuning& tuning);
 };
+
+// Where a tuning takes the outcomes of its trials from: they are computed (ComputedCounts), or shards have
+// computed them (tune_part.h).
+struct TuningSource {
+  std::function<SettingCounts(TrialRange)> count;  // all settings
+  // Plain calls, on the trials for verification, of the tuned setting and the study's estimators.
+  std::function<std::vector<VerifiedEstimator>(size_t tuned)> verify;
+};
+TuningSource ComputedCounts(const StudyPlan& plan, const SettingPlan& settings, int num_threads,
+                            Progress* progress);
+
+// The plan of the study with the tuned estimator before its own.
+StudyPlan PlanWithTuned(const StudyPlan& plan, const SettingPlan& settings, size_t tuned);
 
 struct TuneResult {
   std::vector<std::string> settings;  // "mu = 2, lambda = 0.5", one per setting
@@ -28,7 +43,12 @@ enum class Unreached { kStop, kVerifyAll };
 
 // The plan is that of the study, whose tune block there is. Throws InputError: CountOutcomes', or too few
 // trials for the target.
+TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached,
+                const TuningSource& source);
 TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached, int num_threads);
+
+// The first steps alone: what exploration and calibration choose.
+Choice ChooseFrom(const StudyPlan& plan, const SettingPlan& settings, const TuningSource& source);
 
 // For people: "mu = 2, lambda = 0.5", one per setting.
 std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan& settings);

@@ -14,7 +14,6 @@
 #include "estimator/refinement/sampson_mle.h"
 #include "experiments/base/field_text.h"
 #include "experiments/base/for_each_index.h"
-#include "experiments/base/progress.h"
 #include "experiments/trial/covariance_score.h"
 #include "stats/accuracy.h"
 #include "stats/distributions.h"
@@ -122,20 +121,13 @@ double MedianParallaxDeg(std::span<const Cell> cells) {
   return MeasureQuantile(std::move(parallaxes_rad), 0.5).value * 180.0 / std::numbers::pi;
 }
 
-// The trials of a cell that have a sample, in their order.
-std::vector<ValidityTrial> RunCell(const MapSampler& draw, std::uint32_t cell,
-                                   const ValidityMapOptions& options, Progress* progress) {
-  std::vector<std::optional<ValidityTrial>> all(static_cast<size_t>(options.trials));
-  ForEachIndex(options.trials, options.num_threads, [&](std::int64_t trial) {
-    const std::optional<MapSample> sample = draw({options.seed, cell, static_cast<std::uint32_t>(trial)});
-    if (sample) all[static_cast<size_t>(trial)] = RunValidityTrial(*sample);
-    progress->Advance(1);
-  });
-  std::vector<ValidityTrial> trials;
-  for (const std::optional<ValidityTrial>& trial : all) {
-    if (trial) trials.push_back(*trial);
-  }
-  return trials;
+struct CellPlace {
+  size_t condition, num_points, sigma_px;  // indices into the options
+};
+
+CellPlace PlaceOf(const ValidityMapOptions& options, std::uint32_t cell) {
+  const size_t num_sigmas = options.sigmas_px.size(), num_points = options.nums_points.size();
+  return {cell / (num_sigmas * num_points), cell / num_sigmas % num_points, cell % num_sigmas};
 }
 
 }  // namespace
@@ -206,26 +198,55 @@ double SecondsOfWork(const ValidityMapOptions& options) {
          NumThreads(options.num_threads);
 }
 
-std::string ValidityMapCsv(const ValidityMapOptions& options) {
-  Progress progress("trials of the map", NumCells(options) * options.trials);
+std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell) {
+  const CellPlace place = PlaceOf(options, cell);
+  return fmt::format("{} {}, {} points, {} px", options.condition_key,
+                     options.conditions[place.condition].level, options.nums_points[place.num_points],
+                     options.sigmas_px[place.sigma_px]);
+}
+
+std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,
+                                           TrialRange trials, Progress* progress) {
+  const CellPlace place = PlaceOf(options, cell);
+  const MapSampler draw = options.conditions[place.condition].sampler(options.nums_points[place.num_points],
+                                                                      options.sigmas_px[place.sigma_px]);
+  std::vector<std::optional<ValidityTrial>> all(trials.end - trials.first);
+  ForEachIndex(static_cast<std::int64_t>(all.size()), options.num_threads, [&](std::int64_t i) {
+    const std::optional<MapSample> sample =
+        draw({options.seed, cell, trials.first + static_cast<std::uint32_t>(i)});
+    if (sample) all[static_cast<size_t>(i)] = RunValidityTrial(*sample);
+    if (progress) progress->Advance(1);
+  });
+  std::vector<ValidityTrial> with_sample;
+  for (const std::optional<ValidityTrial>& trial : all) {
+    if (trial) with_sample.push_back(*trial);
+  }
+  return with_sample;
+}
+
+std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell& trials_of) {
   std::string text = fmt::format(
       "sigma_px,num_points,{},median_parallax_deg,conditioning,median_conditioning,quantity,n,num_covered,"
       "coverage,lower,upper\n",
       options.condition_key);
-  std::uint32_t cell_index = 0;
+  std::uint32_t cell = 0;
   for (const MapCondition& condition : options.conditions) {
     std::vector<Cell> cells;
     for (const int num_points : options.nums_points) {
-      for (const double sigma_px : options.sigmas_px) {
-        const MapSampler draw = condition.sampler(num_points, sigma_px);
-        cells.push_back({CsvField(condition.level), num_points, sigma_px,
-                         RunCell(draw, cell_index++, options, &progress)});
-      }
+      for (const double sigma_px : options.sigmas_px)
+        cells.push_back({CsvField(condition.level), num_points, sigma_px, trials_of(cell++)});
     }
     const double median_parallax_deg = MedianParallaxDeg(cells);
-    for (const Cell& cell : cells) text += RowsOf(cell, median_parallax_deg);
+    for (const Cell& each : cells) text += RowsOf(each, median_parallax_deg);
   }
   return text;
+}
+
+std::string ValidityMapCsv(const ValidityMapOptions& options) {
+  Progress progress("trials of the map", NumCells(options) * options.trials);
+  const TrialRange all{0, static_cast<std::uint32_t>(options.trials)};
+  return ValidityMapCsv(options,
+                        [&](std::uint32_t cell) { return RunTrialsOfCell(options, cell, all, &progress); });
 }
 
 }  // namespace rcme

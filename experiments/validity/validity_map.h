@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/base/progress.h"
+#include "experiments/trial/trial_range.h"
 #include "experiments/validity/sample_family.h"
 
 namespace rcme {
@@ -55,13 +57,25 @@ struct ValidityTrial {
 };
 ValidityTrial RunValidityTrial(const MapSample& sample);
 
+// A cell is a condition with a number of points and a noise level; the conditions vary slowest, the noise
+// fastest.
 std::int64_t NumCells(const ValidityMapOptions& options);
+std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell);
+
+// Those of these trials of a cell that have a sample, in their order. Advances `progress`, if there is one,
+// by one per trial.
+std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,
+                                           TrialRange trials, Progress* progress);
+
 // How long the map will take on its threads, by a few trials of each condition and number of points.
 double SecondsOfWork(const ValidityMapOptions& options);
 
 // validity_map.csv: one row per cell, conditioning group and quantity, with exact 95 % intervals. The groups
 // of a cell are all its trials, and their lower, middle and upper third in order of either conditioning. A
 // trial without a sample does not count in n; a cell in which none has one is a row with n = 0.
+// `trials_of` has all trials of a cell that have a sample; without it they are computed.
+using TrialsOfCell = std::function<std::vector<ValidityTrial>(std::uint32_t cell)>;
+std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell& trials_of);
 std::string ValidityMapCsv(const ValidityMapOptions& options);
 
 }  // namespace rcme

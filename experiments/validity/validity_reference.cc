@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <limits>
 
 #include "experiments/base/for_each_index.h"
-#include "experiments/base/progress.h"
 #include "experiments/trial/covariance_score.h"
 #include "experiments/validity/sample_family.h"
 #include "stats/consistency.h"
@@ -24,8 +22,6 @@ constexpr std::array<const char*, 2> kQuantities = {"f", "pose"};
 constexpr std::array<const char*, 4> kCovariances = {"first_order_at_estimate", "first_order_at_truth",
                                                      "unscented_at_truth", "monte_carlo_at_truth"};
 constexpr int kFDof = 8, kPoseDof = 5;
-
-using Counts = std::array<std::array<std::int64_t, kCovariances.size()>, kQuantities.size()>;
 
 // One noise-free sample: the point at which everything "at truth" is evaluated.
 struct ExactSample {
@@ -100,9 +96,9 @@ std::array<bool, 2> CoveredAtEstimate(const std::optional<LinearMotion>& estimat
           NormalizedErrorOfPose(pose, pose_cov, pose_true) <= ChiSquareQuantile(kPoseDof, kNominalCoverage)};
 }
 
-Counts RunSample(const SampleFamily& family, const StreamName& name,
-                 const ValidityReferenceOptions& options) {
-  Counts counts{};
+CoveredCounts RunSample(const SampleFamily& family, const StreamName& name,
+                        const ValidityReferenceOptions& options) {
+  CoveredCounts counts{};
   const Scene scene = family.MakeScene(name);
   ObservedSample sample = family.ObserveExactly(scene, name);
   std::optional<LinearMotion> motion = EstimateLinearMotion(sample.problem);
@@ -129,27 +125,41 @@ Counts RunSample(const SampleFamily& family, const StreamName& name,
 
 }  // namespace
 
-std::string ValidityReferenceCsv(const ValidityReferenceOptions& options) {
-  const size_t num_cells = options.nums_points.size() * options.sigmas_px.size();
-  Progress progress("samples of the reference", static_cast<std::int64_t>(num_cells) * options.num_samples);
+std::int64_t NumCells(const ValidityReferenceOptions& options) {
+  return static_cast<std::int64_t>(options.nums_points.size() * options.sigmas_px.size());
+}
+
+CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_t cell, TrialRange samples,
+                           Progress* progress) {
+  const size_t num_sigmas = options.sigmas_px.size();
+  const SampleFamily family(options.nums_points[cell / num_sigmas], options.baseline_m,
+                            options.sigmas_px[cell % num_sigmas]);
+  std::vector<CoveredCounts> per_sample(samples.end - samples.first);
+  ForEachIndex(static_cast<std::int64_t>(per_sample.size()), options.num_threads, [&](std::int64_t i) {
+    const StreamName name{options.seed, kFirstCell + cell, samples.first + static_cast<std::uint32_t>(i)};
+    per_sample[static_cast<size_t>(i)] = RunSample(family, name, options);
+    if (progress) progress->Advance(1);
+  });
+  CoveredCounts sum{};
+  for (const CoveredCounts& counts : per_sample) {
+    for (size_t q = 0; q < sum.size(); ++q) {
+      for (size_t c = 0; c < sum[q].size(); ++c) sum[q][c] += counts[q][c];
+    }
+  }
+  return sum;
+}
+
+std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of) {
   std::string text =
       "sigma_px,num_points,baseline_m,quantity,covariance,num_samples,n,num_covered,coverage,lower,upper\n";
-  std::uint32_t cell = kFirstCell;
+  const std::int64_t n = std::int64_t{options.num_samples} * options.num_draws;
+  std::uint32_t cell = 0;
   for (const int num_points : options.nums_points) {
     for (const double sigma_px : options.sigmas_px) {
-      const SampleFamily family(num_points, options.baseline_m, sigma_px);
-      std::vector<Counts> per_sample(static_cast<size_t>(options.num_samples));
-      ForEachIndex(options.num_samples, options.num_threads, [&](std::int64_t sample) {
-        const StreamName name{options.seed, cell, static_cast<std::uint32_t>(sample)};
-        per_sample[static_cast<size_t>(sample)] = RunSample(family, name, options);
-        progress.Advance(1);
-      });
-      ++cell;
-      const std::int64_t n = std::int64_t{options.num_samples} * options.num_draws;
+      const CoveredCounts counts = counts_of(cell++);
       for (size_t q = 0; q < kQuantities.size(); ++q) {
         for (size_t c = 0; c < kCovariances.size(); ++c) {
-          std::int64_t num_covered = 0;
-          for (const Counts& counts : per_sample) num_covered += counts[q][c];
+          const std::int64_t num_covered = counts[q][c];
           const Interval interval = ExactBinomialInterval(num_covered, n);
           text += fmt::format("{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f}\n", sigma_px, num_points,
                               options.baseline_m, kQuantities[q], kCovariances[c], options.num_samples, n,
@@ -160,6 +170,13 @@ std::string ValidityReferenceCsv(const ValidityReferenceOptions& options) {
     }
   }
   return text;
+}
+
+std::string ValidityReferenceCsv(const ValidityReferenceOptions& options) {
+  Progress progress("samples of the reference", NumCells(options) * options.num_samples);
+  const TrialRange all{0, static_cast<std::uint32_t>(options.num_samples)};
+  return ValidityReferenceCsv(
+      options, [&](std::uint32_t cell) { return CountCovered(options, cell, all, &progress); });
 }
 
 }  // namespace rcme

@@ -14,9 +14,14 @@
 // the Monte-Carlo covariance covers 0.95, the errors are biased or far from Gaussian and no covariance can.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "experiments/base/progress.h"
+#include "experiments/trial/trial_range.h"
 
 namespace rcme {
 
@@ -31,8 +36,20 @@ struct ValidityReferenceOptions {
   int num_threads = 0;  // 0: one per core
 };
 
+// How often a region covered, [f or pose][covariance].
+using CoveredCounts = std::array<std::array<std::int64_t, 4>, 2>;
+
+// A cell is a number of points with a noise level, which varies faster.
+std::int64_t NumCells(const ValidityReferenceOptions& options);
+// Over these samples of a cell. Advances `progress`, if there is one, by one per sample.
+CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_t cell, TrialRange samples,
+                           Progress* progress);
+
 // validity_reference.csv: one row per cell, quantity and covariance. n is num_samples x num_draws; the exact
 // 95 % interval is of the mean coverage over these very samples, not over all that the family could give.
+// `counts_of` has those of all samples of a cell; without it they are computed.
+using CountsOfCell = std::function<CoveredCounts(std::uint32_t cell)>;
+std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of);
 std::string ValidityReferenceCsv(const ValidityReferenceOptions& options);
 
 }  // namespace rcme

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <thread>
 
@@ -124,7 +125,11 @@ TEST(Audit, ThatLacksShardsNamesThemAndWritesNothing) {
 TEST(Audit, AShardThatIsStoppedOrKilledGoesOn) {
   const TempFolder folder;
   const std::vector<std::string> options = {"--only", "sigma_p,inlier", "--threads", "1"};
-  const std::string whole = Contents(AuditPart(folder, options, 1, 2)), path = folder.Path("stopped.json");
+  const auto without_times = [](const std::string& part) {
+    return std::regex_replace(Contents(part), std::regex("\"seconds\": [0-9.]+"), "");
+  };
+  const std::string whole = without_times(AuditPart(folder, options, 1, 2));
+  const std::string path = folder.Path("stopped.json");
   std::vector<std::string> command = {"audit", "--shard", "1/2", "--out", path};
   command.insert(command.end(), options.begin(), options.end());
   for (const int signal : {SIGTERM, SIGKILL, SIGTERM}) {
@@ -137,7 +142,7 @@ TEST(Audit, AShardThatIsStoppedOrKilledGoesOn) {
   limited.insert(limited.end(), {"--max-time", "0.5s"});
   EXPECT_EQ(RunRcme(limited).exit_code, 75);
   EXPECT_EQ(RunRcme(command).exit_code, 0);
-  EXPECT_EQ(Contents(path), whole);
+  EXPECT_TRUE(without_times(path) == whole);
   EXPECT_EQ(RunRcme(limited).exit_code, 0);  // nothing is left
 }
 

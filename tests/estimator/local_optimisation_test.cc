@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "estimator/hypothesis.h"
-#include "estimator/refinement/sampson_mle.h"
 #include "estimator/solvers/five_point.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
-#include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -70,63 +67,6 @@ TEST(LocalOptimisation, FindsTheSupportOfTheTruth) {
   EXPECT_GT(inner.mean(), before.mean() + 0.2);
   EXPECT_GT(inner.mean(), 0.95);
   EXPECT_GT(uncertain.mean(), before.mean() + 0.1);
-}
-
-// g of a match, and |J|, its gradient by the four coordinates, from F written out.
-Eigen::Vector2d ConstraintByHand(const MotionProblem& problem, const RelativePose& pose,
-                                 const Correspondence& match) {
-  Eigen::Matrix3d cross;
-  cross << 0, -pose.t.z(), pose.t.y(), pose.t.z(), 0, -pose.t.x(), -pose.t.y(), pose.t.x(), 0;
-  const Eigen::Matrix3d F =
-      problem.camera2.K().inverse().transpose() * cross * pose.R * problem.camera1.K().inverse();
-  const Eigen::Vector3d x1 = match.x1_px.homogeneous(), x2 = match.x2_px.homogeneous();
-  const Eigen::Vector3d line2 = F * x1, line1 = F.transpose() * x2;
-  return {x2.dot(line2), std::hypot(line2.head<2>().norm(), line1.head<2>().norm())};
-}
-
-// The matches of Cov-RANSAC's test, Raguram, Frahm & Pollefeys 2009: the variance of g / |J| that the
-// motion's covariance adds, by numeric differences.
-std::vector<int> WidenedSupportByHand(const MotionProblem& problem, const RelativePose& pose,
-                                      const Matrix5d& pose_cov) {
-  std::vector<int> found;
-  for (size_t i = 0; i < problem.matches.size(); ++i) {
-    const Eigen::Vector2d at = ConstraintByHand(problem, pose, problem.matches[i]);
-    const auto g = [&](const Eigen::VectorXd& move) {
-      return Eigen::VectorXd::Constant(
-          1, ConstraintByHand(problem, Retract(pose, Vector5d(move)), problem.matches[i])(0));
-    };
-    const Eigen::MatrixXd g_p = NumericJacobian(g, Eigen::VectorXd::Zero(5), 1e-4);
-    const double variance = kSigmaPx * kSigmaPx + (g_p * pose_cov * g_p.transpose())(0, 0) / (at(1) * at(1));
-    if (at(0) * at(0) / (at(1) * at(1)) <= kThreshold * variance) found.push_back(static_cast<int>(i));
-  }
-  return found;
-}
-
-// Refit by refit, written out: in 20 problems the same inliers in the end.
-TEST(LocalOptimisation, UncertaintyNarrowsAsWrittenOutByHand) {
-  int num_gained = 0;
-  for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const MinimalStart start(trial);
-    RelativePose pose = start.start.pose;
-    Matrix5d pose_cov = start.pose_cov;
-    std::vector<int> last;
-    for (int refit = 0; refit < 5; ++refit) {
-      const std::vector<int> support = WidenedSupportByHand(start.problem, pose, pose_cov);
-      if (support == last) break;
-      EXPECT_TRUE(refit > 0 || std::ranges::includes(support, start.start.inliers));
-      const RefinedMotion motion = RefineBySampson(start.problem, support, pose, Loss::kSquared);
-      if (!motion.converged) break;
-      pose = motion.cam2_from_cam1;
-      pose_cov = motion.pose_cov;
-      last = support;
-    }
-    std::vector<int> expected = WithSupport(start.problem, pose, kThreshold).inliers;
-    num_gained += expected.size() > start.start.inliers.size();
-    if (expected.size() <= start.start.inliers.size()) expected = start.start.inliers;
-    EXPECT_EQ(OptimiseByUncertainty(start.problem, start.start, start.pose_cov, kThreshold, 5).inliers,
-              expected);
-  }
-  EXPECT_GE(num_gained, 15);
 }
 
 TEST(LocalOptimisation, WithoutEffortIsTheStart) {

@@ -8,13 +8,14 @@
 #include <atomic>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 #include "experiments/base/file_output.h"
 #include "experiments/claims/audit_output.h"
+#include "tests/test_support/changed_json.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -77,8 +78,6 @@ std::string Bytes(const Audit& audit) {
   return AuditAsJson(audit) + AuditAsTable(audit) + AuditAsMarkdown(audit);
 }
 
-Json JsonOf(const std::string& path) { return Json::parse(std::ifstream(path)); }
-
 class AuditParts : public testing::Test {
  protected:
   std::string Part(std::uint32_t number, std::uint32_t count, const AuditOptions& options = Options()) const {
@@ -90,15 +89,6 @@ class AuditParts : public testing::Test {
     Paths paths;
     for (std::uint32_t number = 1; number <= count; ++number) paths.push_back(Part(number, count));
     return paths;
-  }
-  // A copy of a part with something changed in it.
-  std::string Changed(const std::string& part, const std::function<void(Json*)>& change) const {
-    Json json = JsonOf(part);
-    change(&json);
-    std::string path = part;
-    path += ".changed";
-    WriteFileWhole(path, json.dump());
-    return path;
   }
   static bool IsRefused(const Paths& paths, const Paths& words, const AuditOptions& options = Options()) {
     return ThrowsInputError([&] { MergeAuditParts(Claims(), options, paths); }, words);
@@ -112,11 +102,11 @@ TEST_F(AuditParts, OfAnyNumberInAnyOrderGiveTheSameBytes) {
   EXPECT_NE(whole.find("nan"), std::string::npos);  // what JSON has no numbers for is tried too
   EXPECT_NE(whole.find("does not hold"), std::string::npos);
   EXPECT_NE(whole.find("inf"), std::string::npos);
-  for (const std::uint32_t count : {1, 3, 7}) {
+  for (const std::uint32_t count : {1, 3, 7, 64}) {
     Paths paths = Parts(count);
     for (int order = 0; order < 4; ++order) {
       const MergedAudit merged = MergeAuditParts(Claims(), Options(), paths);
-      EXPECT_EQ(merged.num_missing, 0);
+      EXPECT_EQ(merged.missing.num_pieces, 0);
       EXPECT_EQ(Bytes(merged.audit), whole) << count << " shards, order " << order;
       if (order == 1) std::ranges::reverse(paths);
       std::ranges::rotate(paths, paths.begin() + 1 % static_cast<std::ptrdiff_t>(count));
@@ -126,13 +116,15 @@ TEST_F(AuditParts, OfAnyNumberInAnyOrderGiveTheSameBytes) {
 
 TEST_F(AuditParts, EveryCheckIsInOneShardAndThoseOfAClaimAreDividedEvenly) {
   const Audit plan = PlanAudit(Claims(), Options());
+  const PiecePlan pieces = PiecesOfAudit(plan);
+  EXPECT_EQ(pieces.NumPieces(), PlacesOf(plan).size());
   for (const std::uint32_t count : {1, 3, 7, 64}) {
-    std::set<CheckPlace> seen;
+    std::set<PiecePlace> seen;
     for (std::uint32_t number = 1; number <= count; ++number) {
       size_t num_of_first = 0;
-      for (const CheckPlace& place : PlacesOf(plan, {number, count})) {
+      for (const PiecePlace& place : PiecesOf(pieces, {number, count})) {
         EXPECT_TRUE(seen.insert(place).second);
-        num_of_first += place.claim == 0;
+        num_of_first += place.group == 0;
       }
       EXPECT_GE(num_of_first, 8 / count);
       EXPECT_LE(num_of_first, (8 + count - 1) / count);
@@ -145,27 +137,32 @@ TEST_F(AuditParts, MissingShardsAreNamed) {
   Paths paths = Parts(3);
   paths.erase(paths.begin() + 1);
   const MergedAudit lost = MergeAuditParts(Claims(), Options(), paths);
-  EXPECT_EQ(lost.num_missing, PlacesOf(lost.audit, {2, 3}).size());
-  EXPECT_EQ(lost.missing_shards, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(lost.missing.num_pieces, PiecesOf(PiecesOfAudit(lost.audit), {2, 3}).size());
+  EXPECT_EQ(lost.missing.shards, std::vector<std::uint32_t>{2});
   EXPECT_EQ(lost.num_shards, 3);
 
-  paths.push_back(Changed(Part(2, 3), [](Json* part) { part->at("checks").erase(0); }));
+  paths.push_back(ChangedJson(Part(2, 3), [](Json* part) { part->at("pieces").erase(0); }));
   const MergedAudit cut = MergeAuditParts(Claims(), Options(), paths);
-  EXPECT_EQ(cut.num_missing, 1);
-  EXPECT_EQ(cut.missing_shards, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(cut.missing.num_pieces, 1);
+  EXPECT_EQ(cut.missing.shards, std::vector<std::uint32_t>{2});
 }
 
 TEST_F(AuditParts, APartGoesOnWhereItWas) {
-  const std::string path = Part(1, 3), whole = JsonOf(path).dump();
+  const auto results_of = [](const std::string& path) {
+    Json part = JsonOf(path);
+    for (Json& piece : part["pieces"]) EXPECT_EQ(piece.erase("seconds"), 1);
+    return part.dump();
+  };
+  const std::string path = Part(1, 3), whole = results_of(path);
   num_trials_run = 0;
   Part(1, 3);
   EXPECT_EQ(num_trials_run, 0);
   Json part = JsonOf(path);
-  part["checks"].erase(1);
+  part["pieces"].erase(1);
   WriteFileWhole(path, part.dump());
   Part(1, 3);
   EXPECT_GT(num_trials_run, 0);
-  EXPECT_EQ(JsonOf(path).dump(), whole);
+  EXPECT_EQ(results_of(path), whole);
 }
 
 TEST_F(AuditParts, OfAnotherAuditAreRefusedWithWhatDiffers) {
@@ -178,60 +175,22 @@ TEST_F(AuditParts, OfAnotherAuditAreRefusedWithWhatDiffers) {
   study.study_identity = "name: yours\n";
   EXPECT_TRUE(IsRefused({part}, {part, "'seed: 1' there, 'seed: 2' here"}, seed));
   EXPECT_TRUE(IsRefused({part}, {"'budget: quick' there, 'budget: full' here"}, budget));
-  EXPECT_TRUE(IsRefused({part}, {"'claim: mixed.several, 8 checks' there"}, only));
+  EXPECT_TRUE(IsRefused({part}, {"'claim mixed.several: 8 checks' there"}, only));
   EXPECT_TRUE(IsRefused({part}, {"'num_matches: 20' there, 'num_matches: 30' here"}, data));
   EXPECT_TRUE(IsRefused({part}, {"'name: mine' there, 'name: yours' here"}, study));
   EXPECT_TRUE(ThrowsInputError([&] { RunAuditPart(Claims(), seed, {1, 3}, part); }, {part, "seed: 1"}));
-  EXPECT_TRUE(ThrowsInputError(
-      [&] {
-        RunAuditPart(Claims(), Options(), {2, 3}, part);
-      },
-      {part, "another shard", "'1/3' there, '2/3' here"}));
-}
-
-TEST_F(AuditParts, OfAnotherProgramMachineOrNumberOfShardsAreRefused) {
-  const std::string first = Part(1, 3), second = Part(2, 3);
-  const std::string program = Changed(first, [](Json* part) { part->at("program") = "rcme 0.0.1"; });
-  EXPECT_TRUE(IsRefused({second, program}, {program, "another program, 'rcme 0.0.1' there"}));
-  const std::string machine = Changed(first, [](Json* part) { part->at("instruction_set") = "abacus"; });
-  EXPECT_TRUE(IsRefused({second, machine}, {machine, second, "another instruction set, 'abacus' there"}));
-  const std::string of_seven = Part(1, 7);
-  EXPECT_TRUE(IsRefused({second, of_seven}, {of_seven, "number of shards, '7' there, '3' here"}));
-}
-
-TEST_F(AuditParts, ACheckThatIsThereTwiceCountsOnceOrIsRefused) {
-  Paths paths = Parts(3);
-  paths.push_back(Changed(paths[0], [](Json*) {}));
-  const MergedAudit merged = MergeAuditParts(Claims(), Options(), paths);
-  EXPECT_EQ(Bytes(merged.audit), Bytes(RunAudit(Claims(), Options())));
-
-  paths.back() = Changed(paths[0], [](Json* part) {
-    part->at("checks").at(0).at("result").at("targets").at(0).at("measured") = 0.25;
-  });
-  EXPECT_TRUE(IsRefused(paths, {paths.back(), "check 0 of claim mixed.several is not equal", paths[0]}));
 }
 
 TEST_F(AuditParts, DamageIsNamed) {
   const std::string part = Part(1, 1);
   const auto is_refused = [&](const std::function<void(Json*)>& change, const std::string& word) {
-    return IsRefused({Changed(part, change)}, {part, word});
+    return IsRefused({ChangedJson(part, change)}, {part, "damaged: check 0 of claim mixed.several", word});
   };
-  EXPECT_TRUE(is_refused([](Json* p) { p->at("format") = "rcme audit 1"; }, "its format is 'rcme audit 1'"));
-  EXPECT_TRUE(is_refused([](Json* p) { p->erase("checks"); }, "not a whole part"));
-  EXPECT_TRUE(is_refused([](Json* p) { p->at("shard") = 2; }, "there is no shard 2 of 1"));
-  EXPECT_TRUE(is_refused([](Json* p) { p->at("checks").at(0).at("claim") = 99; }, "claim 99"));
-  EXPECT_TRUE(is_refused([](Json* p) { p->at("checks").at(0).at("check") = 1; }, "twice"));
-  const auto result_of = [](Json* p) -> Json& { return p->at("checks").at(0).at("result"); };
+  const auto result_of = [](Json* p) -> Json& { return p->at("pieces").at(0).at("result"); };
   EXPECT_TRUE(is_refused([&](Json* p) { result_of(p).at("targets").erase(0); }, "has 3 targets, not 4"));
   EXPECT_TRUE(is_refused([&](Json* p) { result_of(p).at("verdict") = "perhaps"; }, "a verdict that is none"));
   EXPECT_TRUE(is_refused([&](Json* p) { result_of(p).at("targets").at(0).at("measured") = "x"; }, "number"));
-
-  std::ostringstream text;
-  text << std::ifstream(part).rdbuf();
-  const std::string cut = folder_.Path("cut.json");
-  WriteFileWhole(cut, text.str().substr(0, text.str().size() / 2));
-  EXPECT_TRUE(IsRefused({cut}, {cut, "not a whole part"}));
-  EXPECT_TRUE(IsRefused({folder_.Path("none.json")}, {"none.json", "no such part of an audit"}));
+  EXPECT_TRUE(is_refused([&](Json* p) { result_of(p).erase("num_trials"); }, "num_trials"));
 }
 
 }  // namespace

@@ -1,13 +1,16 @@
 #include "experiments/validity/validity_map.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
 #include <sstream>
 #include <string>
 
+#include "experiments/validity/map_part.h"
 #include "experiments/validity/validity_reference.h"
 #include "stats/intervals.h"
+#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/run_program.h"
 
 namespace rcme {
@@ -162,6 +165,55 @@ TEST(ValidityReference, ThreadsChangeNothing) {
   const std::string one = ValidityReferenceCsv(options);
   options.num_threads = 3;
   EXPECT_EQ(ValidityReferenceCsv(options), one);
+}
+
+// In shards the tables are those of one machine, to the last byte; a trial may have no sample.
+TEST(MapParts, GiveTheBytesOfOneMachine) {
+  MapWork work{SmallMap(130), ValidityReferenceOptions{}, ""};
+  work.map.num_threads = work.reference->num_threads = 1;
+  work.reference->num_samples = 4;
+  work.reference->num_noises = work.reference->num_draws = 20;
+  const auto sampler = work.map.conditions.front().sampler;
+  work.map.conditions.front().sampler = [sampler](int num_points, double sigma_px) -> MapSampler {
+    const MapSampler draw = sampler(num_points, sigma_px);
+    return [draw](const StreamName& name) { return name.trial % 3 == 1 ? std::nullopt : draw(name); };
+  };
+  const std::string map = ValidityMapCsv(work.map), reference = ValidityReferenceCsv(*work.reference);
+  EXPECT_NE(map.find(",87,"), std::string::npos) << "n: two thirds of 130";
+  const PiecePlan pieces = PiecesOfMap(work);
+  EXPECT_EQ(pieces.NumPieces(), 4u * 2u + 6u * 4u);
+  const TempFolder folder;
+  for (const std::uint32_t count : {7, 64}) {
+    std::vector<std::string> paths;
+    for (std::uint32_t number = count; number >= 1; --number) {
+      paths.push_back(folder.Path(fmt::format("{}_of_{}", number, count)));
+      RunMapPart(work, {number, count}, paths.back());
+    }
+    const MergedParts merged = MergeParts(pieces, paths);
+    EXPECT_EQ(MissingIn(pieces, merged, 0, pieces.groups.size()).num_pieces, 0);
+    EXPECT_EQ(ValidityMapCsv(work.map, TrialsIn(work, pieces, merged)), map);
+    EXPECT_EQ(ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, merged)), reference);
+  }
+}
+
+TEST(MapParts, DamageIsNamed) {
+  MapWork work{SmallMap(3), ValidityReferenceOptions{}, ""};
+  work.reference->num_samples = work.reference->num_noises = work.reference->num_draws = 20;
+  const PiecePlan pieces = PiecesOfMap(work);
+  const auto is_refused = [&](size_t group, const std::string& result, const std::string& word) {
+    const MergedParts merged{1, {{{group, 0}, {result, 0.0}}}, {{{group, 0}, "a.json"}}};
+    const auto read = [&] {
+      TrialsIn(work, pieces, merged)(0);
+      CountsIn(work, pieces, merged)(0);
+    };
+    return ThrowsInputError(read, {"a.json: damaged: block 0 of " + pieces.groups[group].name, word});
+  };
+  EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1,1]]", "a trial that is none"));
+  EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1,1,\"x\"]]", "a number that is none"));
+  EXPECT_TRUE(is_refused(0, "[[],[],[],[]]", "4 trials of 3"));
+  EXPECT_TRUE(is_refused(4, "[[1,1,1,1]]", "out of range"));
+  EXPECT_TRUE(is_refused(4, "[[1,1,1,1],[1,1,21,1]]", "21 of 20 draws"));
+  EXPECT_TRUE(is_refused(4, "[[1,1,1,1],[1,1,-1,1]]", "-1 of 20 draws"));
 }
 
 TEST(MapCommand, WritesBothTablesAndPrintsTheirPaths) {

@@ -1,0 +1,250 @@
+#include "experiments/tuning/tune_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t kTrialsOfPiece = 10;
+
+// What is done with the trials of a group; a group of each kind for every condition, in this order.
+enum class Kind : size_t { kExplore, kCalibrate, kVerify, kEntropies, kPlainCalls };
+constexpr std::array<const char*, 5> kKinds = {"explore", "calibrate", "verify", "entropies", "plain calls"};
+
+size_t FirstGroup(const StudyPlan& plan, Kind kind) {
+  return static_cast<size_t>(kind) * plan.conditions.size();
+}
+
+Kind KindOf(const StudyPlan& plan, const PiecePlace& place) {
+  return static_cast<Kind>(place.group / plan.conditions.size());
+}
+
+size_t ConditionOf(const StudyPlan& plan, const PiecePlace& place) {
+  return place.group % plan.conditions.size();
+}
+
+TrialRange RangeOf(const StudyPlan& plan, Kind kind) {
+  const TuningTrials trials(*plan.study.tuning);
+  if (kind == Kind::kExplore) return trials.explore;
+  return kind == Kind::kCalibrate ? trials.calibrate : trials.verify;
+}
+
+TrialRange TrialsOf(const StudyPlan& plan, const PiecePlace& place) {
+  const TrialRange all = RangeOf(plan, KindOf(plan, place));
+  const auto first = all.first + static_cast<std::uint32_t>(place.piece) * kTrialsOfPiece;
+  return {first, std::min(first + kTrialsOfPiece, all.end)};
+}
+
+// The plan with one of its conditions alone.
+StudyPlan OneCondition(const StudyPlan& plan, size_t condition) {
+  StudyPlan one = plan;
+  one.conditions = {plan.conditions[condition]};
+  return one;
+}
+
+// What the results depend on, a line for each thing.
+std::string Identity(const StudyPlan& plan) {
+  Tuning tuning = *plan.study.tuning;
+  std::string identity;
+  for (const Parameter& parameter : Parameters(tuning)) {
+    identity += fmt::format("tune: {}: {}\n", parameter.name(), parameter.Value());
+  }
+  for (const TunedOption& option : tuning.options) {
+    identity += fmt::format("tune: {}: {}\n", option.name, fmt::join(option.levels, ", "));
+  }
+  return identity + plan.identity;
+}
+
+TuningPieces PiecesWith(const StudyPlan& plan, const std::string& work, size_t num_kinds, size_t num_first) {
+  TuningPieces made{{work, "block", Identity(plan), {}}, num_first * plan.conditions.size()};
+  for (size_t k = 0; k < num_kinds; ++k) {
+    const TrialRange range = RangeOf(plan, static_cast<Kind>(k));
+    const size_t num_pieces = (range.end - range.first + kTrialsOfPiece - 1) / kTrialsOfPiece;
+    for (const Condition& condition : plan.conditions) {
+      made.pieces.groups.push_back(
+          {fmt::format("{} of condition {}", kKinds[k], condition.index), num_pieces});
+    }
+  }
+  return made;
+}
+
+Json CountsAsJson(const std::vector<SettingCount>& counts) {
+  Json json = Json::array();
+  for (const SettingCount& c : counts) json.push_back({c.failures, c.refusals, c.good, c.false_refusals});
+  return json;
+}
+
+void RequireSize(const Json& json, size_t size) {
+  if (!json.is_array() || json.size() != size)
+    throw std::invalid_argument(fmt::format("it is no list of {}", size));
+}
+
+// Of n trials in which something can happen at most once.
+std::int64_t CountFrom(const Json& json, std::int64_t n) {
+  const auto count = json.get<std::int64_t>();
+  if (count < 0 || count > n) throw std::invalid_argument(fmt::format("{} of {} trials", count, n));
+  return count;
+}
+
+void AddCounts(const Json& json, std::int64_t n, std::vector<SettingCount>* counts) {
+  RequireSize(json, counts->size());
+  for (size_t s = 0; s < counts->size(); ++s) {
+    RequireSize(json[s], 4);
+    const auto number = [&](size_t i) { return CountFrom(json[s][i], n); };
+    (*counts)[s] += {n, number(0), number(1), number(2), number(3)};
+  }
+}
+
+Json VerifiedAsJson(const std::vector<VerifiedEstimator>& estimators) {
+  Json json = Json::array();
+  for (const VerifiedEstimator& e : estimators) {
+    const PairedCounts& paired = e.against_first;
+    json.push_back({e.failure.errors, e.refusal.errors, e.failure_or_refusal.errors, paired.both,
+                    paired.first_only, paired.second_only, paired.neither});
+  }
+  return json;
+}
+
+void AddVerified(const Json& json, std::int64_t n, std::vector<VerifiedEstimator>* estimators) {
+  RequireSize(json, estimators->size());
+  for (size_t e = 0; e < estimators->size(); ++e) {
+    RequireSize(json[e], 7);
+    const auto number = [&](size_t i) { return CountFrom(json[e][i], n); };
+    VerifiedEstimator& sum = (*estimators)[e];
+    size_t i = 0;
+    for (ErrorCount* count : {&sum.failure, &sum.refusal, &sum.failure_or_refusal}) {
+      count->n += n;
+      count->errors += number(i++);
+    }
+    sum.against_first.Merge({number(3), number(4), number(5), number(6)});
+  }
+}
+
+constexpr std::array<std::optional<double> TrialEntropies::*, 4> kEntropies = {
+    &TrialEntropies::good_sample, &TrialEntropies::bad_sample, &TrialEntropies::good_winner,
+    &TrialEntropies::bad_winner};
+
+Json EntropiesAsJson(const EntropiesOfTrials& entropies) {
+  Json json = Json::array();
+  for (const std::vector<TrialEntropies>& trials : entropies) {
+    Json& of_estimator = json.emplace_back(Json::array());
+    for (const TrialEntropies& trial : trials) {
+      Json& numbers = of_estimator.emplace_back(Json::array());
+      for (const auto entropy : kEntropies)
+        numbers.push_back(trial.*entropy ? NumberAsJson(*(trial.*entropy)) : Json());
+    }
+  }
+  return json;
+}
+
+// Those of a piece, to the trials `first` and those after it.
+void SetEntropies(const Json& json, size_t first, size_t num_trials, EntropiesOfTrials* entropies) {
+  RequireSize(json, entropies->size());
+  for (size_t e = 0; e < json.size(); ++e) {
+    RequireSize(json[e], num_trials);
+    for (size_t trial = 0; trial < num_trials; ++trial) {
+      RequireSize(json[e][trial], kEntropies.size());
+      for (size_t k = 0; k < kEntropies.size(); ++k) {
+        const Json& number = json[e][trial][k];
+        if (!number.is_null()) (*entropies)[e][first + trial].*kEntropies[k] = NumberFrom(number);
+      }
+    }
+  }
+}
+
+std::string ComputePiece(const StudyPlan& plan, const SettingPlan& settings, std::optional<size_t> tuned,
+                         const PiecePlace& place, int num_threads) {
+  const StudyPlan one = OneCondition(plan, ConditionOf(plan, place));
+  const TrialRange trials = TrialsOf(plan, place);
+  const Kind kind = KindOf(plan, place);
+  if (kind == Kind::kEntropies)
+    return EntropiesAsJson(MeasureEntropies(one, trials, num_threads, nullptr)).dump();
+  if (kind == Kind::kPlainCalls) {
+    return VerifiedAsJson(
+               VerifyEstimators(PlanWithTuned(one, settings, tuned.value()), trials, num_threads, nullptr))
+        .dump();
+  }
+  return CountsAsJson(CountOutcomes(one, settings, trials, num_threads, nullptr).front()).dump();
+}
+
+std::int64_t NumTrialsOf(const StudyPlan& plan, const PiecePlace& place) {
+  const TrialRange trials = TrialsOf(plan, place);
+  return trials.end - trials.first;
+}
+
+}  // namespace
+
+TuningPieces PiecesOfTuning(const StudyPlan& plan) {
+  CheckTrialsSuffice(*plan.study.tuning, plan.conditions.size());
+  return PiecesWith(plan, "tuning", kKinds.size(), kKinds.size() - 1);
+}
+
+TuningPieces PiecesOfTransfer(const StudyPlan& plan) { return PiecesWith(plan, "transfer", 3, 3); }
+
+MissingPieces RunTuningPart(const StudyPlan& plan, const SettingPlan& settings, const TuningPieces& work,
+                            const MergedParts& merged, const Shard& shard, int num_threads,
+                            const std::string& path) {
+  PartInWork part(work.pieces, shard, path);
+  std::optional<size_t> tuned;
+  const auto compute = [&](const PiecePlace& place) {
+    return ComputePiece(plan, settings, tuned, place, num_threads);
+  };
+  const size_t num_groups = work.pieces.groups.size();
+  part.DoEach(PiecesOf(work.pieces, shard, 0, work.num_first), compute);
+  if (work.num_first == num_groups) return {};
+  const MissingPieces missing = MissingIn(work.pieces, merged, 0, work.num_first);
+  if (missing.num_pieces > 0) return missing;
+  tuned = ChooseFrom(plan, settings, CountsOf(plan, settings, work, merged)).setting;
+  if (tuned) part.DoEach(PiecesOf(work.pieces, shard, work.num_first, num_groups), compute);
+  return {};
+}
+
+TuningSource CountsOf(const StudyPlan& plan, const SettingPlan& settings, const TuningPieces& work,
+                      const MergedParts& merged) {
+  const auto count = [&](TrialRange range) {
+    Kind kind = Kind::kExplore;
+    while (RangeOf(plan, kind).first != range.first) kind = static_cast<Kind>(static_cast<size_t>(kind) + 1);
+    const size_t first = FirstGroup(plan, kind), num_conditions = plan.conditions.size();
+    SettingCounts counts(num_conditions, std::vector<SettingCount>(settings.settings.size()));
+    ReadEach(work.pieces, merged, first, first + num_conditions,
+             [&](const PiecePlace& place, const std::string& json) {
+               AddCounts(Json::parse(json), NumTrialsOf(plan, place), &counts[place.group - first]);
+             });
+    return counts;
+  };
+  const auto verify = [&](size_t tuned) {
+    std::vector<VerifiedEstimator> estimators;
+    for (const EstimatorSpec& spec : PlanWithTuned(plan, settings, tuned).study.estimators)
+      estimators.push_back({spec, {}, {}, {}, {}});
+    const size_t first = FirstGroup(plan, Kind::kPlainCalls);
+    ReadEach(work.pieces, merged, first, first + plan.conditions.size(),
+             [&](const PiecePlace& place, const std::string& json) {
+               AddVerified(Json::parse(json), NumTrialsOf(plan, place), &estimators);
+             });
+    return estimators;
+  };
+  return {count, verify};
+}
+
+EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningPieces& work, const MergedParts& merged) {
+  const TrialRange range = RangeOf(plan, Kind::kEntropies);
+  const size_t num_trials = range.end - range.first, first = FirstGroup(plan, Kind::kEntropies);
+  EntropiesOfTrials entropies(plan.estimators.size(),
+                              std::vector<TrialEntropies>(num_trials * plan.conditions.size()));
+  ReadEach(work.pieces, merged, first, first + plan.conditions.size(),
+           [&](const PiecePlace& place, const std::string& json) {
+             const size_t begin = (place.group - first) * num_trials + place.piece * kTrialsOfPiece;
+             SetEntropies(Json::parse(json), begin, static_cast<size_t>(NumTrialsOf(plan, place)),
+                          &entropies);
+           });
+  return entropies;
+}
+
+}  // namespace rcme

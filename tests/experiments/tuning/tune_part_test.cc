@@ -1,0 +1,154 @@
+// A tuning and a transfer in shards give what one machine gives; what is damaged is named.
+#include "experiments/tuning/tune_part.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "experiments/tuning/transfer.h"
+#include "experiments/tuning/transfer_output.h"
+#include "experiments/tuning/tune_json.h"
+#include "experiments/tuning/tune_output.h"
+#include "tests/test_support/changed_json.h"
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/temp_folder.h"
+#include "tests/test_support/tuned_study.h"
+
+namespace rcme {
+namespace {
+
+using Paths = std::vector<std::string>;
+using Json = nlohmann::ordered_json;
+
+// Three, five and four pieces of each condition, some of fewer than ten trials.
+StudyPlan Plan() {
+  return TunedPlan(
+      "  target: failure\n"
+      "  at_most: 0.3\n"
+      "  max_refusal: 0.9\n"
+      "  explore: 25\n"
+      "  calibrate: 47\n"
+      "  verify: 33\n"
+      "  options: {mu: [1, 2, 3, 6]}\n");
+}
+
+std::string Bytes(const StudyPlan& plan, const TuneResult& result, const std::vector<EntropyRoc>& rocs) {
+  return TuneAsTable(plan, result, rocs) + TuneAsJson(plan, SettingsOf(plan), result, rocs);
+}
+
+class TuneParts : public testing::Test {
+ protected:
+  // Both rounds of a tuning, the one of a transfer.
+  Paths PartsOf(const TuningPieces& work, std::uint32_t count) const {
+    Paths paths;
+    for (std::uint32_t number = 1; number <= count; ++number)
+      paths.push_back(folder_.Path(fmt::format("{}_of_{}", number, count)));
+    const bool has_rounds = work.num_first < work.pieces.groups.size();
+    for (int round = 0; round < (has_rounds ? 2 : 1); ++round) {
+      const MergedParts merged = round == 0 ? MergedParts{} : MergeParts(work.pieces, paths);
+      for (std::uint32_t number = 1; number <= count; ++number) {
+        const MissingPieces missing =
+            RunTuningPart(plan_, settings_, work, merged, {number, count}, 1, paths[number - 1]);
+        EXPECT_EQ(missing.num_pieces > 0, has_rounds && round == 0);
+      }
+    }
+    return paths;
+  }
+  std::string BytesOf(const TuningPieces& work, const MergedParts& merged) const {
+    const TuneResult result =
+        Tune(plan_, settings_, Unreached::kStop, CountsOf(plan_, settings_, work, merged));
+    return Bytes(plan_, result, RocsOf(plan_, EntropiesIn(plan_, work, merged)));
+  }
+
+  const TempFolder folder_;
+  const StudyPlan plan_ = Plan();
+  const SettingPlan settings_ = SettingsOf(plan_);
+};
+
+TEST_F(TuneParts, OfAnyNumberInAnyOrderGiveTheBytesOfOneMachine) {
+  const TuneResult one = Tune(plan_, settings_, Unreached::kStop, 2);
+  ASSERT_TRUE(one.choice.setting.has_value());
+  const std::vector<EntropyRoc> rocs =
+      MeasureEntropyRocs(plan_, TuningTrials(*plan_.study.tuning).verify, 2, nullptr);
+  ASSERT_FALSE(rocs.empty());
+  const std::string whole = Bytes(plan_, one, rocs);
+  const TuningPieces work = PiecesOfTuning(plan_);
+  EXPECT_EQ(work.pieces.NumPieces(), 2 * (3 + 5 + 4 + 4 + 4));
+  for (const std::uint32_t count : {1, 7, 64}) {
+    Paths paths = PartsOf(work, count);
+    for (int order = 0; order < 2; ++order) {
+      EXPECT_EQ(BytesOf(work, MergeParts(work.pieces, paths)), whole) << count << " shards";
+      std::ranges::reverse(paths);
+    }
+    if (count == 1) continue;
+    std::filesystem::remove(paths[2]);  // lost, and made again from the others
+    Paths others = paths;
+    others.erase(others.begin() + 2);
+    const MergedParts lost = MergeParts(work.pieces, others);
+    const MissingPieces missing = MissingIn(work.pieces, lost, 0, work.pieces.groups.size());
+    const Shard shard{3, count};
+    EXPECT_EQ(missing.num_pieces, PiecesOf(work.pieces, shard).size());
+    if (missing.num_pieces > 0) {
+      EXPECT_EQ(missing.shards, std::vector<std::uint32_t>{3});
+      const MissingPieces of_round_one = RunTuningPart(plan_, settings_, work, lost, shard, 1, paths[2]);
+      EXPECT_GT(of_round_one.num_pieces, 0);
+      RunTuningPart(plan_, settings_, work, MergeParts(work.pieces, paths), shard, 1, paths[2]);
+    }
+    EXPECT_EQ(BytesOf(work, MergeParts(work.pieces, paths)), whole);
+  }
+}
+
+TEST_F(TuneParts, OfATransferGiveTheBytesOfOneMachine) {
+  const TransferResult one = MeasureTransfer(plan_, settings_, "", 2);
+  const std::string whole = TransferAsTable(plan_, one) + TransferAsJson(plan_, settings_, one);
+  const TuningPieces work = PiecesOfTransfer(plan_);
+  for (const std::uint32_t count : {1, 7, 64}) {
+    const MergedParts merged = MergeParts(work.pieces, PartsOf(work, count));
+    EXPECT_EQ(MissingIn(work.pieces, merged, 0, work.num_first).num_pieces, 0);
+    const TransferResult result =
+        MeasureTransfer(plan_, settings_, "", CountsOf(plan_, settings_, work, merged));
+    EXPECT_EQ(TransferAsTable(plan_, result) + TransferAsJson(plan_, settings_, result), whole);
+  }
+}
+
+TEST_F(TuneParts, DamageIsNamed) {
+  const TuningPieces work = PiecesOfTuning(plan_);
+  const std::string path = PartsOf(work, 1).front();
+  // Whether a change of the first piece of a group is found when it is read.
+  const auto is_refused = [&](size_t group, const std::function<void(Json*)>& change,
+                              const std::string& word) {
+    const std::string changed = ChangedJson(path, [&](Json* part) {
+      for (Json& piece : part->at("pieces")) {
+        if (piece["group"] == group && piece["piece"] == 0) change(&piece["result"]);
+      }
+    });
+    return ThrowsInputError([&] { BytesOf(work, MergeParts(work.pieces, {changed})); },
+                            {changed, "damaged: block 0 of " + work.pieces.groups[group].name, word});
+  };
+  const auto erase = [](Json* result) { result->erase(0); };
+  EXPECT_TRUE(is_refused(0, erase, "no list of 4"));
+  EXPECT_TRUE(is_refused(
+      3, [](Json* r) { r->at(0).erase(1); }, "no list of 4"));
+  EXPECT_TRUE(is_refused(
+      3, [](Json* r) { r->at(0).at(1) = 11; }, "11 of 10 trials"));
+  EXPECT_TRUE(is_refused(
+      4, [](Json* r) { r->at(0).at(1) = -1; }, "-1 of 10 trials"));
+  EXPECT_TRUE(is_refused(
+      4, [](Json* r) { r->at(0).at(1) = "x"; }, "number"));
+  EXPECT_TRUE(is_refused(6, erase, "no list of 2"));
+  EXPECT_TRUE(is_refused(
+      6, [](Json* r) { r->at(1).erase(0); }, "no list of 10"));
+  EXPECT_TRUE(is_refused(
+      7, [](Json* r) { r->at(1).at(0) = 5; }, "no list of 4"));
+  EXPECT_TRUE(is_refused(8, erase, "no list of 3"));
+  EXPECT_TRUE(is_refused(
+      9, [](Json* r) { r->at(2).erase(0); }, "no list of 7"));
+  EXPECT_TRUE(is_refused(
+      9, [](Json* r) { r->at(2).at(6) = 11; }, "11 of 10 trials"));
+}
+
+}  // namespace
+}  // namespace rcme
