@@ -15,6 +15,7 @@ namespace {
 constexpr double kLeastCurvature = 0.1;
 // Of ProbabilityWrong, which is twice too great for the many matches of a few percent.
 constexpr double kDoubt = 0.5;
+constexpr double kFew = 30.0;
 
 Vector5d DerivativeOf(const MatchTermLists& terms, size_t i) {
   Vector5d J;
@@ -34,6 +35,20 @@ Matrix5d GreaterOf(const Matrix5d& a, const Matrix5d& b) {
   return root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose();
 }
 
+// Along each principal axis of the covariance times k / (k - 2), k the effective number of matches that it
+// rests on where these are fewer than kFew, else the degrees of freedom of the whole.
+Matrix5d WidenedForFew(const Matrix5d& covariance, const Matrix5d& inverse, const Mode& mode,
+                       const Explanation& e, double freedom) {
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(covariance);
+  const Vector5d effective = EffectiveMatches(mode, e, inverse * eigen.eigenvectors());
+  Vector5d widened = eigen.eigenvalues();
+  for (int axis = 0; axis < 5; ++axis) {
+    const double k = std::max(effective(axis) < kFew ? std::min(effective(axis), freedom) : freedom, 3.0);
+    widened(axis) *= k / (k - 2.0);
+  }
+  return eigen.eigenvectors() * widened.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 }  // namespace
 
 Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode) {
@@ -50,6 +65,17 @@ Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode) {
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(symmetric);
   const Matrix5d back = root * eigen.eigenvectors();
   return back * eigen.eigenvalues().cwiseMax(kLeastCurvature).cwiseInverse().asDiagonal() * back.transpose();
+}
+
+Vector5d EffectiveMatches(const Mode& mode, const Explanation& e, const Matrix5d& axes) {
+  Vector5d sum = Vector5d::Zero(), sum_squares = Vector5d::Zero();
+  for (size_t i = 0; i < e.probability.size(); ++i) {
+    if (!(mode.used[i / kBlockSize] >> (i % kBlockSize) & 1)) continue;
+    const Vector5d part = e.probability[i] * (axes.transpose() * DerivativeOf(e.terms, i)).cwiseAbs2();
+    sum += part;
+    sum_squares += part.cwiseAbs2();
+  }
+  return sum.cwiseAbs2().cwiseQuotient(sum_squares);
 }
 
 Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix5d& inverse) {
@@ -78,10 +104,10 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
   scores = GreaterOf(scores, equal) + doubt;
   // From a root of the middle: few matches leave a direction so uncertain that rounding would make the
   // product indefinite.
-  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(freedom / std::max(freedom - 2.0, 1.0) * scores);
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(scores);
   const Matrix5d root =
       inverse * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const Matrix5d covariance = root * root.transpose();
+  const Matrix5d covariance = WidenedForFew(root * root.transpose(), inverse, mode, e, freedom);
   return covariance.allFinite() ? covariance : mode.inverse_hessian;
 }
 

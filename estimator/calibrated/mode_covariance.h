@@ -12,14 +12,19 @@ namespace rcme {
 // (observability.h); the residuals' second derivatives, which this Hessian has, take that away again.
 Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode);
 
+// Along each column of `axes` (H^-1 times a unit vector), how many matches the variance rests on: (sum c)^2 /
+// sum c^2, c the part of it that a match has (Kish 1965).
+Vector5d EffectiveMatches(const Mode& mode, const Explanation& explanation, const Matrix5d& axes);
+
 // H^-1 S H^-1 with S = sum (p psi / ((1 - h) s))^2 J'J, psi = v u: the residuals give their own variances,
 // and a residual with leverage h is smaller than its error by 1 - h (HC3, MacKinnon and White 1985). Where
 // along some direction the mean variance of all residuals gives a greater S, that one: few matches, that
 // decide, have a poor estimate of their own variance. Beside this what a match in doubt adds: that it is
 // wrong, with probability w (influence.h), moves the motion by H^-1 J' psi / ((1 - h) s) and takes its
 // information away, so that by the law of total variance S grows by w (psi^2 / (1 - h)^2 + p v / (1 - h)) /
-// s^2 J'J. Times k / (k - 2), k the degrees of freedom, as the scale is estimated. 5x5 [rotation, direction],
-// rad^2. The mode's inverse information where the result is not finite.
+// s^2 J'J. Along each principal axis times k / (k - 2), as the variance is estimated: k the effective number
+// of matches of the axis where these are fewer than thirty, else the degrees of freedom. 5x5 [rotation,
+// direction], rad^2. The mode's inverse information where the result is not finite.
 Matrix5d SandwichCovariance(const Mode& mode, const Explanation& explanation,
                             const Matrix5d& inverse_of_observed);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "stats/distributions.h"
 #include "tests/test_support/calibrated_mode.h"
@@ -45,6 +46,35 @@ TEST(SandwichCovariance, DoesNotDependOnTheAssumedSigma) {
   const Matrix5d a = SandwichOf(right);
   const Matrix5d b = SandwichOf(wrong);
   for (int k = 0; k < 5; ++k) EXPECT_NEAR(b(k, k) / a(k, k), 1.0, 0.25);
+}
+
+// 200 matches of points twenty times as far as the first eight, on which the direction rests alone.
+FittedMode FitFewNear(std::uint32_t trial) {
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2812});
+  RandomProblem random = MakeRandomProblem(rng, {.num_matches = 208});
+  for (size_t i = 8; i < random.points_in_cam1.size(); ++i) {
+    random.problem.matches[i] = ProjectToBoth(20.0 * random.points_in_cam1[i], random.pose_true,
+                                              random.problem.camera1, random.problem.camera2);
+  }
+  AddNoise(0.5, rng, &random.problem);
+  return FitFromTruth(random.problem, random.pose_true);
+}
+
+// The axes of the greatest and the least variance.
+TEST(EffectiveMatches, AreThoseThatAnAxisRestsOn) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    for (const bool is_few : {true, false}) {
+      const FittedMode f = is_few ? FitFewNear(trial) : FitScene(208, 0.5, 0.0, trial);
+      ASSERT_TRUE(f.has_converged);
+      const Matrix5d inverse = InverseOfObserved(f.matches, f.mode);
+      const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(SandwichOf(f));
+      const Vector5d effective =
+          EffectiveMatches(f.mode, Explain(f.matches, f.mode), inverse * eigen.eigenvectors());
+      EXPECT_GT(effective(4), is_few ? 1.0 : 15.0);
+      EXPECT_LT(effective(4), is_few ? 12.0 : 208.0);
+      EXPECT_GT(effective(0), 30.0);
+    }
+  }
 }
 
 // To where steps are nothing beside the moves that are looked for; the mixture stays.
