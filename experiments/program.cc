@@ -72,6 +72,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddBudgetCommand(app);
   AddAuditCommand(app);
   AddMapCommand(app);
+  AddRareCommand(app);
   AddModelChoiceCommand(app);
   AddCheckEstimatorCommand(app);
   AddEstimateCommand(app);

@@ -13,6 +13,7 @@ inline constexpr const char* kPartFormat = "rcme part 1";
 inline constexpr const char* kComparisonFormat = "rcme comparison 1";
 inline constexpr const char* kEstimateFormat = "rcme estimate 1";
 inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
+inline constexpr const char* kRareFormat = "rcme rare 1";
 inline constexpr const char* kReliabilityFormat = "rcme reliability 1";
 inline constexpr const char* kReportFormat = "rcme report 1";
 inline constexpr const char* kSummaryFormat = "rcme summary 1";

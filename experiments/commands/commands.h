@@ -28,6 +28,7 @@ void AddTuneCommand(CLI::App& app);
 void AddBudgetCommand(CLI::App& app);
 void AddTransferCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
+void AddRareCommand(CLI::App& app);
 void AddModelChoiceCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);
 void AddListCommand(CLI::App& app);

@@ -16,6 +16,25 @@ Choices WithDefaults(Choices choices) {
   return choices;
 }
 
+// Normal noise whose numbers are given.
+class GivenNoise : public NoiseModel {
+ public:
+  GivenNoise(double sigma_px, std::span<const double> normals) : sigma_px_(sigma_px), normals_(normals) {}
+  std::vector<Parameter> Parameters() override { return {}; }
+  double sigma_px() const override { return sigma_px_; }
+  void AddTo(std::span<Correspondence> matches, RandomStream&) const override {
+    for (size_t i = 0; i < matches.size(); ++i) {
+      const double* e = &normals_[4 * i];
+      matches[i].x1_px += Eigen::Vector2d(e[0] * sigma_px_, e[1] * sigma_px_);
+      matches[i].x2_px += Eigen::Vector2d(e[2] * sigma_px_, e[3] * sigma_px_);
+    }
+  }
+
+ private:
+  double sigma_px_;
+  std::span<const double> normals_;
+};
+
 }  // namespace
 
 SimulatedData::SimulatedData(const Choices& choices)
@@ -67,11 +86,24 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_na
   RandomStream outlier_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
   Observation observation = Observe(scene, *noise_, outliers_, noise_rng, outlier_rng);
 
-  TrialData data;
+  Severity severity;
   if (measures_severity_) {
     RandomStream severity_rng = StreamFor(trial_name, StreamPurpose::kSeverity);
-    data.severity = MeasureSeverity(scene, observation, noise_->sigma_px(), severity_rng);
+    severity = MeasureSeverity(scene, observation, noise_->sigma_px(), severity_rng);
   }
+  TrialData data = Give(scene, std::move(observation));
+  data.severity = severity;
+  return data;
+}
+
+TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> normals,
+                                  RandomStream& outlier_rng) const {
+  RandomStream unused = StreamFor({}, StreamPurpose::kNoise);
+  return Give(scene, Observe(scene, GivenNoise(noise_->sigma_px(), normals), outliers_, unused, outlier_rng));
+}
+
+TrialData SimulatedData::Give(const Scene& scene, Observation observation) const {
+  TrialData data;
   data.problem = {std::move(observation.matches), assumed_.AssumedCamera(scene.camera1),
                   assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(noise_->sigma_px())};
   data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "experiments/data/data_source.h"
 #include "simulator/calibration_error.h"
@@ -44,7 +45,15 @@ class SimulatedData : public DataSource {
   Scene DrawScene(const StreamName& trial_name) const;
   TrialData MakeFrom(const Scene& scene, const StreamName& trial_name) const;
 
+  // Whether the noise is sigma_px times standard normal numbers (`noise: gaussian`).
+  bool HasNormalNoise() const { return choices_.noise == "gaussian"; }
+  // The second half with these numbers, four for each point of the scene (x1, y1, x2, y2), and outliers from
+  // a stream of one's own. Severity is not measured.
+  TrialData MakeFrom(const Scene& scene, std::span<const double> normals, RandomStream& outlier_rng) const;
+
  private:
+  TrialData Give(const Scene& scene, Observation observation) const;
+
   Choices choices_;  // none empty
   SceneGenerator scenes_;
   std::unique_ptr<NoiseModel> noise_;

@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "experiments/base/file_output.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/rare/rare_output.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct RareArguments {
+  std::string study, out, method = "splitting";
+  StudyChanges changes;
+  RareEffort splitting;
+  StratifiedEffort stratified;
+  int repeat = 0;
+  double known_rate = std::numeric_limits<double>::quiet_NaN();
+  int threads = 0;
+};
+
+struct RareTexts {
+  std::string table, csv, json;
+};
+
+RareTexts SplitOnce(const StudyPlan& plan, const RareArguments& arguments) {
+  Progress progress("replicates", static_cast<std::int64_t>(plan.conditions.size() * plan.estimators.size()) *
+                                      (arguments.splitting.num_replicates + 1));
+  const std::vector<RareCell> cells =
+      SplitFailures(plan, plan.study.seed, arguments.splitting, arguments.threads, &progress);
+  std::vector<RareRow> rows;
+  for (const RareCell& cell : cells) rows.push_back(RowOf(cell));
+  return {RareAsTable(plan, cells), RareAsCsv(plan, rows), RareAsJson(plan, arguments.splitting, cells)};
+}
+
+// The JSON is that of the first repetition.
+RareTexts SplitAgainAndAgain(const StudyPlan& plan, const RareArguments& arguments) {
+  Progress progress("replicates", static_cast<std::int64_t>(plan.conditions.size() * plan.estimators.size()) *
+                                      (arguments.splitting.num_replicates + 1) * arguments.repeat);
+  std::vector<std::vector<RareCell>> repetitions;
+  std::vector<RareRow> rows;
+  for (int repeat = 0; repeat < arguments.repeat; ++repeat) {
+    const std::uint64_t seed = plan.study.seed + static_cast<std::uint64_t>(repeat);
+    repetitions.push_back(SplitFailures(plan, seed, arguments.splitting, arguments.threads, &progress));
+    for (const RareCell& cell : repetitions.back()) {
+      rows.push_back(RowOf(cell));
+      rows.back().repeat = static_cast<size_t>(repeat);
+    }
+  }
+  std::optional<double> known;
+  if (!std::isnan(arguments.known_rate)) known = arguments.known_rate;
+  return {RareRepetitionsAsTable(plan, repetitions, known), RareAsCsv(plan, rows),
+          RareAsJson(plan, arguments.splitting, repetitions.front())};
+}
+
+RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments) {
+  Progress progress("trials", std::ssize(plan.conditions) * std::int64_t{arguments.stratified.num_trials});
+  const std::vector<StratifiedCell> cells =
+      StratifyFailures(plan, arguments.stratified, arguments.threads, &progress);
+  std::vector<RareRow> rows;
+  for (const StratifiedCell& cell : cells) rows.push_back(RowOf(cell));
+  return {StratifiedAsTable(plan, cells), RareAsCsv(plan, rows),
+          StratifiedAsJson(plan, arguments.stratified, cells)};
+}
+
+void RunRare(const RareArguments& arguments) {
+  const StopOnSignals stop;
+  const bool is_splitting = arguments.method == "splitting";
+  if (!is_splitting && arguments.repeat > 0) throw InputError("--repeat: only with --method splitting");
+  if (!std::isnan(arguments.known_rate) && arguments.repeat == 0)
+    throw InputError("--known-rate: only with --repeat, which counts the intervals that hold it");
+  const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
+  MakeResultFolder(arguments.out);
+  const RareTexts texts = !is_splitting          ? Stratify(plan, arguments)
+                          : arguments.repeat > 0 ? SplitAgainAndAgain(plan, arguments)
+                                                 : SplitOnce(plan, arguments);
+  const std::filesystem::path folder(arguments.out);
+  WriteFileWhole((folder / "rare.txt").string(), texts.table);
+  WriteFileWhole((folder / "rare.csv").string(), texts.csv);
+  WriteFileWhole((folder / "rare.json").string(), texts.json);
+  fmt::print("{}", texts.table);
+}
+
+}  // namespace
+
+void AddRareCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("rare", "Failure rates far below what can be counted: splitting, or strata");
+  command->footer(
+      "How often each estimator fails in each condition of a study where plain trials would take too many.\n"
+      "  splitting   down to 1e-7 and below, where noise and geometry make errors grow by degrees: scene, "
+      "noise,\n"
+      "              outliers and samples of a trial are moved by a Markov chain from level to level of the "
+      "error\n"
+      "              over its bound; independent replicates give the interval. Needs noise: gaussian. "
+      "Failures\n"
+      "              that come at once, with no level before them (a wrong mode), are beyond it: `unseen up "
+      "to`\n"
+      "              says which rate of them would be missed\n"
+      "  stratified  plain trials, of which those with a hard scene (Cramer-Rao bound) are run and of the "
+      "others\n"
+      "              one in 2, 4, ..., 64: for any failure and noise; pays where calls are slow and hard "
+      "scenes\n"
+      "              hold the failures\n"
+      "Where the number of outliers drives failures: `rcme run` with tilted_to. A rate that cannot be "
+      "trusted says\n"
+      "so and why. Nothing is kept until the end.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme rare experiments/studies/rare_noise.yaml --out rare\n"
+      "  rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare\n"
+      "  rcme rare STUDY --method stratified --trials 1000000 --out strata\n"
+      "  rcme rare STUDY --repeat 200 --known-rate 1.1e-3 --out coverage     do the intervals hold it?");
+  auto arguments = std::make_shared<RareArguments>();
+  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json; made if it is missing")
+      ->required();
+  AddStudyOptions(command, &arguments->changes);
+  command->add_option("--method", arguments->method, "splitting (default) or stratified")
+      ->check(CLI::IsMember({"splitting", "stratified"}));
+  command
+      ->add_option("--trials", arguments->stratified.num_trials,
+                   "stratified: trials drawn per condition (default: 100000)")
+      ->transform(WholeNumberIn(1000, 100'000'000));
+  command
+      ->add_option("--run-share", arguments->stratified.run_share,
+                   "stratified: share of them to be run (default: 0.1)")
+      ->transform(NumberIn({0.02, 1.0}));
+  command
+      ->add_option("--particles", arguments->splitting.splitting.num_particles,
+                   "splitting: particles of a replicate (default: 200)")
+      ->transform(WholeNumberIn(10, 1'000'000));
+  command
+      ->add_option("--replicates", arguments->splitting.num_replicates,
+                   "splitting: independent estimates (default: 20)")
+      ->transform(WholeNumberIn(4, 100'000));
+  command
+      ->add_option("--moves", arguments->splitting.splitting.num_moves,
+                   "splitting: moves of each particle at each level (default: 10)")
+      ->transform(WholeNumberIn(1, 100'000));
+  command
+      ->add_option("--kept-share", arguments->splitting.splitting.kept_share,
+                   "splitting: share of the particles beyond each level (default: 0.2)")
+      ->transform(NumberIn({0.02, 0.9}));
+  command
+      ->add_option("--repeat", arguments->repeat,
+                   "splitting: number of repetitions with fresh seeds: how do the estimates scatter?")
+      ->transform(WholeNumberIn(2, 100'000));
+  command
+      ->add_option("--known-rate", arguments->known_rate,
+                   "a rate known otherwise: how many of the repetitions' intervals hold it?")
+      ->transform(NumberIn({0.0, 1.0}));
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The results do not depend on it")
+      ->transform(WholeNumberIn(0, 1024));
+  command->callback([arguments] { RunRare(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,62 @@
+// A trial as a system for multilevel splitting (stats/splitting.h): its random inputs as a state, moves that
+// leave their law as it is, and how near the estimator is to failing.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "experiments/study/study_plan.h"
+#include "experiments/trial/trial.h"
+
+namespace rcme {
+
+class SimulatedData;
+
+// Of the streams of splitting, beside the purposes of a trial's streams (StreamPurpose).
+inline constexpr std::uint32_t kSplittingPurpose = 100;
+
+// The random inputs of a trial: all that decides whether the estimator fails.
+struct MotionInputs {
+  std::shared_ptr<const Scene> scene;
+  std::vector<double> noise;                          // standard normal, four for each point of the scene
+  std::uint64_t outlier_seed = 0, sampling_seed = 0;  // name the streams of outliers and samples
+};
+
+// The greater of rotation and direction error, each over its bound: beyond 1 exactly where HasFailed says so.
+// 0 for a refusal, infinite for an answer that is not valid.
+double ErrorOverBound(const TrialRecord& record, const FailureBounds& bounds);
+
+// Throws InputError for a study on match files: scene, noise and outliers of real pairs cannot be drawn
+// again.
+void RequireDrawnScenes(const Study& study);
+
+class FailingMotion {
+ public:
+  using State = MotionInputs;
+
+  // One condition of the plan, one of its estimators. Throws InputError that names key and value:
+  // match files; noise that is not normal; trials with weights.
+  FailingMotion(const StudyPlan& plan, const Condition& condition, size_t estimator);
+
+  // The law of a trial of the condition, with random numbers that no trial of a run has.
+  State Draw(RandomStream& rng) const;
+
+  // Every other move is a local one, of the noise alone, preconditioned Crank-Nicolson: sqrt(1 - step^2) z +
+  // step z' with fresh normals z' keeps the law of z. The others renew the scene, the outliers or the
+  // samples, each as often.
+  State Propose(const State& state, double step, RandomStream& rng, bool& is_local) const;
+
+  // ErrorOverBound of the estimator's answer.
+  double Value(const State& state) const;
+
+ private:
+  std::shared_ptr<const Scene> DrawScene(RandomStream& rng) const;
+
+  std::shared_ptr<const SimulatedData> data_;
+  std::shared_ptr<const MotionEstimator> estimator_;
+  FailureBounds bounds_;
+  std::uint64_t stream_key_;
+};
+
+}  // namespace rcme
