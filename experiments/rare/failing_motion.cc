@@ -38,9 +38,9 @@ FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, 
   data_ = MakeSimulatedData(SettingsOf(plan.study, condition.levels));
   if (!data_->HasNormalNoise()) {
     throw InputError(
-        "rare: noise: only gaussian is allowed, for splitting moves normal numbers; for other noise draw "
-        "hard "
-        "scenes by importance (candidate_scenes)");
+        "rare: noise: only gaussian is allowed, for splitting moves normal numbers; for other noise give "
+        "--method "
+        "stratified");
   }
   RandomStream rng({plan.study.seed, stream_key_, 0, kSplittingPurpose});
   const State first = Draw(rng);

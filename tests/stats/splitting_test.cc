@@ -90,8 +90,8 @@ TEST(Splitting, IsUnbiasedWhateverTheLevelsAndSteps) {
 }
 
 TEST(Splitting, IntervalsCoverFromOneInAThousandToOneInTenMillion) {
-  // beta: rates of 1e-3, 1e-5, 1e-7. Exact test at 1e-4 that the coverage is 0.95; a doubt is a false alarm.
-  for (const double beta : {3.0902, 4.2649, 5.1993}) {
+  // beta: rates of 1e-3 and 1e-7. Exact test at 1e-4 that the coverage is 0.95; a doubt is a false alarm.
+  for (const double beta : {3.0902, 5.1993}) {
     LinearLimitState system;
     system.beta = beta;
     CoverageCount covered;
@@ -106,11 +106,6 @@ TEST(Splitting, IntervalsCoverFromOneInAThousandToOneInTenMillion) {
     EXPECT_TRUE(covered.Admits(0.95)) << beta << ": " << covered;
     EXPECT_LE(num_doubted, 20) << beta;
     EXPECT_LT(std::abs(estimates.mean() - system.rate()) / estimates.standard_error(), 3.89) << beta;
-    RecordProperty("covered_" + std::to_string(beta), std::to_string(covered.rate()));
-    printf("beta %.4f: covered %.3f, doubted %d, mean/true %.3f, rel sd of an estimate %.2f, values %lld\n",
-           beta, covered.rate(), num_doubted, estimates.mean() / system.rate(),
-           std::sqrt(estimates.variance()) / estimates.mean(),
-           static_cast<long long>(Estimate(system, kSmall, 10, 0).num_values));
   }
 }
 
@@ -127,7 +122,6 @@ TEST(Splitting, SaysSoWhereNoLevelLeadsToTheEvent) {
     num_wrong += rate.IsTrusted() && !rate.interval.Contains(1e-3);
     num_bounded += rate.unseen_up_to >= 1e-3;
   }
-  printf("planted 1e-3: doubted %d, wrong %d, bounded %d of 100\n", num_doubted, num_wrong, num_bounded);
   EXPECT_GE(num_doubted, 50);
   EXPECT_LE(num_wrong, 5);
   EXPECT_GE(num_bounded, 95);
@@ -140,8 +134,8 @@ TEST(Splitting, SaysSoWhereNoLevelLeadsToTheEvent) {
     num_wrong += rate.IsTrusted() && !rate.interval.Contains(1e-5);
     num_bounded += rate.unseen_up_to >= 1e-5;
   }
-  printf("planted 1e-5: wrong %d, bounded %d of 30\n", num_wrong, num_bounded);
   EXPECT_EQ(num_bounded, 30);
+  EXPECT_GT(num_wrong, 5);  // no promise that is not kept: without `unseen up to` these would pass for right
 }
 
 TEST(Splitting, FindsNoLevelsWhereThereAreNone) {
