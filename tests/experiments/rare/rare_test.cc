@@ -105,8 +105,7 @@ TEST(SplitFailures, SaysWhatItCannotTake) {
     FailingMotion(plan, plan.conditions[0], 0);
   };
   EXPECT_TRUE(ThrowsInputError([&] { split(", noise: laplace"); }, {"noise", "gaussian", "stratified"}));
-  EXPECT_TRUE(
-      ThrowsInputError([&] { split(", outlier_count: bernoulli, tilted_to: 0.5"); }, {"tilted_to"}));
+  EXPECT_TRUE(ThrowsInputError([&] { split(", outlier_count: bernoulli, tilted_to: 0.5"); }, {"tilted_to"}));
 }
 
 TEST(StratifyFailures, RunsAllTrialsWhereAllAreWanted) {
