@@ -16,6 +16,9 @@ const std::string& StatusName(MotionStatus status) {
                                                  "rotation_only",
                                                  "too_little_parallax",
                                                  "library_error",
+                                                 "timed_out",
+                                                 "no_answer",
+                                                 "unreadable_answer",
                                                  "invalid_input",
                                                  "invalid_motion",
                                                  "invalid_covariance"};
@@ -36,6 +39,9 @@ const std::vector<MotionStatus>& AllStatuses() {
                                                 MotionStatus::kRotationOnly,
                                                 MotionStatus::kTooLittleParallax,
                                                 MotionStatus::kLibraryError,
+                                                MotionStatus::kTimedOut,
+                                                MotionStatus::kNoAnswer,
+                                                MotionStatus::kUnreadableAnswer,
                                                 MotionStatus::kInvalidInput,
                                                 MotionStatus::kInvalidMotion,
                                                 MotionStatus::kInvalidCovariance};

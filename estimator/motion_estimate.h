@@ -26,7 +26,11 @@ enum class MotionStatus {
   kRotationOnly,       // no translation to be seen
   kTooLittleParallax,  // too few of the matches show parallax beyond the noise
   kLibraryError,       // another library that the estimator calls failed: an exception, or no finite motion
-  kInvalidInput,       // NaN or infinite coordinates, a singular camera, a noise level not positive
+  // Of estimators outside the program (peers/outside_answer.h).
+  kTimedOut,          // no answer within the time that was allowed
+  kNoAnswer,          // none at all: its process ended
+  kUnreadableAnswer,  // something that is no answer: no JSON, a matrix of another shape, an unknown status
+  kInvalidInput,      // NaN or infinite coordinates, a singular camera, a noise level not positive
   // Never an estimator's own: what the check of its answer makes of kOk.
   kInvalidMotion,      // not a rotation and a unit vector, or not finite
   kInvalidCovariance,  // not finite, symmetric and positive semidefinite
@@ -101,6 +105,9 @@ struct MotionEstimate {
   std::vector<double> inlier_probabilities;  // one per match
   std::vector<MotionMode> other_modes;       // the most likely first
   Doubt doubt = Doubt::kNone;
+
+  // Time of the part of the call that ran in another process or on another machine, s; NaN: none did.
+  double seconds_elsewhere = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace rcme

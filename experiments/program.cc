@@ -65,6 +65,8 @@ int RunProgram(int argc, const char* const* argv) {
   AddPlotCommand(app);
   AddCheckCommand(app);
   AddMergeCommand(app);
+  AddExportCommand(app);
+  AddImportCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);
   AddTuneCommand(app);

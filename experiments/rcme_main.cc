@@ -5,5 +5,6 @@
 
 int main(int argc, char** argv) {
   rcme::AddPeers();
+  rcme::AddOutsideEstimators();
   return rcme::RunProgram(argc, argv);
 }

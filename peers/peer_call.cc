@@ -26,40 +26,47 @@ MotionEstimate Refusal(MotionStatus status, std::string message) {
   return estimate;
 }
 
-int CountExplained(const MotionProblem& problem, const RelativePose& pose) {
-  const Eigen::Matrix3d F =
-      FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
-  const double bound = ConsistencyThreshold(kSignificanceLevel) * problem.sigma_px * problem.sigma_px;
-  return static_cast<int>(std::ranges::count_if(problem.matches, [&](const Correspondence& match) {
-    return SquaredSampsonDistance(F, match) <= bound;
-  }));
-}
-
 MotionEstimate EstimateFrom(const MotionProblem& problem, const std::string& library, PeerAnswer answer) {
   const RelativePose& pose = answer.cam2_from_cam1;
   if (!pose.R.allFinite() || !(std::abs(pose.t.norm() - 1.0) < 1e-6))
     return Refusal(MotionStatus::kLibraryError, library + ": its motion is not finite, or has no direction");
   std::ranges::sort(answer.inliers);
-  std::vector<Correspondence> fitted;
-  for (const int i : answer.inliers) fitted.push_back(problem.matches.at(static_cast<size_t>(i)));
-  const std::optional<Matrix5d> pose_cov =
-      FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, fitted, problem.sigma_px);
+  const std::optional<Matrix5d> pose_cov = CovarianceOfInliers(problem, pose, answer.inliers);
   if (!pose_cov) {
-    return Refusal(MotionStatus::kDegenerateMatches,
-                   fmt::format("the {} inliers of {} do not determine a motion", fitted.size(), library));
+    return Refusal(
+        MotionStatus::kDegenerateMatches,
+        fmt::format("the {} inliers of {} do not determine a motion", answer.inliers.size(), library));
   }
   MotionEstimate estimate;
   estimate.status = MotionStatus::kOk;
   estimate.message =
-      SuccessMessage(static_cast<int>(fitted.size()), static_cast<int>(problem.matches.size()));
+      SuccessMessage(static_cast<int>(answer.inliers.size()), static_cast<int>(problem.matches.size()));
   estimate.cam2_from_cam1 = estimate.initial_pose = pose;
   estimate.pose_cov = *pose_cov;
   estimate.inliers = std::move(answer.inliers);
-  estimate.num_explained = CountExplained(problem, pose);
+  estimate.num_explained = static_cast<int>(MatchesThatAgree(problem, pose).size());
   return estimate;
 }
 
 }  // namespace
+
+std::vector<int> MatchesThatAgree(const MotionProblem& problem, const RelativePose& pose) {
+  const Eigen::Matrix3d F =
+      FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
+  const double bound = ConsistencyThreshold(kSignificanceLevel) * problem.sigma_px * problem.sigma_px;
+  std::vector<int> agreeing;
+  for (size_t i = 0; i < problem.matches.size(); ++i) {
+    if (SquaredSampsonDistance(F, problem.matches[i]) <= bound) agreeing.push_back(static_cast<int>(i));
+  }
+  return agreeing;
+}
+
+std::optional<Matrix5d> CovarianceOfInliers(const MotionProblem& problem, const RelativePose& pose,
+                                            const std::vector<int>& inliers) {
+  std::vector<Correspondence> fitted;
+  for (const int i : inliers) fitted.push_back(problem.matches.at(static_cast<size_t>(i)));
+  return FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, fitted, problem.sigma_px);
+}
 
 MotionEstimate CallPeer(const MotionProblem& problem, int sample_size, const std::string& library,
                         const std::function<std::optional<PeerAnswer>()>& ask) {

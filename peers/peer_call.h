@@ -17,6 +17,15 @@ struct PeerAnswer {
   std::vector<int> inliers;
 };
 
+// The matches, ascending, that agree with a motion at the assumed sigma: squared Sampson distance within
+// ConsistencyThreshold(0.05) (estimator/motion_tests.h).
+std::vector<int> MatchesThatAgree(const MotionProblem& problem, const RelativePose& pose);
+
+// The first-order covariance of a maximum-likelihood fit to the inliers, at `pose` and with the assumed
+// sigma; nothing where they determine no motion.
+std::optional<Matrix5d> CovarianceOfInliers(const MotionProblem& problem, const RelativePose& pose,
+                                            const std::vector<int>& inliers);
+
 // The estimate that a library's answer is. The problem is checked before `ask` is called; nothing from it is
 // no_candidate, an exception library_error with the library's words. The covariance is the first-order one
 // of a maximum-likelihood fit to the inliers, at the library's motion and with the assumed sigma: what a user

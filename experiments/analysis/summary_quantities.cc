@@ -49,7 +49,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
        "a motion beyond a failure bound or an answer that is not valid, of all trials but those not scored",
        [](R r, B b) { return If(IsScored(r), HasFailed(r, b)); }},
       StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
-      {"other_refusal", kRate, "no motion for any other reason (the sum of the next twelve), of all trials",
+      {"other_refusal", kRate, "no motion for any other reason (the sum of the next fifteen), of all trials",
        [](R r, B) { return Yes(HasRefused(r) && r.status != MotionStatus::kNoCandidate); }},
       StatusRate(MotionStatus::kTooFewMatches, "too few distinct matches"),
       StatusRate(MotionStatus::kDegenerateMatches, "matches that determine no motion"),
@@ -63,6 +63,9 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       StatusRate(MotionStatus::kTooLittleParallax, "model choice: too few matches show parallax"),
       StatusRate(MotionStatus::kInvalidInput, "coordinates, cameras or a noise level that are not valid"),
       StatusRate(MotionStatus::kLibraryError, "another library that the estimator calls failed"),
+      StatusRate(MotionStatus::kTimedOut, "an estimator outside the program gave no answer in time"),
+      StatusRate(MotionStatus::kNoAnswer, "an estimator outside the program gave no answer: it ended"),
+      StatusRate(MotionStatus::kUnreadableAnswer, "an estimator outside the program gave what is no answer"),
       StatusRate(MotionStatus::kInvalidMotion, "a failure: not a rotation and a unit vector, or not finite"),
       StatusRate(MotionStatus::kInvalidCovariance, "a failure: not finite, symmetric, positive semidefinite"),
       {"kappa_flag", kRate, "the paper's failure flag n*_I / n_I <= kappa, of returned motions",
@@ -117,6 +120,12 @@ const std::vector<TrialQuantity>& OwnQuantities() {
 bool IsOfProbabilities(const std::string& quantity) {
   return quantity == "sigma_estimated_px" || quantity == "inlier_brier" ||
          quantity == "failure_probability" || quantity == "brier" || quantity == "failure_of_sure";
+}
+
+// Of what only an estimator outside the program can do.
+bool IsOfOutside(const std::string& quantity) {
+  return quantity == StatusName(MotionStatus::kTimedOut) || quantity == StatusName(MotionStatus::kNoAnswer) ||
+         quantity == StatusName(MotionStatus::kUnreadableAnswer);
 }
 
 // No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
@@ -174,6 +183,9 @@ void LeaveOutRows(bool with_times, Summary* summary) {
       rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity) && row.n > 0; });
   if (!has_probabilities)
     std::erase_if(rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity); });
+  const bool has_silence = std::ranges::any_of(
+      rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity) && row.value > 0.0; });
+  if (!has_silence) std::erase_if(rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity); });
   if (!with_times) std::erase_if(rows, [](const SummaryRow& row) { return IsOfTimes(row.quantity); });
 }
 

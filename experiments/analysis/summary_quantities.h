@@ -44,7 +44,8 @@ void FillRow(const Collected& collected, std::int64_t num_trials, SummaryRow* ro
 // Of what is not the same when a run is made again.
 bool IsOfTimes(const std::string& quantity);
 
-// Takes away the rows of times, unless asked for, and of probabilities, where no estimator states any.
+// Takes away the rows of times, unless asked for, of probabilities, where no estimator states any, and of
+// what only estimators outside the program do (timed_out, ...), where none did.
 void LeaveOutRows(bool with_times, Summary* summary);
 
 }  // namespace rcme

@@ -20,6 +20,8 @@ void AddReportCommand(CLI::App& app);
 void AddCheckCommand(CLI::App& app);
 void AddMergeCommand(CLI::App& app);
 void AddPlotCommand(CLI::App& app);
+void AddExportCommand(CLI::App& app);
+void AddImportCommand(CLI::App& app);
 void AddReplayCommand(CLI::App& app);
 void AddShowCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "estimator/estimator_registry.h"
 
 namespace rcme {
@@ -19,6 +21,18 @@ void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec
   spec->options = ValuesOf(parameters);
 }
 
+// {process: COMMAND} is short for the estimator `process` with that command, {answers: FILE} for `answers`
+// with that file, seen from the folder of the file that names it.
+void ReadOutside(const Place& place, const YAML::Node& value, const std::string& key, EstimatorSpec* spec) {
+  const std::string text = Scalar(place, value, key);
+  if (text.empty()) place.Fail(value, fmt::format("{}: is empty", key));
+  spec->name = key;
+  const std::filesystem::path file = std::filesystem::path(place.path()).parent_path() / text;
+  place.At(value, [&] {
+    SetOptions(spec, key == "process" ? Settings{{"command", text}} : AnswersOptions(file.string()));
+  });
+}
+
 Parameter BudgetParameter(double* budget_ms) {
   return Parameter::Real("budget_ms", budget_ms, {1e-6, 1e9}, "ms",
                          "time of a call that the effort was chosen for");
@@ -29,10 +43,14 @@ Parameter BudgetParameter(double* budget_ms) {
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller) {
   EstimatorSpec spec;
-  std::set<std::string> known = {"name", "label", "options", "budget_ms", "provenance"};
+  std::set<std::string> known = {"name", "process", "answers", "label", "options", "budget_ms", "provenance"};
   known.insert(keys_of_caller.begin(), keys_of_caller.end());
   for (const auto& [key, value] : Entries(place, node, block, known)) {
+    const bool is_outside = key == "process" || key == "answers";
+    if ((key == "name" || is_outside) && !spec.name.empty())
+      place.Fail(value, fmt::format("{}: name, process and answers exclude each other; give one", block));
     if (key == "name") spec.name = Name(place, value, key);
+    if (is_outside) ReadOutside(place, value, key, &spec);
     if (key == "label") spec.label = Name(place, value, key);
     if (key == "budget_ms") {
       place.At(value, [&, value = value] {
@@ -45,7 +63,7 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
   if (spec.name.empty()) place.Fail(node, fmt::format("{}: key 'name' is missing", block));
   if (spec.label.empty()) spec.label = spec.name;
   const YAML::Node options = node["options"] ? node["options"] : YAML::Node(YAML::NodeType::Map);
-  place.At(node["name"], [&] { FindEstimator(spec.name); });
+  if (node["name"]) place.At(node["name"], [&] { FindEstimator(spec.name); });
   ReadOptions(place, options, &spec);
   place.At(node, [&] { Make(spec); });
   return spec;

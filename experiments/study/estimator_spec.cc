@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "estimator/estimator_registry.h"
+#include "peers/peer_registry.h"
 
 namespace rcme {
 
@@ -19,6 +20,10 @@ void SetOptions(EstimatorSpec* spec, const Settings& options) {
     FindOption(spec->name, parameters, option).SetFromText(value);
   }
   spec->options = ValuesOf(parameters);
+}
+
+Settings AnswersOptions(const std::string& path) {
+  return {{"file", path}, {"digest", DigestOfAnswers(path)}};
 }
 
 std::string EffortInWords(const EstimatorSpec& spec) {

@@ -23,6 +23,10 @@ EstimatorSpec DefaultEstimator(const std::string& name);
 // Gives options other values. Throws InputError that lists the options the estimator has, or what is allowed.
 void SetOptions(EstimatorSpec* spec, const Settings& options);
 
+// The options of the estimator `answers` for a file: with the digest of its content. Throws InputError for a
+// file that holds no answers.
+Settings AnswersOptions(const std::string& path);
+
 // What limits the work of a call, in words: "num_iterations 200", "3.1 ms a call (num_iterations 1840)",
 // "own rule, max_iterations 5000"; empty: nobody knows.
 std::string EffortInWords(const EstimatorSpec& spec);

@@ -149,7 +149,8 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
     RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
     const double start = ThreadSeconds();
     MotionEstimate estimate = plan.estimators[e]->Estimate(result.data.problem, sampling_rng);
-    const double seconds = ThreadSeconds() - start;
+    double seconds = ThreadSeconds() - start;
+    if (estimate.seconds_elsewhere >= 0.0) seconds += estimate.seconds_elsewhere;
     result.estimates.push_back(Judged(std::move(estimate), result.data.problem.matches.size()));
     TrialRecord record = ScoreJudged(result.estimates.back(), result.data, seconds);
     record.condition = condition.index;

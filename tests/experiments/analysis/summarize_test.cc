@@ -198,16 +198,36 @@ TEST_F(SummarizeTest, TrialsThatDecideCountRefusalsToo) {
               2.0 * TrialsToDecide(0.95, {0.94, 0.96}), 1e-9);
 }
 
+bool IsOfOutside(MotionStatus status) {
+  return status == MotionStatus::kTimedOut || status == MotionStatus::kNoAnswer ||
+         status == MotionStatus::kUnreadableAnswer;
+}
+
 TEST_F(SummarizeTest, EveryTrialHasExactlyOneOutcome) {
   double sum = 0.0;
   std::set<std::string> outcomes = {"success", "failure"};
   for (const MotionStatus status : AllStatuses()) {
     TrialRecord record;
     record.status = status;
-    if (HasRefused(record)) outcomes.insert(StatusName(status));
+    if (HasRefused(record) && !IsOfOutside(status)) outcomes.insert(StatusName(status));
   }
   for (const std::string& outcome : outcomes) sum += Row(outcome).value;
   EXPECT_NEAR(sum, 1.0, 1e-12);
+}
+
+TEST_F(SummarizeTest, StatusesOfOutsideEstimatorsHaveRowsOnlyWhereTheyHappened) {
+  const auto count = [](const Summary& summary) {
+    return std::ranges::count_if(summary.rows, [](const SummaryRow& row) {
+      return row.quantity == "timed_out" || row.quantity == "no_answer" ||
+             row.quantity == "unreadable_answer";
+    });
+  };
+  std::vector<TrialRecord> records = HandMadeRecords();
+  Write("none", records);
+  EXPECT_EQ(count(SummaryOf("none")), 0);
+  records[0].status = MotionStatus::kTimedOut;
+  Write("one", records);
+  EXPECT_GT(count(SummaryOf("one")), 0);
 }
 
 // Of three answers with P: .05 (right), .02 (fails), .5 (fails); refusals and answers without one are in

@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/data/match_file.h"
+#include "experiments/study/study_file.h"
+#include "parameters/input_error.h"
+#include "peers/answer_json.h"
+
+namespace rcme {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file each, in a folder each: more than any file system likes.
+constexpr std::int64_t kMaxTrials = 1'000'000;
+
+struct ExportArguments {
+  std::string study, out;
+  StudyChanges changes;
+  std::int64_t trials = 0;  // the study's own
+};
+
+// What an estimator must not see.
+std::string TruthAsJson(const TrialData& data, const std::string& id, const Condition& condition,
+                        std::uint32_t trial) {
+  nlohmann::ordered_json json = {{"id", id}, {"condition", condition.index}, {"trial", trial}};
+  const Truth& truth = data.truth;
+  const auto list = [](const Eigen::MatrixXd& m) {
+    return std::vector<double>(m.data(), m.data() + m.size());
+  };
+  if (truth.cam2_from_cam1_true) {
+    json["R"] = list(truth.cam2_from_cam1_true->R.transpose());  // row after row
+    if (truth.is_direction_known) json["t"] = list(truth.cam2_from_cam1_true->t);
+  }
+  if (!truth.is_inlier_true.empty()) json["is_inlier"] = truth.is_inlier_true;
+  return json.dump() + "\n";
+}
+
+void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
+                 const fs::path& folder, FileInPieces* problems, FileInPieces* truths) {
+  const TrialData data = condition.source->Make(NameOfScene(plan, condition, trial));
+  RandomStream rng = StreamFor(NameOfTrial(plan, condition, trial), StreamPurpose::kSampling);
+  const std::uint32_t seed = SeedForOutside(rng);
+  const std::string id = ProblemId(data.problem, seed);
+  problems->Write(ProblemAsJson(data.problem, seed));
+  truths->Write(TruthAsJson(data, id, condition, trial));
+  MatchFile file;
+  file.matches = data.problem.matches;
+  file.camera1 = data.problem.camera1;
+  file.camera2 = data.problem.camera2;
+  WriteMatchFile(file, (folder / "matches" / (id + ".csv")).string());
+}
+
+void Export(const ExportArguments& arguments) {
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
+  if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
+  const StudyPlan plan = PlanOf(study, arguments.study);
+  if (plan.NumTrials() > kMaxTrials) {
+    throw InputError(fmt::format("{}: {} trials are too many to export; at most {} are allowed (--trials)",
+                                 arguments.study, plan.NumTrials(), kMaxTrials));
+  }
+  const fs::path folder = arguments.out;
+  MakeResultFolder((folder / "matches").string());
+  FileInPieces problems((folder / "problems.jsonl").string()), truths((folder / "truth.jsonl").string());
+  for (const Condition& condition : plan.conditions) {
+    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial)
+      ExportTrial(plan, condition, trial, folder, &problems, &truths);
+  }
+  problems.Finish();
+  truths.Finish();
+  WriteFileWhole((folder / "study.yaml").string(), plan.study_yaml);
+  PrintMessage(
+      "done: {} problems in {}; next: answer them, then rcme import ANSWERS --study {} --label mine --out "
+      "run.sqlite\n",
+      plan.NumTrials(), (folder / "problems.jsonl").string(), (folder / "study.yaml").string());
+}
+
+}  // namespace
+
+void AddExportCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "export", "Write the problems of a study, with the truth apart, for an estimator that runs elsewhere");
+  command->footer(
+      "FOLDER/problems.jsonl   a problem per line, as estimators of {process: ...} get it; what answers "
+      "them\n"
+      "                        there does so here: python3 mine.py < problems.jsonl > answers.jsonl\n"
+      "FOLDER/matches/ID.csv   the same matches as match files, of `rcme estimate`; ID is the problem's id\n"
+      "FOLDER/truth.jsonl      the motion and the true matches by id: not for the estimator\n"
+      "FOLDER/study.yaml       the study as it was exported, for `rcme import`\n"
+      "\n"
+      "Example:\n"
+      "  rcme export experiments/studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
+      "  python3 mine.py < problems/problems.jsonl > answers.jsonl\n"
+      "  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite");
+  auto arguments = std::make_shared<ExportArguments>();
+  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command->add_option("-o,--out", arguments->out, "folder, made if missing")->required();
+  AddStudyOptions(command, &arguments->changes);
+  command->add_option("--trials", arguments->trials, "trials per condition")
+      ->transform(WholeNumberIn(1, 2'000'000'000));
+  command->callback([arguments] { Export(*arguments); });
+}
+
+}  // namespace rcme

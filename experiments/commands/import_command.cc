@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "experiments/base/message.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/run/run_study.h"
+#include "experiments/study/study_file.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct ImportArguments {
+  std::vector<std::string> answers, labels;
+  std::string study, out;
+  int threads = 0;
+};
+
+EstimatorSpec SpecOfAnswers(const std::string& path, const std::string& label) {
+  EstimatorSpec spec{label, "answers", {}, {}};
+  SetOptions(&spec, AnswersOptions(path));
+  return spec;
+}
+
+// Counts the trials that have no answer.
+std::int64_t CountMissing(const ResultStore& store, size_t estimator) {
+  std::int64_t count = 0;
+  store.ForEachRecord([&](const TrialRecord& record) {
+    count += record.estimator == estimator && record.status == MotionStatus::kNoAnswer;
+  });
+  return count;
+}
+
+void Import(const ImportArguments& arguments) {
+  const StopOnSignals stop;
+  if (arguments.labels.size() != arguments.answers.size()) {
+    throw InputError(fmt::format("--label: {} for {} files of answers; give one for each",
+                                 arguments.labels.size(), arguments.answers.size()));
+  }
+  Study study = LoadStudy(arguments.study);
+  const size_t num_own = study.estimators.size();
+  for (size_t i = 0; i < arguments.answers.size(); ++i) {
+    const std::string& label = arguments.labels[i];
+    if (std::ranges::count(study.estimators, label, &EstimatorSpec::label) > 0)
+      throw InputError(fmt::format("--label: the study has an estimator '{}' already; give another", label));
+    study.estimators.push_back(SpecOfAnswers(arguments.answers[i], label));
+  }
+  const StudyPlan plan = PlanOf(study, arguments.study);
+  ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
+  const RunReport report = RunStudy(plan, arguments.threads, &store);
+  for (size_t i = 0; i < arguments.answers.size(); ++i) {
+    const std::int64_t num_missing = CountMissing(store, num_own + i);
+    if (num_missing > 0) {
+      PrintMessage("warning: {}: {} of {} trials have no answer; each is the status no_answer\n",
+                   arguments.answers[i], num_missing, report.num_trials);
+    }
+  }
+  PrintMessage("done: {} trials; next: rcme compare {}\n", report.num_trials, arguments.out);
+}
+
+}  // namespace
+
+void AddImportCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "import", "Score answers that were made elsewhere, beside a study's own estimators on the same trials");
+  command->footer(
+      "Answers are lines of JSON with the id of their problem (docs/estimators_in_any_language.md); the "
+      "study\n"
+      "is the one that `rcme export` wrote. A problem without an answer is the status no_answer, one whose\n"
+      "answer cannot be read unreadable_answer.\n"
+      "\n"
+      "Example:\n"
+      "  rcme export experiments/studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
+      "  python3 mine.py < problems/problems.jsonl > answers.jsonl\n"
+      "  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite\n"
+      "  rcme compare run.sqlite --against mine");
+  auto arguments = std::make_shared<ImportArguments>();
+  command->add_option("answers", arguments->answers, "files of answers")->required();
+  command->add_option("--study", arguments->study, "study.yaml of `rcme export`")->required();
+  command->add_option("--label", arguments->labels, "what the results call each of the files, in their order")
+      ->required()
+      ->allow_extra_args(false);
+  command->add_option("-o,--out", arguments->out, "result file (SQLite)")->required();
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The results do not depend on it")
+      ->transform(WholeNumberIn(0, 1024));
+  command->callback([arguments] { Import(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,182 @@
+// Estimators outside the program that a study can name: a process that answers lines of JSON, and a file of
+// answers that were made elsewhere.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "estimator/estimator_registry.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+#include "peers/answer_json.h"
+#include "peers/child_process.h"
+#include "peers/peer_registry.h"
+
+namespace rcme {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kNone = "none";
+
+// One process per thread that asks; each answers one problem after the other, and a new one takes the place
+// of one that gave no answer.
+class ProcessEstimator : public MotionEstimator {
+ public:
+  ProcessEstimator(std::string command, double timeout_s)
+      : command_(std::move(command)), timeout_s_(timeout_s) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return CallOutside(problem, [&] { return Ask(problem, SeedForOutside(rng)); });
+  }
+
+ private:
+  OutsideAnswer Ask(const MotionProblem& problem, std::uint32_t seed) const {
+    if (command_ == kNone) throw NoOutsideAnswer(MotionStatus::kNoAnswer, "no command is given");
+    const Clock::time_point start = Clock::now();
+    const auto timeout =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s_));
+    std::unique_ptr<ChildProcess> process = Take();
+    const std::string line = process->Ask(ProblemAsJson(problem, seed), start + timeout);
+    OutsideAnswer answer = Readable(AnswerFromJson(line));
+    Give(std::move(process));
+    if (!(answer.seconds >= 0.0))
+      answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    return answer;
+  }
+
+  std::unique_ptr<ChildProcess> Take() const {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        std::unique_ptr<ChildProcess> process = std::move(idle_.back());
+        idle_.pop_back();
+        return process;
+      }
+    }
+    return std::make_unique<ChildProcess>(command_);
+  }
+  void Give(std::unique_ptr<ChildProcess> process) const {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(process));
+  }
+
+  std::string command_;
+  double timeout_s_;
+  mutable std::mutex mutex_;  // of idle_
+  mutable std::vector<std::unique_ptr<ChildProcess>> idle_;
+};
+
+class ProcessModel : public EstimatorModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {
+        Parameter::Text("command", &command_, "a command of the shell",
+                        "answers each line of JSON with one (docs/estimators_in_any_language.md)"),
+        Parameter::Real("timeout_s", &timeout_s_, {1e-3, 1e5}, "s", "an answer that takes longer is none")};
+  }
+  std::unique_ptr<MotionEstimator> Make() const override {
+    return std::make_unique<ProcessEstimator>(command_, timeout_s_);
+  }
+
+ private:
+  std::string command_ = kNone;
+  double timeout_s_ = 10.0;
+};
+
+constexpr size_t kMaxFileBytes = size_t{1} << 31;
+
+std::uint64_t HashOf(std::string_view text, std::uint64_t hash) {
+  for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3ULL;
+  return hash;
+}
+
+struct AnswersFile {
+  std::map<std::string, AnswerLine> answers;  // by the id of their problem
+  std::string digest;
+};
+
+// Throws InputError that names the line: no answer, no id, an id that stands twice.
+std::shared_ptr<const AnswersFile> ReadAnswers(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("answers: {} cannot be read", Quoted(path)));
+  auto read = std::make_shared<AnswersFile>();
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  size_t num_bytes = 0;
+  int number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    num_bytes += line.size();
+    if (num_bytes > kMaxFileBytes)
+      throw InputError(fmt::format("answers: {} is too long; at most 2 GiB are allowed", Quoted(path)));
+    hash = HashOf(line, HashOf("\n", hash));
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    AnswerLine answer = AnswerFromJson(line);
+    if (answer.id.empty()) {
+      throw InputError(fmt::format("{}:{}: {}", path, number,
+                                   answer.fault.empty() ? "no id; give that of the problem" : answer.fault));
+    }
+    const std::string id = answer.id;
+    if (!read->answers.emplace(id, std::move(answer)).second)
+      throw InputError(fmt::format("{}:{}: id {} stands twice", path, number, Quoted(id)));
+  }
+  read->digest = fmt::format("{:016x}", hash);
+  return read;
+}
+
+class AnswersEstimator : public MotionEstimator {
+ public:
+  explicit AnswersEstimator(std::shared_ptr<const AnswersFile> file) : file_(std::move(file)) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return CallOutside(problem, [&] {
+      const std::string id = ProblemId(problem, SeedForOutside(rng));
+      const auto found = file_->answers.find(id);
+      if (found == file_->answers.end())
+        throw NoOutsideAnswer(MotionStatus::kNoAnswer, "the file has no answer to problem " + id);
+      return Readable(found->second);
+    });
+  }
+
+ private:
+  std::shared_ptr<const AnswersFile> file_;
+};
+
+class AnswersModel : public EstimatorModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {Parameter::Text("file", &file_, "the path of a file of answers",
+                            "lines of JSON, of problems that `rcme export` wrote"),
+            Parameter::Text("digest", &digest_, "16 hexadecimal digits",
+                            "of the file's content: a file that has changed is refused")};
+  }
+  std::unique_ptr<MotionEstimator> Make() const override {
+    if (file_ == kNone) return std::make_unique<AnswersEstimator>(std::make_shared<AnswersFile>());
+    std::shared_ptr<const AnswersFile> file = ReadAnswers(file_);
+    if (digest_ != kNone && digest_ != file->digest)
+      throw InputError(fmt::format("answers: {} has changed since (digest {}, not {})", Quoted(file_),
+                                   file->digest, digest_));
+    return std::make_unique<AnswersEstimator>(std::move(file));
+  }
+
+ private:
+  std::string file_ = kNone, digest_ = kNone;
+};
+
+}  // namespace
+
+std::string DigestOfAnswers(const std::string& path) { return ReadAnswers(path)->digest; }
+
+void AddOutsideEstimators() {
+  AddEstimator({"process", "a process of yours that answers lines of JSON",
+                [] { return std::make_unique<ProcessModel>(); }, /*is_peer=*/false, /*is_audited=*/false});
+  AddEstimator({"answers", "a file of answers that were made elsewhere (rcme import)",
+                [] { return std::make_unique<AnswersModel>(); }, /*is_peer=*/false, /*is_audited=*/false});
+}
+
+}  // namespace rcme

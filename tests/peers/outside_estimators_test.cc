@@ -1,0 +1,221 @@
+// The door for estimators outside the program: their covariance, their lines of JSON, and processes that
+// answer, are late, crash or talk nonsense. The processes are scripts of the shell.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "estimator/estimator_registry.h"
+#include "parameters/input_error.h"
+#include "peers/answer_json.h"
+#include "peers/peer_registry.h"
+#include "tests/test_support/random_problem.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+
+MotionProblem ProblemOf(std::uint64_t seed) {
+  RandomStream rng({seed, 0, 1, 0});
+  MotionProblem problem = MakeRandomProblem(rng, {.num_matches = 20}).problem;
+  AddNoise(problem.sigma_px, rng, &problem);
+  return problem;
+}
+
+// Answers every line with the same one.
+std::string Always(const std::string& answer) {
+  std::string script = "while read -r line; do echo '";
+  script += answer;
+  script += "'; done";
+  return script;
+}
+constexpr const char* kAnswer =
+    R"({"R": [[1,0,0],[0,1,0],[0,0,1]], "t": [2,0,0], "inliers": [4,1,2,3,0,7,9]})";
+
+const EstimatorEntry& Registered(const std::string& name) {
+  static const bool is_added = [] {
+    AddOutsideEstimators();
+    return true;
+  }();
+  EXPECT_TRUE(is_added);
+  return FindEstimator(name);
+}
+
+std::unique_ptr<MotionEstimator> Process(const std::string& command, const std::string& timeout_s = "20") {
+  return MakeEstimator(Registered("process").name, {{"command", command}, {"timeout_s", timeout_s}});
+}
+
+MotionEstimate Ask(const MotionEstimator& estimator, std::uint64_t seed = 1) {
+  RandomStream rng({seed, 0, 0, 0});
+  return estimator.Estimate(ProblemOf(seed), rng);
+}
+
+TEST(OutsideCovariance, IsThatOfTheTangent) {
+  const RelativePose pose{RotationFromVector({0.1, -0.2, 0.05}),
+                          Eigen::Vector3d(0.3, -0.8, 0.4).normalized()};
+  const Matrix5d root = Matrix5d::Random();
+  const Matrix5d pose_cov = root * root.transpose();
+  const Matrix6d whole = CovarianceWithTranslation(pose_cov, pose.t);
+  EXPECT_NEAR((TangentCovariance(whole, pose.t) - pose_cov).norm(), 0.0, 1e-12);
+  // In another length of t, and with anything along t.
+  Matrix6d scaled = whole;
+  scaled.topRightCorner<3, 3>() *= 3.0;
+  scaled.bottomLeftCorner<3, 3>() *= 3.0;
+  scaled.bottomRightCorner<3, 3>() *= 9.0;
+  scaled.bottomRightCorner<3, 3>() += 5.0 * pose.t * pose.t.transpose();
+  EXPECT_NEAR((TangentCovariance(scaled, 3.0 * pose.t) - pose_cov).norm(), 0.0, 1e-12);
+}
+
+// w and dt as the interface says, by LocalCoordinates of a pose a small step away.
+TEST(OutsideCovariance, OrderAndSignsOfTheSixComponents) {
+  const RelativePose pose{RotationFromVector({0.1, -0.2, 0.05}),
+                          Eigen::Vector3d(0.3, -0.8, 0.4).normalized()};
+  constexpr double kStep = 1e-6;
+  for (int k = 0; k < 6; ++k) {
+    Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
+    step(k) = kStep;
+    const RelativePose other{RotationFromVector(step.head<3>()) * pose.R,
+                             (pose.t + step.tail<3>()).normalized()};
+    const Vector5d tangent = LocalCoordinates(pose, other);
+    const Matrix5d expected = tangent * tangent.transpose();
+    const Matrix5d given = TangentCovariance(step * step.transpose(), pose.t);
+    EXPECT_NEAR((given - expected).norm(), 0.0, 1e-5 * kStep * kStep) << k;
+  }
+}
+
+TEST(AnswerJson, ProblemsAreReadBackBitForBit) {
+  const MotionProblem problem = ProblemOf(3);
+  const std::string line = ProblemAsJson(problem, 7);
+  EXPECT_EQ(line.back(), '\n');
+  EXPECT_EQ(line.find('\n'), line.size() - 1);
+  EXPECT_THAT(line, HasSubstr("\"id\":\"" + ProblemId(problem, 7) + "\""));
+  EXPECT_NE(ProblemId(problem, 7), ProblemId(problem, 8));
+  MotionProblem other = problem;
+  other.matches[3].x2_px.y() = std::nextafter(other.matches[3].x2_px.y(), 1e9);
+  EXPECT_NE(ProblemId(problem, 7), ProblemId(other, 7));
+}
+
+TEST(AnswerJson, WhatIsNoAnswerHasAFault) {
+  const std::string pose = R"("R": [1,0,0,0,1,0,0,0,1], "t": [1,0,0])";
+  const auto line = [&](const std::string& more) {
+    std::string text = "{" + pose;
+    text += more + "}";
+    return text;
+  };
+  EXPECT_EQ(AnswerFromJson(line("")).fault, "");
+  for (const std::string& text : {std::string(""),
+                                  std::string("hello"),
+                                  std::string("[1, 2]"),
+                                  std::string("{"),
+                                  std::string("3"),
+                                  std::string(R"({"R": [1,0,0]})"),
+                                  std::string(R"({"R": "x", "t": [1,0,0]})"),
+                                  std::string(R"({"status": "ok"})"),
+                                  std::string(R"({"status": "fine"})"),
+                                  std::string(R"({"status": 3})"),
+                                  std::string(100'000, '['),
+                                  line(R"(, "pose_cov": [1, 2])"),
+                                  line(R"(, "inliers": [0.5])"),
+                                  line(R"(, "inliers": [-1])"),
+                                  line(R"(, "inliers": 3)"),
+                                  line(R"(, "p_failure": "x")"),
+                                  line(R"(, "seconds": -1)"),
+                                  line(R"(, "status": "invalid_motion")"),
+                                  line(R"(, "message": 3)"),
+                                  line(R"(, "id": 3)")}) {
+    EXPECT_NE(AnswerFromJson(text).fault, "") << text.substr(0, 60);
+  }
+}
+
+TEST(ProcessEstimator, AnswersAreEstimates) {
+  const auto process = Process(Always(kAnswer));
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const MotionEstimate estimate = Ask(*process, seed);
+    ASSERT_EQ(estimate.status, MotionStatus::kOk) << estimate.message;
+    EXPECT_EQ(estimate.cam2_from_cam1.t, Eigen::Vector3d::UnitX());
+    EXPECT_EQ(estimate.inliers, (std::vector<int>{0, 1, 2, 3, 4, 7, 9}));
+    EXPECT_GT(estimate.pose_cov(0, 0), 0.0);
+    EXPECT_GE(estimate.seconds_elsewhere, 0.0);
+  }
+}
+
+TEST(ProcessEstimator, TimeOutsCrashesAndNonsenseAreStatuses) {
+  struct Case {
+    std::string command;
+    MotionStatus status;
+    std::string words;
+  };
+  for (const Case& c :
+       {Case{"sleep 60", MotionStatus::kTimedOut, "in time"},
+        Case{"read -r line; sleep 60", MotionStatus::kTimedOut, "in time"},
+        Case{"exit 3", MotionStatus::kNoAnswer, "exit code 3"},
+        Case{"read -r line; exit 0", MotionStatus::kNoAnswer, "exit code 0"},
+        Case{"read -r line; kill -9 $$", MotionStatus::kNoAnswer, "signal 9"},
+        Case{"no_such_program_at_all 2>/dev/null", MotionStatus::kNoAnswer, "exit code 127"},
+        Case{Always("hello"), MotionStatus::kUnreadableAnswer, "hello"},
+        Case{Always("{}\n{}"), MotionStatus::kUnreadableAnswer, ""},
+        Case{Always(R"({"status": "too_uncertain", "message": "no"})"), MotionStatus::kTooUncertain, "no"},
+        Case{Always(R"({})"), MotionStatus::kNoCandidate, ""}}) {
+    const auto process = Process(c.command, "0.5");
+    const auto start = std::chrono::steady_clock::now();
+    for (int call = 0; call < 2; ++call) {  // what gave no answer is begun again
+      const MotionEstimate estimate = Ask(*process);
+      EXPECT_EQ(estimate.status, c.status) << c.command << ": " << estimate.message;
+      EXPECT_THAT(estimate.message, HasSubstr(c.words));
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20)) << c.command;
+  }
+}
+
+// A problem of megabytes that is not read, and an answer before it is.
+TEST(ProcessEstimator, AProblemLargerThanAnyBuffer) {
+  MotionProblem problem = ProblemOf(1);
+  const std::vector<Correspondence> few = problem.matches;
+  while (problem.matches.size() < 40'000)
+    problem.matches.insert(problem.matches.end(), few.begin(), few.end());
+  RandomStream rng({1, 0, 0, 0});
+  EXPECT_EQ(Process(Always(kAnswer))->Estimate(problem, rng).status, MotionStatus::kOk);
+  EXPECT_EQ(Process("sleep 60", "0.3")->Estimate(problem, rng).status, MotionStatus::kTimedOut);
+}
+
+TEST(ProcessEstimator, SeveralThreadsHaveAProcessEach) {
+  const auto process = Process(Always(kAnswer));
+  std::atomic<int> num_ok = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 4; ++t) {
+      threads.emplace_back([&] {
+        for (std::uint64_t seed = 1; seed <= 10; ++seed)
+          num_ok += Ask(*process, seed).status == MotionStatus::kOk;
+      });
+    }
+  }
+  EXPECT_EQ(num_ok, 40);
+}
+
+TEST(AnswersEstimator, LooksUpTheProblemById) {
+  const TempFolder folder;
+  const std::string path = folder.Path("answers.jsonl");
+  RandomStream rng({1, 0, 0, 0});
+  const std::string id = ProblemId(ProblemOf(1), SeedForOutside(rng));
+  std::string line = "{\"id\": \"" + id;
+  line += "\", \"R\": [1,0,0,0,1,0,0,0,1], \"t\": [1,0,0]}\n";
+  std::ofstream(path) << line << "{\"id\": \"other\", \"R\": [1]}\n";
+  const auto answers =
+      MakeEstimator(Registered("answers").name, {{"file", path}, {"digest", DigestOfAnswers(path)}});
+  EXPECT_NE(Ask(*answers, 1).status, MotionStatus::kNoAnswer);
+  EXPECT_EQ(Ask(*answers, 2).status, MotionStatus::kNoAnswer);
+  std::ofstream(path, std::ios::app) << line;
+  EXPECT_THROW(DigestOfAnswers(path), InputError);  // twice
+  std::ofstream(path) << "{\"R\": [1,0,0,0,1,0,0,0,1], \"t\": [1,0,0]}\n";
+  EXPECT_THROW(DigestOfAnswers(path), InputError);  // no id
+  EXPECT_THROW(DigestOfAnswers(folder.Path("none")), InputError);
+}
+
+}  // namespace
+}  // namespace rcme
