@@ -17,6 +17,9 @@ function(rcme_add_room name)
   set_target_properties(rcme_${name} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(rcme_${name} PUBLIC cxx_std_20)
   target_compile_options(rcme_${name} PUBLIC -ffp-contract=off)
+  # For the module of Python; our own functions are inlined and called as in a program.
+  set_target_properties(rcme_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_options(rcme_${name} PRIVATE -fno-semantic-interposition)
   target_include_directories(rcme_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/rcme>)
   target_link_libraries(rcme_${name} PUBLIC ${ROOM_LINKS}

@@ -22,6 +22,7 @@ ALLOWED = {
     ],
     "peers": ["peers/", "estimator/", "stats/", "parameters/"],
     "experiments": ["experiments/", "simulator/", "peers/", "estimator/", "stats/", "parameters/"],
+    "python": ["python/", "experiments/", "simulator/", "peers/", "estimator/", "stats/", "parameters/"],
 }
 # The folders of a room from below: a file includes files of its own folder and of those before it. "." is the room
 # itself, where the program begins.

@@ -1,0 +1,29 @@
+"""rcme: robust two-view camera motion with its uncertainty, and its validation on simulated scenes.
+
+    pose, info = rcme.estimate_relative_pose(x1, x2, camera1, camera2, {"sigma_px": 0.7})
+
+estimates one motion; `simulate` gives the matches of a simulated trial with their truth; `run` tries estimators on a study,
+functions of Python among them; `summarize`, `compare`, `reliability` and `audit` say what came of it, as data frames;
+`plot` draws them on axes of yours. docs/python.md begins at the beginning.
+
+Conventions, everywhere:
+
+- A point X1 in camera 1's frame is X2 = R X1 + t in camera 2's; cameras look along +z, x to the right, y down. The scale
+  cannot be seen: |t| = 1.
+- Points are in pixels, N x 2, without lens distortion; (0, 0) is the centre of the top-left pixel. Only the distance from the
+  principal point counts, so points and cameras that share another origin (COLMAP: its corner) may stay as they are.
+- pose_cov is 6 x 6, of [w1, w2, w3, dt1, dt2, dt3]: the true R is Exp([w]x) R, w in rad and in camera 2's frame, and the true t
+  is t + dt. Its rank is 5: nothing along t. For a normalised error square leave that direction out (docs/python.md).
+- Numbers that nobody knows are NaN (of a data frame), or None (of a dict).
+- A wrong argument is a ValueError that names it, what it was and what is expected. What goes wrong in an estimate is no
+  exception but a status.
+"""
+
+from rcme import plot
+from rcme._estimate import Pose, estimate_relative_pose, estimators
+from rcme._rcme import __version__
+from rcme._study import conditions, run, simulate, tune
+from rcme._tables import audit, compare, reliability, summarize
+
+__all__ = ["Pose", "audit", "compare", "conditions", "estimate_relative_pose", "estimators", "plot", "reliability", "run",
+           "simulate", "summarize", "tune", "__version__"]

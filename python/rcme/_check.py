@@ -1,0 +1,184 @@
+"""What the arguments of all calls must be: a ValueError names the argument, what it was and what is expected."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from rcme import _rcme
+
+MAX_COORDINATE_PX = 1e6
+MAX_MATCHES = 1_000_000
+# How many parameters each model has, with the places of fx, fy, cx and cy among them.
+CAMERA_MODELS = {"PINHOLE": (4, (0, 1, 2, 3)), "SIMPLE_PINHOLE": (3, (0, 0, 1, 2))}
+
+
+def words(value: Any) -> str:
+    """A value in a message: short, whatever it is."""
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape} and type {value.dtype}"
+    try:
+        text = repr(value)
+    except Exception:  # noqa: BLE001 (a repr of the user's own)
+        text = f"an object of type {type(value).__name__}"
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
+def numbers(name: str, value: Any, expected: str) -> np.ndarray:
+    """An array of real numbers, of any shape."""
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "fiub" and not (array.dtype.kind == "O" and array.size > 0):
+            raise TypeError
+        return np.array(array, dtype=np.float64, order="C")
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected {expected}") from None
+
+
+def shaped(name: str, value: Any, shape: tuple[int, ...], what: str) -> np.ndarray:
+    """A finite array of that shape."""
+    expected = f"{what}, an array of shape {shape}"
+    array = numbers(name, value, expected)
+    if array.shape != shape:
+        raise ValueError(f"{name}: its shape is {array.shape}; expected {expected}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}: holds a number that is not finite; expected {expected}")
+    return array
+
+
+def points(name: str, value: Any) -> np.ndarray:
+    """N x 2 finite pixel coordinates."""
+    expected = "an N x 2 array of pixel coordinates"
+    array = numbers(name, value, expected)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"{name}: its shape is {array.shape}; expected {expected}")
+    if len(array) > MAX_MATCHES:
+        raise ValueError(f"{name}: its shape is {array.shape}; expected {expected}, N at most {MAX_MATCHES}")
+    with np.errstate(invalid="ignore"):
+        bad = np.flatnonzero(~(np.abs(array) <= MAX_COORDINATE_PX).all(axis=1))
+    if len(bad):
+        raise ValueError(f"{name}: row {bad[0]} is {array[bad[0]].tolist()}, of shape {array.shape}; expected {expected}, "
+                         f"each a finite number in [-{MAX_COORDINATE_PX:g}, {MAX_COORDINATE_PX:g}]")
+    return array
+
+
+def whole(name: str, value: Any, least: int, most: int) -> int:
+    is_whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+    if not is_whole or not least <= value <= most:
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected a whole number in [{least}, {most}]")
+    return int(value)
+
+
+def number(name: str, value: Any, least: float, most: float) -> float:
+    is_number = isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+    if not is_number or not least <= value <= most:
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected a number in [{least:g}, {most:g}]")
+    return float(value)
+
+
+def yes_or_no(name: str, value: Any) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected True or False")
+    return bool(value)
+
+
+def plain(name: str, value: Any) -> str:
+    """Text for tables: one line, at most 200 bytes."""
+    is_plain = isinstance(value, str) and value.isprintable() and 0 < len(value.encode("utf-8", "replace")) <= 200
+    if not is_plain:
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected a text of one line, at most 200 bytes")
+    return value
+
+
+def one_of(name: str, value: Any, allowed: Sequence[str]) -> str:
+    if not isinstance(value, str) or value not in allowed:
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected one of: {', '.join(allowed)}")
+    return value
+
+
+def path(name: str, value: Any, what: str) -> str:
+    if not isinstance(value, (str, os.PathLike)) or not os.fspath(value) or "\0" in str(os.fspath(value)):
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected the path of {what}")
+    text = os.fspath(value)
+    return text if isinstance(text, str) else os.fsdecode(text)
+
+
+def existing(name: str, value: Any, what: str) -> str:
+    text = path(name, value, what)
+    if not os.path.isfile(text):
+        raise ValueError(f"{name}: {words(text)} is no file, seen from {os.getcwd()}; expected the path of {what}")
+    return text
+
+
+def texts(name: str, value: Any, what: str) -> list[str]:
+    """A text or several."""
+    given = [value] if isinstance(value, str) else value
+    if isinstance(given, (bytes, Mapping)) or not isinstance(given, Sequence) or not given:
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected {what}, or a list of such")
+    return [plain(name, text) for text in given]
+
+
+def setting(name: str, value: Any) -> str:
+    """A value as study files have it."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)) and math.isfinite(value):
+        return repr(float(value))
+    if isinstance(value, str) and value.isprintable() and value:
+        return value
+    raise ValueError(f"{name}: {words(value)} is not allowed; expected a finite number, a truth value or a text of one line")
+
+
+def settings(name: str, value: Any) -> list[tuple[str, str]]:
+    """A dict of settings as (key, text)."""
+    if value is None:
+        return []
+    if not isinstance(value, Mapping):
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected a dict of names and values")
+    return [(plain(f"{name}: a key", key), setting(f"{name}[{key!r}]", item)) for key, item in value.items()]
+
+
+def camera(name: str, value: Any) -> _rcme.Camera:
+    """A dict {model, width, height, params}, or K (3 x 3)."""
+    if isinstance(value, Mapping):
+        return _camera_of_dict(name, value)
+    expected = ("a dict {'model': 'PINHOLE', 'width': w, 'height': h, 'params': [fx, fy, cx, cy]} or K, an array of "
+                "shape (3, 3)")
+    array = numbers(name, value, expected)
+    if array.shape != (3, 3):
+        raise ValueError(f"{name}: its shape is {array.shape}; expected {expected}")
+    K = array / array[2, 2] if array[2, 2] != 0 else array
+    is_pinhole = np.isfinite(K).all() and (K[[0, 1, 2, 2], [1, 0, 0, 1]] == 0).all() and K[2, 2] == 1
+    if not is_pinhole:
+        raise ValueError(f"{name}: {array.tolist()} is not allowed; expected K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], "
+                         "without skew")
+    # No size is known: one with the principal point in its centre.
+    width, height = (max(1, min(1_000_000, round(2 * c + 1))) for c in (K[0, 2], K[1, 2]))
+    return _pinhole(name, [K[0, 0], K[1, 1], K[0, 2], K[1, 2]], width, height)
+
+
+def _camera_of_dict(name: str, value: Mapping[str, Any]) -> _rcme.Camera:
+    missing = [key for key in ("model", "width", "height", "params") if key not in value]
+    if missing:
+        raise ValueError(f"{name}: a dict without {', '.join(map(repr, missing))}; expected model, width, height and params")
+    model = value["model"]
+    if not isinstance(model, str) or model not in CAMERA_MODELS:
+        raise ValueError(f"{name}: model {words(model)} is not allowed; expected one of: {', '.join(CAMERA_MODELS)} "
+                         "(undistort the points of others first)")
+    count, places = CAMERA_MODELS[model]
+    params = shaped(f"{name}: params", value["params"], (count,), f"the parameters of {model}")
+    width, height = (whole(f"{name}: {key}", value[key], 1, 1_000_000) for key in ("width", "height"))
+    return _pinhole(name, [params[place] for place in places], width, height)
+
+
+def _pinhole(name: str, k: list[float], width: int, height: int) -> _rcme.Camera:
+    if not (k[0] > 0 and k[1] > 0 and max(map(abs, k)) <= 1e9 and min(k[:2]) >= 1e-9):
+        raise ValueError(f"{name}: fx = {k[0]:g}, fy = {k[1]:g}, cx = {k[2]:g}, cy = {k[3]:g} are not allowed; expected "
+                         "focal lengths > 0 px, and none beyond 1e9 px")
+    return _rcme.Camera([float(x) for x in k], width, height)

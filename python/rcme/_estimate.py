@@ -1,0 +1,108 @@
+"""One motion from one pair of images."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+
+from rcme import _check, _rcme
+
+
+class Pose(NamedTuple):
+    """A motion: X2 = R X1 + t."""
+
+    R: np.ndarray  # 3 x 3
+    t: np.ndarray  # 3, |t| = 1; NaN where the direction cannot be observed
+
+
+def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
+                           options: Optional[Mapping[str, Any]] = None) -> tuple[Optional[Pose], dict[str, Any]]:
+    """Estimates the motion between two images, with its uncertainty.
+
+    Parameters
+    ----------
+    x1, x2 : array (N, 2)
+        Matches: row i of both is the same point, seen in image 1 and in image 2 (px, without distortion).
+    camera1, camera2 : dict {model, width, height, params}, or array (3, 3)
+        model PINHOLE (params fx, fy, cx, cy) or SIMPLE_PINHOLE (f, cx, cy), sizes in px; or K, whose image is taken to have
+        its principal point in its centre.
+    options : dict
+        estimator (its name; default rcme_calibrated) or estimator_file (a path); sigma_px, the standard deviation of the
+        noise of a coordinate in each image (default 0.5); seed of the random samples (default 1); and any option of the
+        estimator: `rcme.estimators()` lists them.
+
+    Returns
+    -------
+    pose : Pose or None
+        R (3, 3) and t (3), X2 = R X1 + t; None where no motion is returned. For info["status"] "direction_not_observable" t
+        is NaN.
+    info : dict
+        status ("ok", or why there is no motion), message (a sentence); estimator (its label);
+        inliers (bool, N), num_inliers, inlier_probabilities (N, or None);
+        pose_cov (6, 6) of [w, dt], or None: the true motion is Exp([w]x) R, t + dt, w in rad; rank 5;
+        p_failure, the probability that the motion is wrong by more than the estimator's bounds (max_rotation_error_deg, ...;
+        None if it states none); sigma and sigma_sd (px), the noise level that it found (None likewise);
+        other_motions: a list of further explanations {R, t, pose_cov, weight, explained_share}, the most likely first.
+
+    Raises
+    ------
+    ValueError
+        An argument of a wrong shape, type or value, an unknown estimator or option. Matches that determine no motion are no
+        error: they are a status.
+    """
+    x1 = _check.points("x1", x1)
+    x2 = _check.points("x2", x2)
+    if len(x1) != len(x2):
+        raise ValueError(f"x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
+    cameras = _check.camera("camera1", camera1), _check.camera("camera2", camera2)
+    chosen = _options(options)
+    try:
+        answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["estimator"], chosen["estimator_file"],
+                                chosen["options"], chosen["seed"])
+    except ValueError as error:
+        raise ValueError(f"options: {error}") from None
+    return _pose_and_info(answer, len(x1))
+
+
+def estimators() -> dict[str, dict[str, Any]]:
+    """The estimators there are: {name: {"doc": a sentence, "options": {name: {"default", "unit", "allowed", "doc"}}}}."""
+    return {name: {"doc": doc, "options": {option: dict(zip(("default", "unit", "allowed", "doc"), parts))
+                                           for option, parts in options.items()}}
+            for name, doc, options in _rcme.estimators() if name != "python"}
+
+
+def _options(options: Optional[Mapping[str, Any]]) -> dict[str, Any]:
+    """Those of the call apart from those of the estimator."""
+    if options is None:
+        options = {}
+    if not isinstance(options, Mapping):
+        raise ValueError(f"options: {_check.words(options)} is not allowed; expected a dict of names and values")
+    rest = dict(options)
+    name, file = rest.pop("estimator", None), rest.pop("estimator_file", None)
+    if name is not None and file is not None:
+        raise ValueError("options: estimator and estimator_file are both there; expected one of them")
+    return {"sigma_px": _check.number("options['sigma_px']", rest.pop("sigma_px", 0.5), 1e-9, 1000.0),
+            "seed": _check.whole("options['seed']", rest.pop("seed", 1), 0, 2**63 - 1),
+            "estimator": _check.plain("options['estimator']", "rcme_calibrated" if name is None else name),
+            "estimator_file": "" if file is None else _check.existing("options['estimator_file']", file, "an estimator file"),
+            "options": _check.settings("options", rest)}
+
+
+def _known(value: float) -> Optional[float]:
+    return None if np.isnan(value) else value
+
+
+def _pose_and_info(answer: dict[str, Any], num_matches: int) -> tuple[Optional[Pose], dict[str, Any]]:
+    motion = answer.pop("motion")
+    inliers = np.zeros(num_matches, dtype=bool)
+    inliers[answer["inliers"]] = True
+    probabilities = np.array(answer["inlier_probabilities"])
+    info = {"status": answer["status"], "message": answer["message"], "estimator": answer["estimator"],
+            "inliers": inliers, "num_inliers": int(inliers.sum()),
+            "inlier_probabilities": probabilities if len(probabilities) else None,
+            "pose_cov": motion["pose_cov"] if motion else None,
+            **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd")},
+            "other_motions": answer["other_motions"]}
+    return Pose(motion["R"], motion["t"]) if motion else None, info

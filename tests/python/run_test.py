@@ -1,0 +1,208 @@
+"""run with functions of Python: the same trials, the same numbers on any number of threads, and nothing that a function does
+ends a run; then the tables of a run, and tune."""
+
+import os
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+import rcme
+from small_study import STUDY, TUNED_STUDY
+
+
+def estimate_again(x1, x2, camera1, camera2, options):
+    """The project's own estimator behind a function: must do as well as it does alone."""
+    return rcme.estimate_relative_pose(x1, x2, camera1, camera2,
+                                       {"estimator": "standard", "num_iterations": 50, **options})
+
+
+def identity(*arguments):
+    return np.eye(3), np.array([1.0, 0, 0])
+
+
+def raise_error(*arguments):
+    raise KeyError("of the function")
+
+
+def leave(*arguments):
+    sys.exit(3)
+
+
+class NoRepresentation:
+    def __repr__(self):
+        raise RuntimeError("no repr")
+
+    R = property(lambda self: 1 / 0)
+    t = 1
+
+
+# What comes back, and the status that it is. None of it may end the run.
+ANSWERS = {
+    "nothing": (None, "no_candidate"),
+    "text": ("a pose", "unreadable_answer"),
+    "number": (3.0, "unreadable_answer"),
+    "shape": ((np.eye(4), np.ones(3)), "unreadable_answer"),
+    "object": (NoRepresentation(), "unreadable_answer"),
+    "no_rotation": ((2 * np.eye(3), np.ones(3)), "invalid_motion"),
+    "mirrored": ((np.diag([1.0, 1, -1]), np.ones(3)), "invalid_motion"),
+    "nan": ((np.full((3, 3), np.nan), np.ones(3)), "invalid_motion"),
+    "no_length": ((np.eye(3), np.zeros(3)), "invalid_motion"),
+    "inliers": (((np.eye(3), np.ones(3)), {"inliers": [5000]}), "unreadable_answer"),
+    "twice": (((np.eye(3), np.ones(3)), {"inliers": [1, 1], "pose_cov": np.eye(6)}), "invalid_motion"),
+    "mask": (((np.eye(3), np.ones(3)), {"inliers": np.ones(7, dtype=bool)}), "unreadable_answer"),
+    "covariance_shape": (((np.eye(3), np.ones(3)), {"pose_cov": np.eye(5)}), "unreadable_answer"),
+    "covariance": (((np.eye(3), np.ones(3)), {"pose_cov": -np.eye(6)}), "invalid_covariance"),
+    "covariance_nan": (((np.eye(3), np.ones(3)), {"pose_cov": np.full((6, 6), np.nan)}), "invalid_covariance"),
+    "probability": (((np.eye(3), np.ones(3)), {"p_failure": 1.5}), "invalid_motion"),
+    "status": ((None, {"status": "fine"}), "unreadable_answer"),
+    "ok_without": ((None, {"status": "ok"}), "unreadable_answer"),
+    "of_the_judge": ((None, {"status": "invalid_motion"}), "unreadable_answer"),
+    "refusal": ((None, {"status": "too_uncertain", "message": "no idea"}), "too_uncertain"),
+    "own_dict": (({"R": np.eye(3), "t": [[1.0], [0], [0]]}, {"pose_cov": np.eye(6)}), "ok"),
+    "matrix": ((np.hstack([np.eye(3), np.ones((3, 1))]), {"pose_cov": np.eye(6)}), "ok"),
+    "no_covariance": (((np.eye(3), np.ones(3)), {"inliers": [0, 1, 2]}), "invalid_covariance"),
+}
+
+
+def statuses_of(run, label):
+    """{status: rate} of one estimator over the whole run."""
+    frame = rcme.summarize(run, pooled=True)
+    own = frame[frame.estimator == label].set_index("quantity")
+    statuses = ["no_candidate", "library_error", "unreadable_answer", "invalid_motion", "invalid_covariance", "too_uncertain"]
+    return {status: own.value[status] for status in statuses if status in own.value and own.value[status] > 0}
+
+
+class Run(unittest.TestCase):
+    def test_a_function_does_as_well_as_what_it_calls(self):
+        run = rcme.run(STUDY, {"mine": estimate_again})
+        frame = rcme.summarize(run)
+        rates = frame[frame.quantity == "success"].pivot(index="outlier_ratio", columns="estimator", values="value")
+        self.assertEqual(set(rates.columns), {"standard", "rcme_rank_aware", "mine"})
+        self.assertLess((rates.mine - rates.standard).abs().max(), 0.25)  # other samples, the same law
+        coverage = frame[(frame.quantity == "nees_coverage") & (frame.estimator == "mine")]
+        self.assertGreater(coverage.n.sum(), 20)
+        self.assertGreater(np.average(coverage.value, weights=coverage.n), 0.6)
+
+    def test_the_same_records_on_any_number_of_threads(self):
+        tables = []
+        for threads in (1, 4):
+            with tempfile.TemporaryDirectory() as folder:
+                run = rcme.run(STUDY, {"mine": estimate_again}, threads=threads, out=os.path.join(folder, "run.sqlite"))
+                tables.append(rcme.summarize(run))
+        self.assertTrue(tables[0].equals(tables[1]))
+
+    def test_nothing_that_comes_back_ends_a_run(self):
+        functions = {name: (lambda answer: lambda *arguments: answer)(answer) for name, (answer, _) in ANSWERS.items()}
+        run = rcme.run(STUDY, {**functions, "raises": raise_error, "leaves": leave}, trials=2, threads=2)
+        expected = {name: status for name, (_, status) in ANSWERS.items()} | {"raises": "library_error",
+                                                                              "leaves": "library_error"}
+        for name, status in expected.items():
+            self.assertEqual(statuses_of(run, name), {} if status == "ok" else {status: 1.0}, name)
+
+    def test_arguments_are_the_problem_and_nothing_else(self):
+        seen = []
+
+        def look(*arguments):
+            seen.append(arguments)
+            arguments[0][:] = 0  # its own copy
+            return None
+
+        rcme.run(STUDY, {"look": look}, trials=1, threads=1)
+        x1, x2, camera1, camera2, options = seen[0]
+        trial = rcme.simulate(STUDY, 0, 0)
+        np.testing.assert_array_equal(x2, trial["x2"])
+        self.assertEqual((camera1, camera2), (trial["camera1"], trial["camera2"]))
+        self.assertEqual(set(options), {"sigma_px", "seed"})
+        self.assertEqual(len({arguments[4]["seed"] for arguments in seen}), 2)
+
+    def test_a_changed_function_does_not_continue_a_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = os.path.join(folder, "run.sqlite")
+            rcme.run(STUDY, {"mine": identity}, trials=1, out=out)
+            rcme.run(STUDY, {"mine": identity}, trials=2, out=out)  # the same: extended
+            with self.assertRaisesRegex(ValueError, "another study|difference"):
+                rcme.run(STUDY, {"mine": raise_error}, trials=2, out=out)
+
+    def test_a_run_within_a_run_is_an_error_not_a_wait(self):
+        words = []
+
+        def nested(*arguments):
+            try:
+                rcme.run(STUDY, trials=1)
+            except RuntimeError as error:
+                words.append(str(error))
+
+        rcme.run(STUDY, {"nested": nested}, trials=1)
+        self.assertIn("has not ended", words[0])
+
+    def test_runs_from_another_thread(self):
+        runs = []
+        thread = threading.Thread(target=lambda: runs.append(rcme.run(STUDY, {"mine": identity}, trials=2)))
+        thread.start()
+        thread.join(60)
+        self.assertEqual(len(rcme.summarize(runs[0]).estimator.unique()), 4)  # with the scene itself
+
+    def test_other_estimators_by_name_and_file_and_settings(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write("name: standard\noptions: {num_iterations: 10}\n")
+            file.flush()
+            run = rcme.run(STUDY, {"by_name": {"name": "prcme", "options": {"num_iterations": 20}}, "by_file": file.name},
+                           trials=3, seed=4, overrides={"outlier_ratio": 0.2, "by_name.num_iterations": 30})
+        frame = rcme.summarize(run)
+        self.assertNotIn("outlier_ratio", frame)  # a factor that is set is none
+        self.assertEqual(frame[(frame.quantity == "success")].n.tolist(), [3] * 4)
+        self.assertLessEqual({"by_name", "by_file"}, set(frame.estimator))
+
+
+class Tables(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.run_file = rcme.run(STUDY, {"worse": identity})
+
+    def test_summarize(self):
+        frame = rcme.summarize(self.run_file, times=True)
+        self.assertIn("time_ms", set(frame.quantity))
+        rates = frame[frame.kind == "rate"]
+        self.assertTrue(((rates.lower <= rates.value) & (rates.value <= rates.upper) | (rates.n == 0)).all())
+        self.assertEqual(len(rcme.summarize(self.run_file, pooled=True).condition.unique()), 1)
+
+    def test_compare(self):
+        frame = rcme.compare(self.run_file, "standard", of=["failure", "auc_10_deg"])
+        worse = frame[(frame.estimator == "worse") & (frame.event == "failure") & (frame.condition == 0)]
+        self.assertTrue((worse.risk_difference > 0.3).all() and (worse.p_holm < 0.05).all())
+        self.assertEqual(set(frame.reference), {"standard"})
+
+    def test_reliability(self):
+        study = {**STUDY, "estimators": [{"name": "rcme_calibrated"}]}
+        measured = rcme.reliability(rcme.run(study, trials=10))
+        self.assertEqual(measured["entries"][0]["source"], "stated")
+        self.assertEqual(measured["entries"][0]["n"], 20)
+
+    def test_audit_of_a_function(self):
+        """A covariance that is 100 times too small is found; the claim about it does not hold."""
+        def too_sure(*arguments):
+            pose, info = estimate_again(*arguments)
+            return pose, {**info, "pose_cov": info["pose_cov"] / 1e4} if pose else info
+
+        frame = rcme.audit({**STUDY, "factors": {"outlier_ratio": [0.0]}}, estimators={"too_sure": too_sure},
+                           only="estimator")
+        own = frame[frame.claim.str.contains("too_sure")]
+        self.assertGreater(len(own), 0)
+        self.assertIn("does not hold", set(own.verdict))
+
+    def test_tune(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = os.path.join(folder, "tuned.yaml")
+            tuned = rcme.tune(TUNED_STUDY, out=out)
+            self.assertEqual(len(tuned["settings"]), 3)
+            if tuned["tuned"]:
+                run = rcme.run(STUDY, {"tuned": out}, trials=2, seed=2)
+                self.assertIn("tuned", set(rcme.summarize(run).estimator))
+            else:
+                self.assertTrue(tuned["why"])
+
+
+if __name__ == "__main__":
+    unittest.main()
