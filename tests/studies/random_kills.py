@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""Random SIGKILLs over `rcme run --shard` and `rcme merge`: is anything lost or doubled?
+"""Random SIGKILLs over `rcme run`, `merge`, `tune` and `audit` in shards: is anything lost or doubled?
 
     tests/studies/random_kills.py PATH_OF_RCME [--kills 500] [--seed 1] [--keep counts]
 
-Eight shards are run, each killed at random times again and again: after every kill its file has to be sound, with no fewer
-trials than before. Then merges are killed at random times: the merged file is there whole or not at all, and what is left
-behind hinders nobody. At the end the merged run has to have the bytes of one that was left in peace. Half of the kills go to
-runs, half to merges."""
+Eight shards of a run, of a tuning and of an audit are killed at random times again and again: after every kill the part has
+to be sound, with no fewer trials or pieces than before. Then merges are killed: what they make is there whole or not at all,
+and what is left behind hinders nobody. At the end what the parts give has to have the bytes of one call that was left in
+peace. A quarter of the kills goes to each of the four; those of tune are half its shards', half its merge's."""
 
 import argparse
+import json
 import pathlib
 import random
 import re
+import resource
 import subprocess
 import tempfile
 import time
@@ -25,20 +27,37 @@ factors:
 estimators:
   - {{name: standard, options: {{num_iterations: 20}}}}
   - {{name: rcme, options: {{num_iterations: 20, reading: rank_aware}}}}
+tune:
+  estimator: rcme
+  target: failure
+  at_most: 0.3
+  max_refusal: 0.9
+  explore: 100
+  calibrate: 205
+  verify: 150
+  options: {{mu: [1, 2, 3, 6]}}
 """
+CLAIMS = "sample_test,inlier.own_point"
 NUM_SHARDS = 8
+QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 
 def killed_after(command, seconds):
     """Starts a program and kills it; true if the kill came before its end."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(command, **QUIET)
     time.sleep(seconds)
     process.kill()
     return process.wait() == -9
 
 
+def whole_call(command, codes=(0,)):
+    ended = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
+    assert ended.returncode in codes, ended.stderr
+    return ended.returncode
+
+
 def num_trials(rcme, path):
-    """How many trials a part holds; it has to be sound."""
+    """How many trials a part of a run holds; it has to be sound."""
     said = subprocess.run([rcme, "check", str(path)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
     found = re.search(r"sound: (?:the counts of )?(\d+) trials", said.stdout)
     if found:
@@ -47,10 +66,105 @@ def num_trials(rcme, path):
     return 0
 
 
+def num_pieces(_, path):
+    """How many pieces a part of a tuning or an audit holds."""
+    return len(json.loads(path.read_text(encoding="utf-8"))["pieces"])
+
+
 def summary(rcme, path, keep):
     forms = [["--format", "csv"], ["--format", "json"]] + ([["--raw", "csv"]] if keep == "all" else [])
     return [subprocess.run([rcme, "summarize", str(path), *form], check=True, stdout=subprocess.PIPE).stdout
             for form in forms]
+
+
+class Killer:
+    """Kills calls at random times and keeps the account."""
+
+    def __init__(self, rcme, seed):
+        self.rcme, self.chance = rcme, random.Random(seed)
+
+    def kill_shards(self, what, kills, parts, command, longest, held_by):
+        """`command(i)` computes the shard i; `held_by` says how much its part holds."""
+        held, killed, ended = [0] * len(parts), 0, 0
+        while killed < kills:
+            i = self.chance.randrange(len(parts))
+            if not killed_after(command(i), self.chance.uniform(0.0, longest)):
+                ended += 1
+                if ended % 20 == 0:  # most are whole: begin one again
+                    parts[self.chance.randrange(len(parts))].unlink(missing_ok=True)
+                held = [held_by(self.rcme, part) if part.exists() else 0 for part in parts]
+                continue
+            killed += 1
+            now = held_by(self.rcme, parts[i]) if parts[i].exists() else 0
+            assert now >= held[i], f"{what}, shard {i + 1}: held {held[i]} before the kill, {now} after it"
+            held[i] = now
+        print(f"| {what} | {killed} | {ended} | no part that was not sound, none with less than before |", flush=True)
+
+    def kill_merges(self, what, kills, merge, merged, is_whole):
+        begin = time.monotonic()
+        whole_call(merge)
+        duration = time.monotonic() - begin
+        merged.unlink()
+        killed, ended = 0, 0
+        while killed < kills:
+            was_killed = killed_after(merge, self.chance.uniform(0.0, duration))
+            killed, ended = killed + was_killed, ended + (not was_killed)
+            if merged.exists():  # whole, although the kill may have come between the renaming and the end
+                assert is_whole(merged)
+                merged.unlink()
+        whole_call(merge)
+        print(f"| {what} | {killed} | {ended} | what it makes was whole or not there |", flush=True)
+
+
+def run_and_merge(killer, folder, study, kills, arguments):
+    rcme = killer.rcme
+    parts = [folder / f"part_{number}.sqlite" for number in range(1, NUM_SHARDS + 1)]
+
+    def command(i):
+        return [rcme, "run", str(study), "--shard", f"{i + 1}/{NUM_SHARDS}", "--threads", "1", "--keep", arguments.keep,
+                "--out", str(parts[i])]
+    killer.kill_shards("run", kills, parts, command, 0.8, num_trials)
+    for i in range(NUM_SHARDS):
+        whole_call(command(i))
+    merged, whole = folder / "run.sqlite", folder / "whole.sqlite"
+    killer.kill_merges("merge", kills, [rcme, "merge", *map(str, parts), "--out", str(merged)], merged,
+                       lambda path: num_trials(rcme, path) == 2 * arguments.trials)
+    whole_call([rcme, "run", str(study), "--out", str(whole), "--keep", arguments.keep])
+    return summary(rcme, merged, arguments.keep) == summary(rcme, whole, arguments.keep)
+
+
+def tune(killer, folder, study, kills):
+    parts = [folder / f"tuning_{number}.json" for number in range(1, NUM_SHARDS + 1)]
+    base = [killer.rcme, "tune", str(study), "--threads", "1"]
+
+    def command(i, more=("--max-time", "0.15s")):  # so that the part grows from call to call
+        there = [str(part) for part in parts if part.exists()]
+        return [*base, "--shard", f"{i + 1}/{NUM_SHARDS}", "--out", str(parts[i]), *more,
+                *(["--merged", *there] if there else [])]
+    killer.kill_shards("tune --shard", kills - kills // 2, parts, command, 0.5, num_pieces)
+    for _ in range(2):  # both rounds
+        for i in range(NUM_SHARDS):
+            whole_call(command(i, ()), (0, 75))
+    merged, whole = folder / "merged.yaml", folder / "whole.yaml"
+    whole_call([*base, "--out", str(whole)])
+    killer.kill_merges("tune --merge", kills // 2, [*base, "--merge", *map(str, parts), "--out", str(merged)], merged,
+                       lambda path: path.read_bytes() == whole.read_bytes())
+    return merged.read_bytes() == whole.read_bytes()
+
+
+def audit(killer, folder, kills):
+    parts = [folder / f"audit_{number}.json" for number in range(1, NUM_SHARDS + 1)]
+    base = [killer.rcme, "audit", "--only", CLAIMS, "--threads", "1"]
+
+    def command(i, more=("--max-time", "0.3s")):
+        return [*base, "--shard", f"{i + 1}/{NUM_SHARDS}", "--out", str(parts[i]), *more]
+    killer.kill_shards("audit --shard", kills, parts, command, 0.8, num_pieces)
+    for i in range(NUM_SHARDS):
+        whole_call(command(i, ()))
+    whole_call([*base, "--out", str(folder / "whole")])
+    whole_call([*base, "--merge", *map(str, parts), "--out", str(folder / "merged")])
+    return all((folder / "whole" / name).read_bytes() == (folder / "merged" / name).read_bytes()
+               for name in ("audit.json", "audit.md"))
 
 
 def main():
@@ -61,51 +175,17 @@ def main():
     parser.add_argument("--trials", type=int, default=20000)
     parser.add_argument("--keep", choices=["all", "counts"], default="all")
     arguments = parser.parse_args()
-    rcme, chance = arguments.rcme, random.Random(arguments.seed)
+    killer, kills = Killer(arguments.rcme, arguments.seed), arguments.kills // 4
+    print("| what was killed | kills | calls that ended before theirs | after each |\n|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="rcme_kills_") as name:
         folder = pathlib.Path(name)
         study = folder / "study.yaml"
         study.write_text(STUDY.format(trials=arguments.trials))
-        parts = [folder / f"part_{number}.sqlite" for number in range(1, NUM_SHARDS + 1)]
-        run = [[rcme, "run", str(study), "--shard", f"{i + 1}/{NUM_SHARDS}", "--threads", "1", "--keep", arguments.keep,
-                "--out", str(part)]
-               for i, part in enumerate(parts)]
-        held, killed, ended = [0] * NUM_SHARDS, 0, 0
-        while killed < arguments.kills // 2:
-            i = chance.randrange(NUM_SHARDS)
-            if not killed_after(run[i], chance.uniform(0.0, 1.2)):
-                ended += 1
-                if ended % 20 == 0:  # all are whole: begin again
-                    parts[chance.randrange(NUM_SHARDS)].unlink(missing_ok=True)
-                    held = [num_trials(rcme, part) if part.exists() else 0 for part in parts]
-                continue
-            killed += 1
-            now = num_trials(rcme, parts[i]) if parts[i].exists() else 0
-            assert now >= held[i], f"shard {i + 1}: {held[i]} trials before the kill, {now} after it"
-            held[i] = now
-        print(f"run: {killed} kills, {ended} calls ended before theirs; no committed trial was lost", flush=True)
-        for command in run:
-            subprocess.run(command, check=True, stderr=subprocess.DEVNULL)
-
-        merged, killed, ended = folder / "run.sqlite", 0, 0
-        merge = [rcme, "merge", *map(str, parts), "--out", str(merged)]
-        begin = time.monotonic()
-        subprocess.run(merge, check=True, stderr=subprocess.DEVNULL)
-        duration = time.monotonic() - begin
-        merged.unlink()
-        while killed < arguments.kills - arguments.kills // 2:
-            was_killed = killed_after(merge, chance.uniform(0.0, duration))
-            killed, ended = killed + was_killed, ended + (not was_killed)
-            if merged.exists():  # whole, although the kill may have come between the renaming and the end
-                assert num_trials(rcme, merged) == 2 * arguments.trials
-                merged.unlink()
-        subprocess.run(merge, check=True, stderr=subprocess.DEVNULL)
-        print(f"merge: {killed} kills, {ended} calls ended before theirs; the file was whole or not there", flush=True)
-        whole = folder / "whole.sqlite"
-        subprocess.run([rcme, "run", str(study), "--out", str(whole), "--keep", arguments.keep], check=True, stderr=subprocess.DEVNULL)
-        same = summary(rcme, merged, arguments.keep) == summary(rcme, whole, arguments.keep)
-        print(f"the merged run has the bytes of one run: {same}")
-        assert same
+        same = {"run": run_and_merge(killer, folder, study, kills, arguments), "tune": tune(killer, folder, study, kills),
+                "audit": audit(killer, folder, kills)}
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"\nthe bytes of one call: {same}; processor time {spent.ru_utime + spent.ru_stime:.0f} s")
+    assert all(same.values())
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,34 +17,22 @@
 #include "experiments/analysis/summarize_counts.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/base/stop_request.h"
-#include "experiments/result_file/merge_results.h"
 #include "tests/test_support/expect_input_error.h"
-#include "tests/test_support/small_study.h"
-#include "tests/test_support/temp_folder.h"
+#include "tests/test_support/shard_files.h"
 
 namespace rcme {
 namespace {
 
-using Paths = std::vector<std::string>;
-
-class RunCountsTest : public testing::Test {
+class RunCountsTest : public ShardFiles {
  protected:
-  RunCountsTest() { study_.trials = 40; }
+  RunCountsTest() : ShardFiles(40) {}
 
-  std::string Count(const Shard& shard, const std::string& prefix = "counts") {
-    const std::string path = folder_.Path(fmt::format("{}_{}_{}.sqlite", prefix, shard.number, shard.count));
-    CountStudy(MakePlan(study_), 1, path, shard);
-    return path;
+  void RunShard(const StudyPlan& plan, const Shard& shard, const std::string& path) const override {
+    CountStudy(plan, 1, path, shard);
   }
-  Paths CountAll(std::uint32_t count) {
-    Paths parts;
-    for (std::uint32_t number = 1; number <= count; ++number) parts.push_back(Count({number, count}));
-    return parts;
-  }
-  std::string Merge(const Paths& parts, bool is_partial = false) {
-    const std::string out = folder_.Path(fmt::format("merged_{}.sqlite", num_merged_++));
-    last_ = MergeCounts(parts, out, is_partial, {});
-    return out;
+  MergeReport MergeFiles(const Paths& parts, const std::string& out, bool is_partial,
+                         const MergeOptions& options) const override {
+    return MergeCounts(parts, out, is_partial, options);
   }
   std::string RunTrials() {
     const StudyPlan plan = MakePlan(study_);
@@ -63,22 +50,11 @@ class RunCountsTest : public testing::Test {
     }
     return text;
   }
-  static void Change(const std::string& path, const std::string& sql) {
-    sqlite3* database = nullptr;
-    sqlite3_open(path.c_str(), &database);
-    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sql;
-    sqlite3_close(database);
-  }
-
-  TempFolder folder_;
-  Study study_ = SmallStudy();
-  int num_merged_ = 0;
-  MergeReport last_;
 };
 
 // Equal to the last bit but for what the sums of trials round.
 TEST_F(RunCountsTest, SumUpToWhatTheTrialsDo) {
-  const std::string counts = Count({1, 1}), trials = RunTrials();
+  const std::string counts = Run({1, 1}), trials = RunTrials();
   for (const Pooling pooling : {Pooling::kPerCondition, Pooling::kPooled}) {
     const Summary of_counts = SummarizeCounts(OpenCounts(counts), false, pooling);
     const Summary of_trials = Summarize(ResultStore::OpenForReading(trials), false, pooling);
@@ -108,9 +84,9 @@ TEST_F(RunCountsTest, SumUpToWhatTheTrialsDo) {
 }
 
 TEST_F(RunCountsTest, AnyShardsInAnyOrderAndGroupsGiveTheSameBytes) {
-  const std::string whole = Bytes(Count({1, 1}));
+  const std::string whole = Bytes(Run({1, 1}));
   for (const std::uint32_t count : {2u, 7u, 50u}) {
-    Paths parts = CountAll(count);
+    Paths parts = RunAll(count);
     EXPECT_EQ(Bytes(Merge(parts)), whole) << count;
     EXPECT_EQ(last_.num_trials, 80);
     std::ranges::reverse(parts);
@@ -126,21 +102,21 @@ TEST_F(RunCountsTest, AnyShardsInAnyOrderAndGroupsGiveTheSameBytes) {
 }
 
 TEST_F(RunCountsTest, NamesWhatIsMissingAndRefusesWhatIsThereTwice) {
-  const Paths parts = CountAll(4);
+  const Paths parts = RunAll(4);
   const MergeReport report = CheckCounts({parts[0], parts[3]}, {});
   EXPECT_EQ(report.missing_shards, (std::vector<std::uint32_t>{2, 3}));
   EXPECT_EQ(report.num_missing, 40);
   EXPECT_FALSE(std::filesystem::exists(Merge({parts[0]})));
   const std::string whole = Merge(parts);
   Paths again = parts;
-  again.push_back(Count({2, 4}, "again"));  // other times, the same numbers
+  again.push_back(Run({2, 4}, "again"));  // other times, the same numbers
   EXPECT_EQ(Bytes(Merge(again)), Bytes(whole));
   EXPECT_EQ(last_.num_twice, 20);
   study_.trials = 60;
-  again.back() = Count({2, 4}, "longer");
+  again.back() = Run({2, 4}, "longer");
   EXPECT_TRUE(ThrowsInputError([&] { Merge(again); }, {"longer_2_4", "a part before counts too"}));
   study_.trials = 40;
-  EXPECT_TRUE(ThrowsInputError([&] { Merge({parts[0], Count({2, 3})}); }, {"different numbers of shards"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Merge({parts[0], Run({2, 3})}); }, {"different numbers of shards"}));
   EXPECT_TRUE(ThrowsInputError([&] { Merge({parts[0], RunTrials()}); }, {"keeps"}));
   EXPECT_TRUE(
       ThrowsInputError([&] { MergeResults({parts[0]}, folder_.Path("no"), false, {}); }, {"holds counts"}));
@@ -158,7 +134,7 @@ TEST_F(RunCountsTest, GoOnWhereTheyWereStopped) {
   EXPECT_LT(num_kept, 80);
   const RunReport report = CountStudy(plan, 1, path);
   EXPECT_EQ(report.num_run_now, 80 - num_kept);
-  EXPECT_EQ(Bytes(path), Bytes(Count({1, 1})));
+  EXPECT_EQ(Bytes(path), Bytes(Run({1, 1})));
   EXPECT_EQ(CountStudy(plan, 1, path).num_run_now, 0);
 }
 
@@ -170,7 +146,7 @@ TEST_F(RunCountsTest, DamageIsNoticed) {
         std::string("UPDATE counted SET places = '0-38'"),
         std::string("DELETE FROM counted WHERE condition = 0"),
         std::string("DELETE FROM problems WHERE condition = 0")}) {
-    const std::string path = Count({1, 1}, "damaged");
+    const std::string path = Run({1, 1}, "damaged");
     Change(path, sql);
     EXPECT_TRUE(ThrowsInputError([&] { OpenCounts(path); }, {path, "is damaged"})) << sql;
     std::filesystem::remove(path);
@@ -179,7 +155,7 @@ TEST_F(RunCountsTest, DamageIsNoticed) {
 
 TEST_F(RunCountsTest, KeepsASampleAndFailuresOfEveryCondition) {
   study_.trials = 300;
-  const RunCounts counts = OpenCounts(Count({1, 1}));
+  const RunCounts counts = OpenCounts(Run({1, 1}));
   for (const ConditionCounts& condition : counts.conditions) {
     const auto kept = condition.kept.All();
     EXPECT_GE(kept.size(), KeptTrials::kNumSampled);
@@ -191,7 +167,7 @@ TEST_F(RunCountsTest, KeepsASampleAndFailuresOfEveryCondition) {
 }
 
 TEST_F(RunCountsTest, RefusesWhatCannotBeCounted) {
-  const std::string counts = Count({1, 1});
+  const std::string counts = Run({1, 1});
   const StudyPlan plan = MakePlan(study_);
   EXPECT_TRUE(
       ThrowsInputError([&] { ResultStore::OpenForRun(counts, plan); }, {"counts of the whole study"}));
@@ -200,11 +176,11 @@ TEST_F(RunCountsTest, RefusesWhatCannotBeCounted) {
   EXPECT_FALSE(KeepsCounts(RunTrials()));
   EXPECT_TRUE(KeepsCounts(counts));
   study_.repeats_per_scene = 2;
-  EXPECT_TRUE(ThrowsInputError([&] { Count({1, 1}, "repeats"); }, {"repeats_per_scene"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Run({1, 1}, "repeats"); }, {"repeats_per_scene"}));
   study_.repeats_per_scene = 1;
   study_.data.emplace_back("outlier_count", "bernoulli");
   study_.data.emplace_back("tilted_to", "0.9");
-  EXPECT_TRUE(ThrowsInputError([&] { Count({1, 1}, "weights"); }, {"tilted_to"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Run({1, 1}, "weights"); }, {"tilted_to"}));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,34 +13,22 @@
 #include "experiments/analysis/trial_table.h"
 #include "experiments/run/run_study.h"
 #include "tests/test_support/expect_input_error.h"
-#include "tests/test_support/small_study.h"
-#include "tests/test_support/temp_folder.h"
+#include "tests/test_support/shard_files.h"
 
 namespace rcme {
 namespace {
 
-using Paths = std::vector<std::string>;
-
-class MergeTest : public testing::Test {
+class MergeTest : public ShardFiles {
  protected:
-  MergeTest() { study_.trials = 11; }
+  MergeTest() : ShardFiles(11) {}
 
-  std::string Run(const Shard& shard, const std::string& prefix = "part") {
-    const std::string path = folder_.Path(fmt::format("{}_{}_{}.sqlite", prefix, shard.number, shard.count));
-    const StudyPlan plan = MakePlan(study_);
+  void RunShard(const StudyPlan& plan, const Shard& shard, const std::string& path) const override {
     ResultStore store = ResultStore::OpenForRun(path, plan, shard);
     RunStudy(plan, 1, &store, shard);
-    return path;
   }
-  Paths RunAll(std::uint32_t count) {
-    Paths parts;
-    for (std::uint32_t number = 1; number <= count; ++number) parts.push_back(Run({number, count}));
-    return parts;
-  }
-  std::string Merge(const Paths& parts, bool is_partial = false, const MergeOptions& options = {}) {
-    const std::string out = folder_.Path(fmt::format("merged_{}.sqlite", num_merged_++));
-    last_ = MergeResults(parts, out, is_partial, options);
-    return out;
+  MergeReport MergeFiles(const Paths& parts, const std::string& out, bool is_partial,
+                         const MergeOptions& options) const override {
+    return MergeResults(parts, out, is_partial, options);
   }
   // All that is said of a run: its summary and its trials, the times aside.
   static std::string Bytes(const std::string& path) {
@@ -49,12 +36,6 @@ class MergeTest : public testing::Test {
     std::string text = SummaryAsCsv(Summarize(store, false)) + SummaryAsJson(Summarize(store, false));
     WriteTrialTable(store, false, [&](const std::string& rows) { text += rows; });
     return text;
-  }
-  static void Change(const std::string& path, const std::string& sql) {
-    sqlite3* database = nullptr;
-    sqlite3_open(path.c_str(), &database);
-    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK) << sql;
-    sqlite3_close(database);
   }
   // A file of another origin: as if another program had computed it.
   void Rename(const std::string& path, const TrialOrigin& origin) {
@@ -67,11 +48,6 @@ class MergeTest : public testing::Test {
     EXPECT_EQ(folder_.NumEntries(), before) << "a refusal leaves a file";
     return result;
   }
-
-  TempFolder folder_;
-  Study study_ = SmallStudy();
-  int num_merged_ = 0;
-  MergeReport last_;
 };
 
 TEST_F(MergeTest, AnyNumberOrderAndGroupingGivesTheBytesOfOneRun) {
