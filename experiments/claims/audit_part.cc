@@ -53,15 +53,15 @@ void RunAuditPart(const std::vector<Claim>& all, const AuditOptions& options, co
 
 MergedAudit MergeAuditParts(const std::vector<Claim>& all, const AuditOptions& options,
                             const std::vector<std::string>& paths) {
-  MergedAudit merged{PlanAudit(all, options), {}, 1};
+  MergedAudit merged{PlanAudit(all, options), {}, {}};
   const PiecePlan pieces = PiecesOfAudit(merged.audit);
-  const MergedParts parts = MergeParts(pieces, paths);
-  merged.num_shards = parts.num_shards;
-  merged.missing = MissingIn(pieces, parts, 0, pieces.groups.size());
-  ReadEach(pieces, parts, 0, pieces.groups.size(), [&](const PiecePlace& place, const std::string& json) {
-    const Check& check = merged.audit.claims[place.group].checks[place.piece];
-    merged.audit.results[place.group].checks[place.piece] = ResultOf(check, json);
-  });
+  merged.parts = MergeParts(pieces, paths);
+  merged.missing = MissingIn(pieces, merged.parts, 0, pieces.groups.size());
+  ReadEach(pieces, merged.parts, 0, pieces.groups.size(),
+           [&](const PiecePlace& place, const std::string& json) {
+             const Check& check = merged.audit.claims[place.group].checks[place.piece];
+             merged.audit.results[place.group].checks[place.piece] = ResultOf(check, json);
+           });
   if (merged.missing.num_pieces == 0) JudgeClaims(&merged.audit);
   return merged;
 }

@@ -20,8 +20,8 @@ void RunAuditPart(const std::vector<Claim>& all, const AuditOptions& options, co
 
 struct MergedAudit {
   Audit audit;
-  MissingPieces missing;         // if any, the audit is of no use
-  std::uint32_t num_shards = 1;  // of each part
+  MissingPieces missing;  // if any, the audit is of no use
+  MergedParts parts;
 };
 
 // The audit that `options` describe, from its parts in any order and grouping. Throws InputError as

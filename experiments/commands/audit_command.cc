@@ -51,7 +51,9 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
 Audit Merged(const std::vector<Claim>& all, const AuditOptions& options,
              const std::vector<std::string>& parts) {
   MergedAudit merged = MergeAuditParts(all, options, parts);
-  RequireNoneMissing(PiecesOfAudit(merged.audit), merged.missing, merged.num_shards);
+  const PiecePlan pieces = PiecesOfAudit(merged.audit);
+  RequireNoneMissing(pieces, merged.missing, merged.parts.num_shards);
+  PrintCosts(pieces, merged.parts);
   return std::move(merged.audit);
 }
 

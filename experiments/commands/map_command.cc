@@ -89,6 +89,7 @@ void Map(const MapArguments& arguments) {
   if (!arguments.shards.parts.empty()) {
     const MergedParts merged = MergeParts(pieces, arguments.shards.parts);
     RequireNoneMissing(pieces, MissingIn(pieces, merged, 0, pieces.groups.size()), merged.num_shards);
+    PrintCosts(pieces, merged);
     MakeResultFolder(arguments.out);
     return WriteTables(arguments, work, pieces, &merged);
   }

@@ -38,6 +38,10 @@ void RequireNoneMissing(const PiecePlan& plan, const MissingPieces& missing, std
   throw EndWith{kTryAgain};
 }
 
+void PrintCosts(const PiecePlan& plan, const MergedParts& merged) {
+  PrintMessage("{}\n", CostsInWords(plan, merged));
+}
+
 void PrintPartIsDone(const Shard& shard, const std::string& path) {
   PrintMessage("done: shard {} of {} in {}; next, with all of them: the same command, --merge PARTS\n",
                shard.number, shard.count, path);

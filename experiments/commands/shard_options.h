@@ -27,6 +27,9 @@ ShardOptions AddShardOptions(CLI::App* command, const std::string& pieces, Shard
 // with exit code 75.
 void RequireNoneMissing(const PiecePlan& plan, const MissingPieces& missing, std::uint32_t num_shards);
 
+// Once nothing is missing: what the pieces took, on standard error.
+void PrintCosts(const PiecePlan& plan, const MergedParts& merged);
+
 // The last word of a command that has done its part.
 void PrintPartIsDone(const Shard& shard, const std::string& path);
 

@@ -27,6 +27,7 @@ TransferResult TransferFromParts(const TransferArguments& arguments, const Study
   const TuningPieces work = PiecesOfTransfer(plan);
   const MergedParts merged = MergeParts(work.pieces, arguments.shards.parts);
   RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, 0, work.num_first), merged.num_shards);
+  PrintCosts(work.pieces, merged);
   return MeasureTransfer(plan, settings, arguments.by, CountsOf(plan, settings, work, merged));
 }
 

@@ -62,6 +62,7 @@ Tuned TuneFromParts(const TuneArguments& arguments, const StudyPlan& plan, const
     const size_t end = work.pieces.groups.size();
     RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, work.num_first, end), merged.num_shards);
   }
+  PrintCosts(work.pieces, merged);
   Tuned tuned{Tune(plan, settings, unreached, source), {}};
   if (!tuned.result.verified.empty()) tuned.rocs = RocsOf(plan, EntropiesIn(plan, work, merged));
   return tuned;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -172,6 +173,24 @@ MissingPieces MissingIn(const PiecePlan& plan, const MergedParts& merged, size_t
   }
   missing.shards.assign(shards.begin(), shards.end());
   return missing;
+}
+
+std::string CostsInWords(const PiecePlan& plan, const MergedParts& merged) {
+  std::vector<double> shards(merged.num_shards);
+  double sum = 0.0, dearest = 0.0;
+  PiecePlace where;
+  for (const auto& [place, result] : merged.results) {
+    sum += result.seconds;
+    shards[ShardOfPiece(place, merged.num_shards) - 1] += result.seconds;
+    if (result.seconds > dearest) dearest = result.seconds, where = place;
+  }
+  if (sum <= 0.0) return "the pieces took no time";
+  const double mean = sum / static_cast<double>(shards.size());
+  return fmt::format(
+      "processor time {:.4g} s; the dearest of {} shards {:.2f} times the mean, the dearest {} {:.2f} times "
+      "({})",
+      sum, shards.size(), std::ranges::max(shards) / mean, plan.piece_name, dearest / mean,
+      InWords(plan, where));
 }
 
 void ReadEach(const PiecePlan& plan, const MergedParts& merged, size_t first, size_t end,

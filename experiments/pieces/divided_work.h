@@ -63,6 +63,10 @@ struct MissingPieces {
 };
 MissingPieces MissingIn(const PiecePlan& plan, const MergedParts& merged, size_t first, size_t end);
 
+// What the pieces took, for people: in all, by the dearest shard beside the mean, and by the dearest piece,
+// which no shard can take less than.
+std::string CostsInWords(const PiecePlan& plan, const MergedParts& merged);
+
 // Hands over the results of these groups, in their order. What `read` cannot read (it throws std::exception)
 // is an InputError that names the part and the piece.
 void ReadEach(const PiecePlan& plan, const MergedParts& merged, size_t first, size_t end,

@@ -83,14 +83,17 @@ class Killer:
     def __init__(self, rcme, seed):
         self.rcme, self.chance = rcme, random.Random(seed)
 
-    def kill_shards(self, what, kills, parts, command, longest, held_by):
+    def kill_shards(self, what, kills, parts, command, held_by):
         """`command(i)` computes the shard i; `held_by` says how much its part holds."""
-        held, killed, ended = [0] * len(parts), 0, 0
+        begin = time.monotonic()
+        whole_call(command(0), (0, 75))
+        longest = 1.5 * (time.monotonic() - begin)  # a third of the calls or more end, so that there is something to lose
+        held, killed, ended = [held_by(self.rcme, parts[0])] + [0] * (len(parts) - 1), 0, 0
         while killed < kills:
             i = self.chance.randrange(len(parts))
             if not killed_after(command(i), self.chance.uniform(0.0, longest)):
                 ended += 1
-                if ended % 20 == 0:  # most are whole: begin one again
+                if ended % 5 == 0:  # before all are whole: begin one again
                     parts[self.chance.randrange(len(parts))].unlink(missing_ok=True)
                 held = [held_by(self.rcme, part) if part.exists() else 0 for part in parts]
                 continue
@@ -99,6 +102,7 @@ class Killer:
             assert now >= held[i], f"{what}, shard {i + 1}: held {held[i]} before the kill, {now} after it"
             held[i] = now
         print(f"| {what} | {killed} | {ended} | no part that was not sound, none with less than before |", flush=True)
+        assert any(held), f"{what}: no part ever held anything: the kills proved nothing"
 
     def kill_merges(self, what, kills, merge, merged, is_whole):
         begin = time.monotonic()
@@ -123,7 +127,7 @@ def run_and_merge(killer, folder, study, kills, arguments):
     def command(i):
         return [rcme, "run", str(study), "--shard", f"{i + 1}/{NUM_SHARDS}", "--threads", "1", "--keep", arguments.keep,
                 "--out", str(parts[i])]
-    killer.kill_shards("run", kills, parts, command, 0.8, num_trials)
+    killer.kill_shards("run", kills, parts, command, num_trials)
     for i in range(NUM_SHARDS):
         whole_call(command(i))
     merged, whole = folder / "run.sqlite", folder / "whole.sqlite"
@@ -141,7 +145,7 @@ def tune(killer, folder, study, kills):
         there = [str(part) for part in parts if part.exists()]
         return [*base, "--shard", f"{i + 1}/{NUM_SHARDS}", "--out", str(parts[i]), *more,
                 *(["--merged", *there] if there else [])]
-    killer.kill_shards("tune --shard", kills - kills // 2, parts, command, 0.5, num_pieces)
+    killer.kill_shards("tune --shard", kills - kills // 2, parts, command, num_pieces)
     for _ in range(2):  # both rounds
         for i in range(NUM_SHARDS):
             whole_call(command(i, ()), (0, 75))
@@ -158,7 +162,7 @@ def audit(killer, folder, kills):
 
     def command(i, more=("--max-time", "0.3s")):
         return [*base, "--shard", f"{i + 1}/{NUM_SHARDS}", "--out", str(parts[i]), *more]
-    killer.kill_shards("audit --shard", kills, parts, command, 0.8, num_pieces)
+    killer.kill_shards("audit --shard", kills, parts, command, num_pieces)
     for i in range(NUM_SHARDS):
         whole_call(command(i, ()))
     whole_call([*base, "--out", str(folder / "whole")])

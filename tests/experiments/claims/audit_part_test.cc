@@ -139,7 +139,7 @@ TEST_F(AuditParts, MissingShardsAreNamed) {
   const MergedAudit lost = MergeAuditParts(Claims(), Options(), paths);
   EXPECT_EQ(lost.missing.num_pieces, PiecesOf(PiecesOfAudit(lost.audit), {2, 3}).size());
   EXPECT_EQ(lost.missing.shards, std::vector<std::uint32_t>{2});
-  EXPECT_EQ(lost.num_shards, 3);
+  EXPECT_EQ(lost.parts.num_shards, 3);
 
   paths.push_back(ChangedJson(Part(2, 3), [](Json* part) { part->at("pieces").erase(0); }));
   const MergedAudit cut = MergeAuditParts(Claims(), Options(), paths);

@@ -199,6 +199,21 @@ TEST_F(DividedWork, APieceThatIsThereTwiceCountsOnceOrIsRefused) {
   EXPECT_TRUE(ThrowsInputError([&] { JoinParts({part, other}); }, {other, "not equal", part}));
 }
 
+// Four pieces of 1, 2, 3 and 6 s of the three shards 1, 2, 3 and 1 of a group: 7, 2 and 3 s, 4 in the mean.
+TEST_F(DividedWork, SaysWhatThePiecesTook) {
+  MergedParts merged{3, {}, {}};
+  EXPECT_EQ(CostsInWords(Plan(), merged), "the pieces took no time");
+  const double seconds[] = {1.0, 2.0, 3.0, 6.0};
+  for (size_t piece = 0; piece < 4; ++piece) {
+    EXPECT_EQ(ShardOfPiece({0, piece}, 3), piece % 3 + 1);
+    merged.results[{0, piece}].seconds = seconds[piece];
+  }
+  EXPECT_EQ(
+      CostsInWords(Plan(), merged),
+      "processor time 12 s; the dearest of 3 shards 1.75 times the mean, the dearest row 1.50 times (row "
+      "3 of sleeve)");
+}
+
 TEST_F(DividedWork, DamageIsNamed) {
   const std::string part = Part(1, 2);
   const auto is_refused = [&](const std::function<void(Json*)>& change, const std::string& word) {
