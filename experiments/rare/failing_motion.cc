@@ -42,6 +42,8 @@ FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, 
         "--method "
         "stratified");
   }
+  for (const auto& [part, name] : data_->ChosenParts())
+    has_free_points_ = has_free_points_ || (part == "scene" && name == "uniform_volume");
   RandomStream rng({plan.study.seed, stream_key_, 0, kSplittingPurpose});
   const State first = Draw(rng);
   RandomStream outlier_rng = StreamFor({first.outlier_seed, stream_key_, 0, 0}, StreamPurpose::kOutliers);
@@ -51,6 +53,18 @@ FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, 
 
 std::shared_ptr<const Scene> FailingMotion::DrawScene(RandomStream& rng) const {
   return std::make_shared<const Scene>(data_->DrawScene({rng.Next64(), stream_key_, 0, 0}));
+}
+
+std::shared_ptr<const Scene> FailingMotion::WithSomePointsOf(const Scene& scene, double share,
+                                                             RandomStream& rng) const {
+  const std::shared_ptr<const Scene> fresh = DrawScene(rng);
+  Scene mixed = scene;
+  for (size_t i = 0; i < mixed.points_in_cam1.size(); ++i) {
+    const bool is_chosen = rng.Uniform() < share;
+    const Eigen::Vector3d &old_point = scene.points_in_cam1[i], &new_point = fresh->points_in_cam1[i];
+    if (is_chosen && scene.Sees(new_point) && fresh->Sees(old_point)) mixed.points_in_cam1[i] = new_point;
+  }
+  return std::make_shared<const Scene>(std::move(mixed));
 }
 
 FailingMotion::State FailingMotion::Draw(RandomStream& rng) const {
@@ -67,22 +81,27 @@ FailingMotion::State FailingMotion::Propose(const State& state, double step, Ran
                                             bool& is_local) const {
   State moved = state;
   is_local = false;
-  switch (rng.IntegerBelow(6)) {
+  const std::uint32_t kind = rng.IntegerBelow(8);
+  switch (kind) {
     case 0:
       moved.scene = DrawScene(rng);
-      break;
+      return moved;
     case 1:
       moved.outlier_seed = rng.Next64();
-      break;
+      return moved;
     case 2:
       moved.sampling_seed = rng.Next64();
-      break;
+      return moved;
     default:
       is_local = true;
-      rng.FillNormal(moved.noise);
-      for (size_t i = 0; i < moved.noise.size(); ++i)
-        moved.noise[i] = std::sqrt(1.0 - step * step) * state.noise[i] + step * moved.noise[i];
   }
+  if (kind == 3 && has_free_points_) {
+    moved.scene = WithSomePointsOf(*state.scene, 0.5 * step * step, rng);
+    return moved;
+  }
+  rng.FillNormal(moved.noise);
+  for (size_t i = 0; i < moved.noise.size(); ++i)
+    moved.noise[i] = std::sqrt(1.0 - step * step) * state.noise[i] + step * moved.noise[i];
   return moved;
 }
 

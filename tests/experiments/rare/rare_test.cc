@@ -81,22 +81,34 @@ TEST(FailingMotion, HasTheLawOfATrialAndItsMovesKeepIt) {
   }
 }
 
-TEST(FailingMotion, LocalMovesChangeTheNoiseAlone) {
+TEST(FailingMotion, LocalMovesChangeTheNoiseOrSomePoints) {
   const StudyPlan plan = FrequentFailures();
   const FailingMotion system(plan, plan.conditions[0], 0);
   RandomStream rng({.seed = 1, .purpose = 94});
   const MotionInputs state = system.Draw(rng);
-  int num_local = 0;
-  for (int i = 0; i < 600; ++i) {
+  int num_noise = 0, num_points = 0, num_renewed = 0;
+  for (int i = 0; i < 800; ++i) {
     bool is_local = false;
-    const MotionInputs moved = system.Propose(state, 0.1, rng, is_local);
-    num_local += is_local;
-    const int num_changed = (moved.scene != state.scene) + (moved.outlier_seed != state.outlier_seed) +
+    const MotionInputs moved = system.Propose(state, 0.3, rng, is_local);
+    const bool has_other_scene = moved.scene != state.scene;
+    const int num_changed = has_other_scene + (moved.outlier_seed != state.outlier_seed) +
                             (moved.sampling_seed != state.sampling_seed) + (moved.noise != state.noise);
     EXPECT_EQ(num_changed, 1);
-    EXPECT_EQ(is_local, moved.noise != state.noise);
+    num_noise += moved.noise != state.noise;
+    if (!is_local || !has_other_scene) continue;
+    ++num_points;
+    EXPECT_EQ(moved.scene->cam2_from_cam1_true.R, state.scene->cam2_from_cam1_true.R);
+    for (size_t k = 0; k < state.scene->points_in_cam1.size(); ++k) {
+      num_renewed += moved.scene->points_in_cam1[k] != state.scene->points_in_cam1[k];
+      EXPECT_TRUE(moved.scene->Sees(moved.scene->points_in_cam1[k]));
+    }
   }
-  EXPECT_NEAR(num_local, 300, 48);  // 3.9 standard deviations
+  // Within 3.9 standard deviations of one half and of one eighth.
+  EXPECT_NEAR(num_noise, 400, 55);
+  EXPECT_NEAR(num_points, 100, 37);
+  // step^2 / 2 = 4.5 % of 30 points, but for those that one of the two motions does not show.
+  EXPECT_LT(num_renewed, 0.06 * 30 * num_points);
+  EXPECT_GT(num_renewed, 0.02 * 30 * num_points);
 }
 
 TEST(SplitFailures, SaysWhatItCannotTake) {
