@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,11 @@ class NoiseModel {
   // The parameters by name, sigma_px among them; valid as long as the model lives.
   virtual std::vector<Parameter> Parameters() = 0;
   virtual double sigma_px() const = 0;
-  // Adds noise to exact matches, independent from match to match.
+  // Which point of the scene each match is of: `points` holds 0, 1, ..., a point for each match; a law under
+  // which some are matched again and others not at all changes it.
+  virtual void DrawPoints(std::span<std::uint32_t>, RandomStream&) const {}
+  // Adds noise to the exact matches of these points, independent from match to match unless the law says
+  // otherwise.
   virtual void AddTo(std::span<Correspondence> matches, RandomStream& rng) const = 0;
 };
 

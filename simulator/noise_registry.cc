@@ -14,6 +14,9 @@ const std::vector<NoiseEntry>& NoiseRegistry() {
       {"student_t", "Student's t in every coordinate: heavy tails", MakeStudentNoise},
       {"laplace", "double exponential in every coordinate", MakeLaplaceNoise},
       {"contaminated", "normal, several times as large in a share of the matches", MakeContaminatedNoise},
+      {"correlated", "normal, with errors that neighbours in an image have in common", MakeCorrelatedNoise},
+      {"duplicated", "normal; some points are matched several times, with errors that are much alike",
+       MakeDuplicatedNoise},
       {"quantised", "normal, then rounded to the detector's grid: larger than what sigma_px says",
        MakeQuantisedNoise},
   };

@@ -4,16 +4,15 @@
 #include <numeric>
 #include <span>
 
-#include "simulator/exact_match.h"
-
 namespace rcme {
 namespace {
 
-std::vector<Correspondence> ExactMatches(const Scene& scene) {
+std::vector<Correspondence> ExactMatches(const Scene& scene, std::span<const std::uint32_t> points,
+                                         const CameraDefects& defects) {
   std::vector<Correspondence> matches;
-  matches.reserve(scene.points_in_cam1.size());
-  for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-    matches.push_back(ExactMatch(scene, point));
+  matches.reserve(points.size());
+  for (const std::uint32_t point : points) {
+    matches.push_back(ImagedMatch(scene, defects, scene.points_in_cam1[point]));
   }
   return matches;
 }
@@ -21,9 +20,13 @@ std::vector<Correspondence> ExactMatches(const Scene& scene) {
 }  // namespace
 
 Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierModel& outliers,
-                    RandomStream& noise_rng, RandomStream& outlier_rng) {
+                    RandomStream& noise_rng, RandomStream& outlier_rng, const CameraDefects& defects) {
   const size_t n = scene.points_in_cam1.size();
-  std::vector<Correspondence> matches = ExactMatches(scene);  // in the order of the points
+  std::vector<std::uint32_t> points(n);
+  std::iota(points.begin(), points.end(), 0u);
+  noise.DrawPoints(points, noise_rng);
+  const std::vector<Correspondence> exact = ExactMatches(scene, points, defects);
+  std::vector<Correspondence> matches = exact;
   noise.AddTo(matches, noise_rng);
 
   // A random order; the first matches in it become wrong, then the list is read in a second random order.
@@ -35,8 +38,8 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
   std::vector<bool> is_inlier(n, true), is_undetectable(n, false);
   for (size_t k = 0; k < num_outliers; ++k) is_inlier[order[k]] = false;
   const std::span<const std::uint32_t> all(order);
-  outliers.law->Replace(all.first(num_outliers), {scene, all.subspan(num_outliers), matches, is_undetectable},
-                        outlier_rng);
+  outliers.law->Replace(all.first(num_outliers),
+                        {scene, all.subspan(num_outliers), matches, is_undetectable, exact}, outlier_rng);
   outlier_rng.Shuffle(std::span(order));
 
   Observation observation{
@@ -45,8 +48,8 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
     observation.matches[k] = matches[order[k]];
     observation.is_inlier_true[k] = is_inlier[order[k]];
     observation.is_undetectable[k] = is_undetectable[order[k]];
+    observation.point.push_back(points[order[k]]);
   }
-  observation.point = std::move(order);
   return observation;
 }
 

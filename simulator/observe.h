@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "estimator/geometry/correspondence.h"
+#include "simulator/camera_defects.h"
 #include "simulator/noise_model.h"
 #include "simulator/outlier_model.h"
 #include "simulator/scene.h"
@@ -23,6 +24,6 @@ struct Observation {
 // the outlier ratio. Noise may carry a point a little over the image border, as a detector's would not; it is
 // left there.
 Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierModel& outliers,
-                    RandomStream& noise_rng, RandomStream& outlier_rng);
+                    RandomStream& noise_rng, RandomStream& outlier_rng, const CameraDefects& defects = {});
 
 }  // namespace rcme

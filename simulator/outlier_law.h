@@ -13,13 +13,14 @@
 namespace rcme {
 
 // What an outlier law may see and change: the noisy matches of all points, matches[i] that of
-// scene.points_in_cam1[i].
+// scene.points_in_cam1[i], or under some noise laws of another point that is matched again.
 struct MatchedScene {
   const Scene& scene;
   std::span<const std::uint32_t> inliers;  // points whose matches stay true, in random order
   std::span<Correspondence> matches;
   // To be set for wrong matches that satisfy the true epipolar constraint: no epipolar test can detect them.
   std::vector<bool>& is_undetectable;
+  std::span<const Correspondence> exact;  // the matches before noise
 };
 
 // How a wrong match comes about: the plug-in contract of simulator/outliers. Configured once, then const and
@@ -42,7 +43,7 @@ inline constexpr int kMaxOutlierDraws = 10'000;
 // What the noise law has added to a point's match (px), for laws that put the match elsewhere and keep its
 // noise. To be asked before the match is changed.
 inline Correspondence NoiseOf(const MatchedScene& matched, std::uint32_t point) {
-  const Correspondence exact = ExactMatch(matched.scene, matched.scene.points_in_cam1[point]);
+  const Correspondence& exact = matched.exact[point];
   return {matched.matches[point].x1_px - exact.x1_px, matched.matches[point].x2_px - exact.x2_px};
 }
 

@@ -48,8 +48,8 @@ SimulatedData::SimulatedData(const Choices& choices)
 
 std::vector<Parameter> SimulatedData::Parameters() {
   std::vector<Parameter> all = SceneParameters();
-  for (const std::vector<Parameter>& more :
-       {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(assumed_)}) {
+  for (const std::vector<Parameter>& more : {noise_->Parameters(), rcme::Parameters(outliers_),
+                                             rcme::Parameters(defects_), rcme::Parameters(assumed_)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   all.push_back(Parameter::Choice<bool>("severity", &measures_severity_,
@@ -84,7 +84,7 @@ Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
 TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_name) const {
   RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise);
   RandomStream outlier_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
-  Observation observation = Observe(scene, *noise_, outliers_, noise_rng, outlier_rng);
+  Observation observation = Observe(scene, *noise_, outliers_, noise_rng, outlier_rng, defects_);
 
   Severity severity;
   if (measures_severity_) {

@@ -5,6 +5,7 @@
 
 #include "experiments/data/data_source.h"
 #include "simulator/calibration_error.h"
+#include "simulator/camera_defects.h"
 #include "simulator/noise_model.h"
 #include "simulator/observe.h"
 #include "simulator/outlier_model.h"
@@ -58,6 +59,7 @@ class SimulatedData : public DataSource {
   SceneGenerator scenes_;
   std::unique_ptr<NoiseModel> noise_;
   OutlierModel outliers_;
+  CameraDefects defects_;
   CalibrationError assumed_;
   bool measures_severity_ = true;
 };

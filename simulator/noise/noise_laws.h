@@ -20,6 +20,11 @@ std::unique_ptr<NoiseModel> MakeStudentNoise();
 std::unique_ptr<NoiseModel> MakeLaplaceNoise();
 std::unique_ptr<NoiseModel> MakeContaminatedNoise();
 
+// Normal, and not independent from match to match: correlated between neighbours, or with points that are
+// found several times.
+std::unique_ptr<NoiseModel> MakeCorrelatedNoise();
+std::unique_ptr<NoiseModel> MakeDuplicatedNoise();
+
 // Normal, then rounded to the detector's grid.
 std::unique_ptr<NoiseModel> MakeQuantisedNoise();
 

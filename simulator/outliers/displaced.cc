@@ -28,7 +28,7 @@ class DisplacedOutliers : public OutlierLaw {
     }
     const Scene& scene = matched.scene;
     for (const std::uint32_t point : points) {
-      const Correspondence exact = ExactMatch(scene, scene.points_in_cam1[point]);
+      const Correspondence& exact = matched.exact[point];
       matched.matches[point].x2_px += DrawShiftInside(scene.camera2, exact.x2_px, rng);
     }
   }

@@ -86,9 +86,8 @@ class EpipolarOutliers : public OutlierLaw {
         on_ray_of = rng.IntegerBelow(num_points);
         x2_px = DrawOnRay(scene, on_ray_of, rng);
       }
-      if (on_ray_of != point) {
-        matched.matches[point].x1_px = scene.camera1.Project(scene.points_in_cam1[on_ray_of]) + noise.x1_px;
-      }
+      const Eigen::Vector2d x1_px = scene.camera1.Project(scene.points_in_cam1[on_ray_of]);
+      if (x1_px != matched.exact[point].x1_px) matched.matches[point].x1_px = x1_px + noise.x1_px;
       matched.matches[point].x2_px = *x2_px + noise.x2_px;
       matched.is_undetectable[point] = true;
     }

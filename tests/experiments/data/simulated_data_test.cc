@@ -55,5 +55,22 @@ TEST(SimulatedData, NoiseAndWrongMatchesHaveStreamsOfTheirOwn) {
   }
 }
 
+// The defects of the cameras move the matches of the same scene and leave the truth alone.
+TEST(SimulatedData, CamerasHaveTheDefectsThatTheStudyGivesThem) {
+  const TrialData ideal = DataWith({})->Make(kName);
+  for (const char* key : {"distortion_k1", "rolling_shutter"}) {
+    const TrialData made = DataWith({{key, "0.02"}})->Make(kName);
+    EXPECT_EQ(made.truth.cam2_from_cam1_true->R, ideal.truth.cam2_from_cam1_true->R);
+    double greatest_px = 0.0;
+    for (size_t i = 0; i < ideal.problem.matches.size(); ++i) {
+      if (!ideal.truth.is_inlier_true[i]) continue;
+      greatest_px =
+          std::max(greatest_px, (made.problem.matches[i].x1_px - ideal.problem.matches[i].x1_px).norm());
+    }
+    EXPECT_GT(greatest_px, 0.05) << key;
+    EXPECT_LT(greatest_px, 50.0) << key;
+  }
+}
+
 }  // namespace
 }  // namespace rcme

@@ -1,0 +1,82 @@
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "simulator/noise/noise_laws.h"
+#include "stats/portable_math.h"
+
+namespace rcme {
+namespace {
+
+// A mosaic on the plane of one image: a square lattice, turned by a uniform angle and shifted uniformly, with
+// independent standard normals (x and y) in each cell. Two points at the distance d, side s, u = d / s <= 1,
+// lie in one cell with the probability
+//
+//   E_angle (1 - u |cos|)(1 - u |sin|) = 1 - 4 u / pi + u^2 / pi,
+//
+// which is the correlation of their normals; it is 0 from u = sqrt(2) on.
+class Mosaic {
+ public:
+  Mosaic(double side_px, RandomStream& rng) : side_px_(side_px), turn_(PortableCosSinOfTurn(rng.Uniform())) {
+    shift_.x() = rng.Uniform();
+    shift_.y() = rng.Uniform();
+  }
+
+  const Eigen::Vector2d& At(const Eigen::Vector2d& x_px, RandomStream& rng) {
+    const Eigen::Vector2d turned(turn_.cos * x_px.x() + turn_.sin * x_px.y(),
+                                 turn_.cos * x_px.y() - turn_.sin * x_px.x());
+    const Eigen::Vector2d cell = (turned / side_px_ + shift_).array().floor();
+    const auto [found, is_new] = normals_.try_emplace({cell.x(), cell.y()});
+    if (is_new) {
+      found->second.x() = rng.Normal();
+      found->second.y() = rng.Normal();
+    }
+    return found->second;
+  }
+
+ private:
+  double side_px_;
+  CosSin turn_;
+  Eigen::Vector2d shift_;
+  std::map<std::pair<double, double>, Eigen::Vector2d> normals_;  // by cell
+};
+
+// Normal, and correlated between neighbours as key points on one piece of texture are: a share rho of the
+// variance is that of a mosaic over each image, the rest each point's own. The correlation of two points'
+// errors in one image at the distance d is rho (1 - 4 u / pi + u^2 / pi), u = d / noise_correlation_length_px
+// <= 1.
+class CorrelatedNoise : public NoiseModel {
+ public:
+  std::vector<Parameter> Parameters() override {
+    return {SigmaParameter(&sigma_px_),
+            Parameter::Real("noise_correlation", &correlation_, {0.0, 1.0}, "",
+                            "correlation of the errors of two points at one place of an image"),
+            Parameter::Real("noise_correlation_length_px", &length_px_, {0.01, 1e5}, "px",
+                            "distance at which it has fallen to 0.045 of that; none beyond 1.41 times")};
+  }
+  double sigma_px() const override { return sigma_px_; }
+
+  void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
+    Mosaic in_image1(length_px_, rng), in_image2(length_px_, rng);
+    const double shared_px = sigma_px_ * std::sqrt(correlation_),
+                 own_px = sigma_px_ * std::sqrt(1.0 - correlation_);
+    for (Correspondence& match : matches) {
+      const auto error = [&](const Eigen::Vector2d& of_neighbours) {
+        const double x = rng.Normal(), y = rng.Normal();
+        return Eigen::Vector2d(shared_px * of_neighbours + own_px * Eigen::Vector2d(x, y));
+      };
+      match.x1_px += error(in_image1.At(match.x1_px, rng));
+      match.x2_px += error(in_image2.At(match.x2_px, rng));
+    }
+  }
+
+ private:
+  double sigma_px_ = 0.5;
+  double correlation_ = 0.5, length_px_ = 20.0;
+};
+
+}  // namespace
+
+std::unique_ptr<NoiseModel> MakeCorrelatedNoise() { return std::make_unique<CorrelatedNoise>(); }
+
+}  // namespace rcme
