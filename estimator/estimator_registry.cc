@@ -11,22 +11,23 @@
 #include "estimator/estimators/robust_score.h"
 #include "estimator/estimators/standard.h"
 #include "estimator/model_choice/gate.h"
+#include "estimator/robust_covariance/covariance_option.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
-// Every estimator can be put behind the gate of model choice.
-std::vector<EstimatorEntry> Gated(std::vector<EstimatorEntry> entries) {
+// Every estimator can be given a robust covariance and be put behind the gate of model choice.
+std::vector<EstimatorEntry> WithCommonOptions(std::vector<EstimatorEntry> entries) {
   for (EstimatorEntry& entry : entries) {
-    entry.make = [make = std::move(entry.make)] { return WithGate(make()); };
+    entry.make = [make = std::move(entry.make)] { return WithGate(WithRobustCovariance(make())); };
   }
   return entries;
 }
 
 std::vector<EstimatorEntry>& Table() {
-  static std::vector<EstimatorEntry> registry = Gated({
+  static std::vector<EstimatorEntry> registry = WithCommonOptions({
       {"standard", "RANSAC by inlier count, then Gold Standard refinement", StandardModel},
       {"prcme", "RCME without the test of the model against its sample",
        [] { return RcmeModel(SampleTest::kOff); }},
@@ -75,7 +76,7 @@ void AddEstimator(EstimatorEntry entry) {
   if (entry.name.empty() || std::ranges::count(Table(), entry.name, &EstimatorEntry::name) > 0) {
     throw InputError(fmt::format("estimator name '{}' is taken or empty", entry.name));
   }
-  entry = Gated({std::move(entry)}).front();
+  entry = WithCommonOptions({std::move(entry)}).front();
   CheckOptions(entry);
   Table().push_back(std::move(entry));
 }

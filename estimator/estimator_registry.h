@@ -21,10 +21,10 @@ struct EstimatorEntry {
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 
-// Adds a user-defined estimator to the table, behind the gate of model choice as all are
-// (model_choice/gate.h); to be called before anything reads it, from one thread. Throws InputError if its
-// name is taken or empty, or if an option of it has no name, a name that another has, a name that a command
-// line cannot take (`.`, `=`), or a default that is not allowed.
+// Adds a user-defined estimator to the table, with the robust covariance and behind the gate of model choice
+// as all are (robust_covariance/covariance_option.h, model_choice/gate.h); to be called before anything reads
+// it, from one thread. Throws InputError if its name is taken or empty, or if an option of it has no name, a
+// name that another has, a name that a command line cannot take (`.`, `=`), or a default that is not allowed.
 void AddEstimator(EstimatorEntry entry);
 
 // The entry called `name`; throws InputError that lists the known names.

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "parameters/input_error.h"
 
 namespace rcme {
 
 std::vector<Parameter> Parameters(CalibratedOptions& o) {
   using P = Parameter;
-  return {
+  std::vector<P> all = {
       P::Integer("min_samples", &o.min_samples, {8, 1e6}, "least number of minimal samples of five matches"),
       P::Integer("max_samples", &o.max_samples, {8, 1e6},
                  "greatest number; as many are drawn as find a sample without a wrong match with probability "
@@ -26,9 +28,13 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
       P::Choice("sigma", &o.sigma,
                 {{"estimated", SigmaKnowledge::kEstimated}, {"assumed", SigmaKnowledge::kAssumed}},
                 "noise level: estimated from the residuals, begun at the assumed one, or taken as known"),
-      P::Choice("covariance", &o.covariance,
-                {{"information", CovarianceKind::kInformation}, {"sandwich", CovarianceKind::kSandwich}},
-                "of the motion: inverse information, or from the residuals themselves (HC3)"),
+      P::Choice(
+          "covariance", &o.covariance,
+          {{"information", CovarianceKind::kInformation},
+           {"sandwich", CovarianceKind::kSandwich},
+           {"robust", CovarianceKind::kRobust}},
+          "of the motion: inverse information, from the residuals themselves (HC3), or one that holds where "
+          "errors are correlated and matches repeated, too"),
       P::Real("second_motion_odds", &o.second_motion_odds, {0.0, 1.0}, "",
               "odds that a second motion which explains as many matches as the answer is the camera's own"),
       P::Choice("leave_out", &o.leave_out,
@@ -41,11 +47,12 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
                  {"direction_posterior", CalibratedStep::kDirectionPosterior},
                  {"noise_choice", CalibratedStep::kNoiseChoice}},
                 "a step that is left out, for an ablation: what it costs to do without"),
-      P::Real("focal_sd", &o.focal_sd, {0.0, 0.5}, "",
-              "relative standard deviation of the focal lengths; its effect is added to the covariance"),
-      P::Real("principal_point_sd_px", &o.principal_point_sd_px, {0.0, 1e4}, "px",
-              "standard deviation of the principal points per coordinate, likewise"),
+      FocalParameter(&o.calibration.focal_sd),
+      PrincipalPointParameter(&o.calibration.principal_point_sd_px),
+      DistortionParameter(&o.calibration.distortion_sd),
   };
+  for (P& parameter : Parameters(o.robust)) all.push_back(std::move(parameter));
+  return all;
 }
 
 void Validate(const CalibratedOptions& options) {

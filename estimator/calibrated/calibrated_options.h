@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "estimator/robust_covariance/robust_covariance.h"
 #include "parameters/parameter.h"
 
 namespace rcme {
@@ -15,6 +16,7 @@ enum class SigmaKnowledge {
 enum class CovarianceKind {
   kInformation,  // the inverse of the likelihood's Hessian
   kSandwich,     // HC3: the residuals themselves give their variances
+  kRobust,       // the sandwich, for errors that are not independent (robust_covariance.h)
 };
 
 // Steps that can be left out, to see what they are worth.
@@ -45,9 +47,8 @@ struct CalibratedOptions {
   // mode_weights.h.
   double second_motion_odds = 0.6;
   CalibratedStep leave_out = CalibratedStep::kNone;
-  // Standard deviations of the intrinsics, of both cameras independently.
-  double focal_sd = 0.0;               // relative
-  double principal_point_sd_px = 0.0;  // per coordinate
+  CalibrationPrior calibration;    // its effect is added to the covariance
+  RobustCovarianceOptions robust;  // of kRobust; its calibration is the one above
 };
 
 // The fields by name; valid as long as `options` lives.

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <functional>
 
 #include "estimator/calibrated/influence.h"
 
@@ -113,44 +112,10 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
 
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
                               const Mode& mode, const Matrix5d& inverse_of_observed) {
-  Matrix5d sum = Matrix5d::Zero();
-  const auto gradient_of = [&](const MotionProblem& changed) {
-    return SumMixture(MatchBlocks(changed), mode.used, mode.pose, mode.mixture).gradient;
-  };
-  const Vector5d base = gradient_of(problem);
-  // By a step that moves the points by little of their noise, scaled to one standard deviation.
-  const auto add = [&](double sd, double step, const std::function<void(MotionProblem&, double)>& change) {
-    MotionProblem changed = problem;
-    change(changed, step);
-    const Vector5d moved = -(sd / step) * (inverse_of_observed * (gradient_of(changed) - base));
-    sum += moved * moved.transpose();
-  };
-  const auto scale_focal = [](Camera& camera, double by) {
-    camera.fx *= 1.0 + by;
-    camera.fy *= 1.0 + by;
-  };
-  const bool is_one_camera = problem.camera1.K() == problem.camera2.K();
-  if (options.focal_sd > 0.0) {
-    const double step = 0.01 * problem.sigma_px / problem.camera1.fx;
-    add(options.focal_sd, step, [&](MotionProblem& p, double by) {
-      scale_focal(p.camera1, by);
-      if (is_one_camera) scale_focal(p.camera2, by);
-    });
-    if (!is_one_camera)
-      add(options.focal_sd, step, [&](MotionProblem& p, double by) { scale_focal(p.camera2, by); });
-  }
-  if (!(options.principal_point_sd_px > 0.0)) return sum;
-  const double step = 0.01 * problem.sigma_px;
-  for (double Camera::*coordinate : {&Camera::cx, &Camera::cy}) {
-    add(options.principal_point_sd_px, step, [&](MotionProblem& p, double by) {
-      p.camera1.*coordinate += by;
-      if (is_one_camera) p.camera2.*coordinate += by;
-    });
-    if (!is_one_camera)
-      add(options.principal_point_sd_px, step,
-          [&](MotionProblem& p, double by) { p.camera2.*coordinate += by; });
-  }
-  return sum;
+  return CalibrationCovariance(
+      problem, options.calibration, inverse_of_observed, [&](const MotionProblem& changed) {
+        return SumMixture(MatchBlocks(changed), mode.used, mode.pose, mode.mixture).gradient;
+      });
 }
 
 }  // namespace rcme

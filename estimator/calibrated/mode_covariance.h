@@ -28,9 +28,7 @@ Vector5d EffectiveMatches(const Mode& mode, const Explanation& explanation, cons
 Matrix5d SandwichCovariance(const Mode& mode, const Explanation& explanation,
                             const Matrix5d& inverse_of_observed);
 
-// J_K Sigma_K J_K', what uncertain intrinsics add: J_K = -H^-1 dgradient / dK, by differences, focal length
-// and principal point of either camera. Where both have the same intrinsics, as one camera that took both
-// images, an error is common to both.
+// What uncertain intrinsics add (uncertainty/calibration_prior.h), of the mixture's likelihood.
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
                               const Mode& mode, const Matrix5d& inverse_of_observed);
 

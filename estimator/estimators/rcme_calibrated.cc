@@ -16,6 +16,7 @@
 #include "estimator/calibrated/split_mode.h"
 #include "estimator/calibrated/weigh_modes.h"
 #include "estimator/problem_check.h"
+#include "estimator/robust_covariance/covariance_option.h"
 
 namespace rcme {
 namespace {
@@ -193,6 +194,10 @@ class RcmeCalibrated : public MotionEstimator {
     estimate.message = MessageOf(estimate);
     if (estimate.failure_probability > options_.max_failure_probability) {
       estimate.status = MotionStatus::kTooUncertain;
+    } else if (options_.covariance == CovarianceKind::kRobust) {
+      RobustCovarianceOptions robust = options_.robust;
+      robust.calibration = options_.calibration;
+      MakeCovarianceRobust(problem, robust, verdict.pose_cov, &estimate);
     }
     return estimate;
   }
@@ -235,13 +240,11 @@ class RcmeCalibrated : public MotionEstimator {
 
   Matrix5d CovarianceOf(const MotionProblem& problem, const ExplainedMode& mode,
                         const Matrix5d& curvature) const {
-    Matrix5d covariance = options_.covariance == CovarianceKind::kSandwich
-                              ? SandwichCovariance(mode.mode, mode.explanation, curvature)
-                              : mode.mode.inverse_hessian;
-    if (options_.focal_sd > 0.0 || options_.principal_point_sd_px > 0.0) {
-      covariance += IntrinsicsCovariance(problem, options_, mode.mode, curvature);
-    }
-    return covariance;
+    const Matrix5d of_matches = options_.covariance == CovarianceKind::kInformation
+                                    ? mode.mode.inverse_hessian
+                                    : SandwichCovariance(mode.mode, mode.explanation, curvature);
+    if (options_.covariance == CovarianceKind::kRobust) return of_matches;  // adds it to the whole
+    return of_matches + IntrinsicsCovariance(problem, options_, mode.mode, curvature);
   }
 
   CalibratedOptions options_;

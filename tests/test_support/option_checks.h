@@ -94,7 +94,8 @@ inline std::vector<Settings> Companies(const std::vector<Parameter>& options) {
                                             {"refinement", "none"},
                                             {"lambda", "1"},
                                             {"model_choice", "gic"},
-                                            {"model_choice", "orb_slam2"}}) {
+                                            {"model_choice", "orb_slam2"},
+                                            {"covariance", "robust"}}) {
     if (std::ranges::count(options, name, &Parameter::name) > 0) companies.push_back({{name, value}});
   }
   return companies;
@@ -130,19 +131,21 @@ inline bool HasEffect(const std::string& estimator, const std::string& option) {
   return HasEffectOn(Problems(), estimator, option) || HasEffectOn(CloseProblems(), estimator, option);
 }
 
-// Of the gate, which is the same before every estimator.
-inline bool IsOfTheGate(const std::string& option) {
+// Of the gate and the robust covariance, which are the same of every estimator.
+inline bool IsCommon(const std::string& option) {
   return option == "model_choice" || option == "planar_scenes" || option == "parallax_significance_level" ||
-         option == "least_parallax_share";
+         option == "least_parallax_share" || option.starts_with("covariance") || option == "focal_sd" ||
+         option == "principal_point_sd_px" || option == "distortion_sd";
 }
 
-// All but the implementation, which takes another time to the same answer, and those of the gate, which
-// `standard` is asked for.
+// All but the implementation, which takes another time to the same answer, and those that are common to all
+// estimators, which `standard` and `rcme_calibrated` are asked for.
 inline void ExpectEveryOptionHasAnEffect(const EstimatorEntry& entry) {
   const std::unique_ptr<EstimatorModel> model = entry.make();
   for (const Parameter& option : model->Parameters()) {
     if (option.name() == "implementation") continue;
-    if (entry.name != "standard" && IsOfTheGate(option.name())) continue;
+    const bool is_asked = entry.name == "standard" || entry.name == "rcme_calibrated";
+    if (!is_asked && IsCommon(option.name())) continue;
     EXPECT_TRUE(HasEffect(entry.name, option.name())) << entry.name << ": " << option.name();
   }
 }

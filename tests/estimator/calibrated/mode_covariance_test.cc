@@ -107,14 +107,14 @@ TEST(IntrinsicsCovariance, IsThatOfFitsWithOtherIntrinsics) {
     }
   }
   CalibratedOptions options;
-  options.focal_sd = kFocal;
+  options.calibration.focal_sd = kFocal;
   const Matrix5d focal = IntrinsicsOf(f, options);
   EXPECT_LT((focal - of_focal).norm(), 0.2 * of_focal.norm()) << focal << "\n\n" << of_focal;
   options = {};
-  options.principal_point_sd_px = kShiftPx;
+  options.calibration.principal_point_sd_px = kShiftPx;
   const Matrix5d points = IntrinsicsOf(f, options);
   EXPECT_LT((points - of_points).norm(), 0.2 * of_points.norm()) << points << "\n\n" << of_points;
-  options.focal_sd = kFocal;
+  options.calibration.focal_sd = kFocal;
   EXPECT_LT((IntrinsicsOf(f, options) - focal - points).norm(), 1e-9 * points.norm());
   EXPECT_EQ(IntrinsicsOf(f, {}).norm(), 0.0);
 }
@@ -138,7 +138,7 @@ TEST(IntrinsicsCovariance, OfOneCameraIsOfACommonError) {
   }
   const Vector5d moved = MovedBy(f, changed);
   CalibratedOptions options;
-  options.focal_sd = kFocal;
+  options.calibration.focal_sd = kFocal;
   const Matrix5d expected = moved * moved.transpose();
   EXPECT_LT((IntrinsicsOf(f, options) - expected).norm(), 0.2 * expected.norm());
 }

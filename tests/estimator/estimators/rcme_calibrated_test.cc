@@ -192,7 +192,7 @@ TEST_F(RcmeCalibratedOf, UncertainIntrinsicsWidenTheCovariance) {
   const MotionProblem problem = TwoCameraProblem(200, 0.5, 0.2, 3);
   CalibratedOptions options;
   const Matrix5d exact = RunOn(problem, 0, options).pose_cov;
-  options.focal_sd = 0.02;
+  options.calibration.focal_sd = 0.02;
   const Matrix5d uncertain = RunOn(problem, 0, options).pose_cov;
   EXPECT_GT(uncertain.trace(), 1.5 * exact.trace());
 }

@@ -1,0 +1,148 @@
+#include "estimator/robust_covariance/clustered_covariance.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "estimator/refinement/sampson_equations.h"
+
+namespace rcme {
+namespace {
+
+// So many points of a cell stand for all in it: more would take quadratic time.
+constexpr size_t kMostOfCell = 16;
+constexpr double kLeastKept = 0.05;  // of the information along a direction, without a group
+
+// Disjoint sets.
+class Groups {
+ public:
+  explicit Groups(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int Find(int i) {
+    while (parent_[At(i)] != i) i = parent_[At(i)] = parent_[At(parent_[At(i)])];
+    return i;
+  }
+  void Unite(int i, int k) { parent_[At(Find(i))] = Find(k); }
+  // Numbered 0, 1, ... in the order of their first members.
+  std::vector<int> Numbers() {
+    std::vector<int> numbers;
+    std::map<int, int> number_of;
+    for (size_t i = 0; i < parent_.size(); ++i) {
+      const int next = static_cast<int>(number_of.size());
+      numbers.push_back(number_of.try_emplace(Find(static_cast<int>(i)), next).first->second);
+    }
+    return numbers;
+  }
+
+ private:
+  static size_t At(int i) { return static_cast<size_t>(i); }
+  std::vector<int> parent_;
+};
+
+// Unites the matches whose points in one image are within the radius: each looks at the points before it in
+// its own and the eight cells around it, of a grid as wide as the radius.
+void UniteNeighbours(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px,
+                     double radius_px, Groups* groups) {
+  std::map<std::pair<double, double>, std::vector<int>> cells;
+  for (int i = 0; i < static_cast<int>(matches.size()); ++i) {
+    const Eigen::Vector2d& x = matches[static_cast<size_t>(i)].*x_px;
+    const Eigen::Vector2d cell = (x / radius_px).array().floor();
+    for (const double dx : {-1.0, 0.0, 1.0}) {
+      for (const double dy : {-1.0, 0.0, 1.0}) {
+        const auto found = cells.find({cell.x() + dx, cell.y() + dy});
+        if (found == cells.end()) continue;
+        for (const int k : found->second) {
+          if ((matches[static_cast<size_t>(k)].*x_px - x).norm() <= radius_px) groups->Unite(i, k);
+        }
+      }
+    }
+    std::vector<int>& own = cells[{cell.x(), cell.y()}];
+    if (own.size() < kMostOfCell) own.push_back(i);
+  }
+}
+
+}  // namespace
+
+MatchScores ScoreFitted(const MotionProblem& problem, std::span<const int> fitted, const RelativePose& pose) {
+  const SampsonLinearization model(problem, pose);
+  MatchScores scores;
+  for (const int i : fitted) {
+    const SampsonResidual residual = model.Evaluate(problem.matches[static_cast<size_t>(i)]);
+    const Vector5d row = residual.g_p / residual.norm;
+    scores.rows.push_back(row);
+    scores.residuals.push_back(residual.r);
+    scores.information += row * row.transpose();
+  }
+  return scores;
+}
+
+Matrix5d ClusteredCovariance(const MatchScores& scores, std::span<const int> groups) {
+  const Eigen::LLT<Matrix5d> llt(scores.information);
+  if (llt.info() != Eigen::Success) return Matrix5d::Constant(std::numeric_limits<double>::quiet_NaN());
+  // In coordinates in which A is the identity.
+  const Matrix5d L = llt.matrixL();
+  struct Sums {
+    int num_matches = 0;
+    Vector5d score = Vector5d::Zero();
+    Matrix5d information = Matrix5d::Zero();
+  };
+  const int num_groups = groups.empty() ? 0 : *std::ranges::max_element(groups) + 1;
+  std::vector<Sums> sums(static_cast<size_t>(num_groups));
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const Vector5d row = L.triangularView<Eigen::Lower>().solve(scores.rows[i]);
+    Sums& of_group = sums[static_cast<size_t>(groups[i])];
+    ++of_group.num_matches;
+    of_group.score += scores.residuals[i] * row;
+    of_group.information += row * row.transpose();
+  }
+  Matrix5d whitened = Matrix5d::Zero();
+  for (const Sums& of_group : sums) {
+    Vector5d moved;
+    if (of_group.num_matches == 1) {
+      moved = of_group.score / std::max(1.0 - of_group.information.trace(), kLeastKept);
+    } else {
+      const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(of_group.information);
+      const Vector5d kept = (1.0 - eigen.eigenvalues().array()).max(kLeastKept);
+      moved = eigen.eigenvectors() * (eigen.eigenvectors().transpose() * of_group.score).cwiseQuotient(kept);
+    }
+    whitened += moved * moved.transpose();
+  }
+  const Matrix5d half = L.transpose().triangularView<Eigen::Upper>().solve(whitened);
+  const Matrix5d covariance = L.transpose().triangularView<Eigen::Upper>().solve(half.transpose());
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+std::vector<int> Separate(size_t num_matches) {
+  std::vector<int> groups(num_matches);
+  std::iota(groups.begin(), groups.end(), 0);
+  return groups;
+}
+
+std::vector<int> KeyPointGroups(const std::vector<Correspondence>& matches, double radius_px) {
+  Groups groups(matches.size());
+  UniteNeighbours(matches, &Correspondence::x1_px, radius_px, &groups);
+  UniteNeighbours(matches, &Correspondence::x2_px, radius_px, &groups);
+  return groups.Numbers();
+}
+
+std::vector<int> BlockGroups(const Camera& camera1, const std::vector<Correspondence>& matches,
+                             int per_side) {
+  std::map<std::pair<int, int>, int> number_of;
+  std::vector<int> groups;
+  const auto block = [&](double x_px, int length_px) {
+    return static_cast<int>(std::clamp(std::floor((x_px + 0.5) / length_px * per_side), 0.0, per_side - 1.0));
+  };
+  for (const Correspondence& match : matches) {
+    const std::pair<int, int> at = {block(match.x1_px.x(), camera1.width),
+                                    block(match.x1_px.y(), camera1.height)};
+    const int next = static_cast<int>(number_of.size());
+    groups.push_back(number_of.try_emplace(at, next).first->second);
+  }
+  return groups;
+}
+
+}  // namespace rcme

@@ -1,0 +1,99 @@
+#include "estimator/robust_covariance/covariance_option.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+namespace rcme {
+namespace {
+
+constexpr const char* kOption = "covariance";
+
+// What an estimator promises with a motion; whoever scores the answer says what is wrong with another.
+bool IsMotion(const MotionEstimate& estimate, size_t num_matches) {
+  const std::vector<int>& inliers = estimate.inliers;
+  const bool is_ascending =
+      std::ranges::adjacent_find(inliers, std::ranges::greater_equal{}) == inliers.end();
+  const bool are_matches =
+      inliers.empty() || (inliers.front() >= 0 && inliers.back() < static_cast<int>(num_matches));
+  return is_ascending && are_matches && estimate.cam2_from_cam1.R.allFinite() &&
+         estimate.cam2_from_cam1.t.allFinite();
+}
+
+class WithRobust : public MotionEstimator {
+ public:
+  WithRobust(std::unique_ptr<MotionEstimator> estimator, const RobustCovarianceOptions& options)
+      : estimator_(std::move(estimator)), options_(options) {}
+
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    MotionEstimate estimate = estimator_->Estimate(problem, rng);
+    if (estimate.status == MotionStatus::kOk)
+      MakeCovarianceRobust(problem, options_, std::nullopt, &estimate);
+    return estimate;
+  }
+
+ private:
+  std::unique_ptr<MotionEstimator> estimator_;
+  RobustCovarianceOptions options_;
+};
+
+class ModelWithRobust : public EstimatorModel {
+ public:
+  explicit ModelWithRobust(std::unique_ptr<EstimatorModel> model) : model_(std::move(model)) {}
+
+  std::vector<Parameter> Parameters() override {
+    std::vector<Parameter> all = model_->Parameters();
+    all.push_back(
+        Parameter::Choice<bool>(kOption, &is_robust_, {{"own", false}, {"robust", true}},
+                                "of the motion: the estimator's own, or one that holds where errors are "
+                                "correlated and matches repeated"));
+    CalibrationPrior& calibration = options_.calibration;
+    std::vector<Parameter> more = rcme::Parameters(options_);
+    more.push_back(FocalParameter(&calibration.focal_sd));
+    more.push_back(PrincipalPointParameter(&calibration.principal_point_sd_px));
+    more.push_back(DistortionParameter(&calibration.distortion_sd));
+    for (Parameter& parameter : more) all.push_back(std::move(parameter));
+    return all;
+  }
+  void LiftLimits() override { model_->LiftLimits(); }
+  std::optional<Effort> EffortOption() const override { return model_->EffortOption(); }
+  std::unique_ptr<MotionEstimator> Make() const override {
+    std::unique_ptr<MotionEstimator> estimator = model_->Make();
+    if (!is_robust_) return estimator;
+    return std::make_unique<WithRobust>(std::move(estimator), options_);
+  }
+
+ private:
+  std::unique_ptr<EstimatorModel> model_;
+  bool is_robust_ = false;
+  RobustCovarianceOptions options_;
+};
+
+}  // namespace
+
+void MakeCovarianceRobust(const MotionProblem& problem, const RobustCovarianceOptions& options,
+                          const std::optional<Matrix5d>& own_cov, MotionEstimate* estimate) {
+  if (!IsMotion(*estimate, problem.matches.size())) return;
+  const std::optional<Matrix5d> robust =
+      RobustCovariance(problem, estimate->cam2_from_cam1, estimate->inliers, options, own_cov);
+  if (robust) {
+    estimate->pose_cov = *robust;
+    return;
+  }
+  MotionEstimate refusal;
+  refusal.status = MotionStatus::kDegenerateMatches;
+  refusal.message =
+      fmt::format("the {} inliers do not determine the covariance of a motion", estimate->inliers.size());
+  refusal.counts = estimate->counts;
+  *estimate = std::move(refusal);
+}
+
+std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model) {
+  const bool has_one = std::ranges::count(model->Parameters(), kOption, &Parameter::name) > 0;
+  if (has_one) return model;
+  return std::make_unique<ModelWithRobust>(std::move(model));
+}
+
+}  // namespace rcme

@@ -1,0 +1,76 @@
+#include "estimator/uncertainty/calibration_prior.h"
+
+namespace rcme {
+namespace {
+
+// What a step of one intrinsic does to the problem, image by image.
+using Change = std::function<void(Camera&, Eigen::Vector2d Correspondence::*, double, MotionProblem&)>;
+
+void ScaleFocal(Camera& camera, Eigen::Vector2d Correspondence::*, double by, MotionProblem&) {
+  camera.fx *= 1.0 + by;
+  camera.fy *= 1.0 + by;
+}
+
+// The pinhole's point of an image with this k1, to first order.
+void Undistort(Camera& camera, Eigen::Vector2d Correspondence::*x_px, double k1, MotionProblem& problem) {
+  const Eigen::Vector2d centre_px(camera.cx, camera.cy);
+  for (Correspondence& match : problem.matches) {
+    const Eigen::Vector2d ray = camera.Ray(match.*x_px).head<2>();
+    match.*x_px -= k1 * ray.squaredNorm() * (match.*x_px - centre_px);
+  }
+}
+
+}  // namespace
+
+Parameter FocalParameter(double* focal_sd) {
+  return Parameter::Real(
+      "focal_sd", focal_sd, {0.0, 0.5}, "",
+      "relative standard deviation of the focal lengths; its effect is added to the covariance");
+}
+
+Parameter PrincipalPointParameter(double* principal_point_sd_px) {
+  return Parameter::Real("principal_point_sd_px", principal_point_sd_px, {0.0, 1e4}, "px",
+                         "standard deviation of the principal points per coordinate, likewise");
+}
+
+Parameter DistortionParameter(double* distortion_sd) {
+  return Parameter::Real(
+      "distortion_sd", distortion_sd, {0.0, 0.5}, "",
+      "standard deviation of the radial distortion k1 that is left in the images, likewise");
+}
+
+Matrix5d CalibrationCovariance(const MotionProblem& problem, const CalibrationPrior& prior,
+                               const Matrix5d& inverse_hessian,
+                               const std::function<Vector5d(const MotionProblem&)>& gradient_of) {
+  Matrix5d sum = Matrix5d::Zero();
+  if (prior.IsNone()) return sum;
+  const Vector5d base = gradient_of(problem);
+  const auto add = [&](double sd, double step, const auto& change_images) {
+    MotionProblem changed = problem;
+    change_images(changed, step);
+    const Vector5d moved = -(sd / step) * (inverse_hessian * (gradient_of(changed) - base));
+    sum += moved * moved.transpose();
+  };
+  const bool is_one_camera = problem.camera1.K() == problem.camera2.K();
+  const auto add_each = [&](double sd, double step, const Change& change) {
+    if (!(sd > 0.0)) return;
+    add(sd, step, [&](MotionProblem& p, double by) {
+      change(p.camera1, &Correspondence::x1_px, by, p);
+      if (is_one_camera) change(p.camera2, &Correspondence::x2_px, by, p);
+    });
+    if (is_one_camera) return;
+    add(sd, step, [&](MotionProblem& p, double by) { change(p.camera2, &Correspondence::x2_px, by, p); });
+  };
+  const double step_px = 0.01 * problem.sigma_px;
+  add_each(prior.focal_sd, step_px / problem.camera1.fx, ScaleFocal);
+  for (double Camera::*coordinate : {&Camera::cx, &Camera::cy}) {
+    add_each(prior.principal_point_sd_px, step_px,
+             [&](Camera& camera, Eigen::Vector2d Correspondence::*, double by, MotionProblem&) {
+               camera.*coordinate += by;
+             });
+  }
+  add_each(prior.distortion_sd, step_px / problem.camera1.fx, Undistort);
+  return sum;
+}
+
+}  // namespace rcme
