@@ -8,6 +8,7 @@
 #include "experiments/analysis/scene_split.h"
 #include "experiments/analysis/scenes_of_run.h"
 #include "experiments/analysis/summary_quantities.h"
+#include "experiments/analysis/truth_quality.h"
 #include "stats/confidence_sequence.h"
 #include "stats/moments.h"
 #include "stats/score_mean.h"
@@ -224,7 +225,14 @@ Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
 
 Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups) {
   const RunDescription run = store.Description();
-  Summary summary{run.study, groups.factor_names, {}, {}, 0, run.NumTrials(), run.repeats_per_scene};
+  Summary summary{run.study,
+                  groups.factor_names,
+                  {},
+                  {},
+                  0,
+                  run.NumTrials(),
+                  run.repeats_per_scene,
+                  TruthQualityInWords(run.identity)};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
   std::vector<Cell> cells(groups.levels.size(), Cell(run.estimators.size(), run.repeats_per_scene));

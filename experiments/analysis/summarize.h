@@ -56,6 +56,7 @@ struct Summary {
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
   int repeats_per_scene = 1;
+  std::string truth_quality;  // truth_quality.h
 };
 
 // Whether an estimator of the run states probabilities of failure.

@@ -1,6 +1,7 @@
 #include "experiments/analysis/summarize_counts.h"
 
 #include "experiments/analysis/summary_quantities.h"
+#include "experiments/analysis/truth_quality.h"
 #include "experiments/result_file/parts.h"
 
 namespace rcme {
@@ -31,7 +32,14 @@ bool KeepsCounts(const std::string& path) {
 
 Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling pooling) {
   const RunDescription& run = counts.run;
-  Summary summary{run.study, {}, {}, {}, counts.NumTrials(), run.NumTrials(), run.repeats_per_scene};
+  Summary summary{run.study,
+                  {},
+                  {},
+                  {},
+                  counts.NumTrials(),
+                  run.NumTrials(),
+                  run.repeats_per_scene,
+                  TruthQualityInWords(run.identity)};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
   if (pooling == Pooling::kPooled) {

@@ -228,6 +228,7 @@ std::string SummaryAsTable(const Summary& summary) {
       "not cover: wholly outside. nees_median: 4.35 expected. auc_T_deg: mean of max(0, 1 - error / T).\n"
       "maa_10_deg: mean share of errors up to 1, 2, ..., 10 deg. All quantities, those with refusals left\n"
       "out among them: --format csv or json.\n";
+  if (!summary.truth_quality.empty()) text += summary.truth_quality + "\n";
   return text + EffortsInWords(summary);
 }
 
@@ -259,6 +260,7 @@ std::string SummaryAsJson(const Summary& summary) {
                                  {"efforts", nlohmann::ordered_json(nlohmann::ordered_json::value_t::object)},
                                  {"rows", nlohmann::ordered_json::array()}};
   for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;
+  if (!summary.truth_quality.empty()) json["truth"] = summary.truth_quality;
   for (const SummaryRow& row : summary.rows) {
     nlohmann::ordered_json entry = {{"condition", row.condition}};
     for (size_t f = 0; f < row.levels.size(); ++f) entry["levels"][summary.factor_names[f]] = row.levels[f];

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "estimator/ransac_estimator.h"
+#include "experiments/base/field_text.h"
 #include "experiments/base/json_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
@@ -51,7 +52,7 @@ void AddProbabilities(const MotionEstimate& estimate, nlohmann::ordered_json* js
 }
 
 nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord& record,
-                              const std::string& estimator) {
+                              const std::string& estimator, bool has_truth_sd) {
   nlohmann::ordered_json json = {{"status", StatusName(estimate.status)},
                                  {"message", estimate.message},
                                  {"estimator", estimator},
@@ -73,6 +74,10 @@ nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord&
   if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
   if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
   if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
+  if (!std::isnan(record.nees)) {
+    json["nees"] = JsonNumber(record.nees);
+    json["truth_sd"] = has_truth_sd ? "stated" : "unknown";
+  }
   return json;
 }
 
@@ -104,7 +109,8 @@ void PrintCaution(const RansacEstimator& estimator, const MotionProblem& problem
       StatusName(estimate.status), estimate.message);
 }
 
-void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, const std::string& estimator) {
+void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, const std::string& estimator,
+                    bool has_truth_sd) {
   fmt::print("{}: {} - {}\n", estimator, StatusName(estimate.status), estimate.message);
   if (estimate.status == MotionStatus::kDirectionNotObservable) PrintRotation(estimate);
   if (estimate.status != MotionStatus::kOk) return;
@@ -123,6 +129,9 @@ void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, c
   if (!std::isnan(record.rotation_error_deg)) {
     fmt::print("against the file's true motion: rotation error {:.4f} deg, direction error {:.4f} deg\n",
                record.rotation_error_deg, record.direction_error_deg);
+    fmt::print("normalised error squared (5 degrees of freedom, 95 % below 11.07): {:.2f}; {}\n", record.nees,
+               has_truth_sd ? "the true motion's own error (truth_sd) is part of it"
+                            : "how good the file's motion is, nobody says (no truth_sd)");
   }
 }
 
@@ -133,14 +142,16 @@ void RunEstimate(const EstimateArguments& arguments) {
   TrialData data;
   data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments.sigma_px};
   data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
+  data.truth.sd = file.truth_sd;
   RandomStream rng =
       StreamFor({static_cast<std::uint64_t>(arguments.seed), 0, 0, 0}, StreamPurpose::kSampling);
   const MotionEstimate estimate = Judged(estimator->Estimate(data.problem, rng), data.problem.matches.size());
   const TrialRecord record = Score(estimate, data, 0.0);
   if (arguments.as_json) {
-    fmt::print("{}", JsonText(kEstimateFormat, AsJson(estimate, record, spec.label)));
+    fmt::print("{}",
+               JsonText(kEstimateFormat, AsJson(estimate, record, spec.label, data.truth.sd.has_value())));
   } else {
-    PrintForPeople(estimate, record, spec.label);
+    PrintForPeople(estimate, record, spec.label, data.truth.sd.has_value());
     const RansacEstimator* const ransac = AsRansac(*estimator);
     if (ransac && estimate.status == MotionStatus::kOk) PrintCaution(*ransac, data.problem, arguments.seed);
   }

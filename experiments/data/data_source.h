@@ -9,6 +9,7 @@
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
 #include "experiments/data/settings.h"
+#include "experiments/data/truth_sd.h"
 #include "simulator/scene.h"
 #include "simulator/severity/severity.h"
 #include "stats/random.h"
@@ -36,6 +37,8 @@ struct Truth {
   bool is_direction_known = true;     // false: score the rotation alone
   std::vector<bool> is_inlier_true;   // per match; empty: unknown
   std::vector<bool> is_undetectable;  // per match: wrong, but on the true epipolar line; empty: none known
+  // Its own error, part of the score; nothing: exact, or nobody says.
+  std::optional<TruthSd> sd = std::nullopt;
 };
 
 // A problem for the estimators and the truth for the score, kept apart from here on.

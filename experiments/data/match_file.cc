@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string_view>
 
 #include "estimator/problem_check.h"
@@ -23,8 +24,10 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
 constexpr size_t kMaxColumns = 1000;
 constexpr size_t kMaxSceneBytes = 200;
-constexpr std::array<std::string_view, 7> kHeaderKeys = {
-    "size1", "size2", "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit", "scene"};
+constexpr std::array<std::string_view, 10> kHeaderKeys = {
+    "size1",  "size2",    "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor",
+    "t_unit", "truth_sd", "image1",         "image2",         "scene"};
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 std::string_view Trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r");
@@ -113,6 +116,15 @@ std::optional<RelativePose> TruePoseFrom(const Header& header) {
   return pose;
 }
 
+std::optional<TruthSd> TruthSdFrom(const Header& header) {
+  if (!header.Has("truth_sd")) return std::nullopt;
+  const std::vector<double> sd = header.Numbers("truth_sd", 6);
+  if (!header.Has("R_rowmajor")) header.Fail("truth_sd", "is of no truth; R_rowmajor and t_unit are missing");
+  if (std::ranges::any_of(sd, [](double x) { return x < 0.0; }))
+    header.Fail("truth_sd", "standard deviations must be >= 0");
+  return TruthSd{kRadPerDeg * Eigen::Vector3d(sd[0], sd[1], sd[2]), {sd[3], sd[4], sd[5]}};
+}
+
 bool AreColumnNames(const std::vector<std::string>& fields) {
   return std::ranges::find_first_of(fields, kColumns) != fields.end();
 }
@@ -181,12 +193,17 @@ MatchFile ReadMatchFile(const std::string& path) {
   file.camera1 = CameraFrom(header, "size1", "K1_fx_fy_cx_cy");
   file.camera2 = CameraFrom(header, "size2", "K2_fx_fy_cx_cy");
   file.cam2_from_cam1_true = TruePoseFrom(header);
+  file.truth_sd = TruthSdFrom(header);
   file.scene = SceneFrom(header);
+  if (header.Has("image1")) file.image1 = header.Text("image1");
+  if (header.Has("image2")) file.image2 = header.Text("image2");
   return file;
 }
 
 void WriteMatchFile(const MatchFile& file, const std::string& path) {
   std::string text = fmt::format("# scene: {}\n", file.scene);
+  if (!file.image1.empty()) text += fmt::format("# image1: {}\n", file.image1);
+  if (!file.image2.empty()) text += fmt::format("# image2: {}\n", file.image2);
   int index = 1;
   for (const Camera& camera : {file.camera1, file.camera2}) {
     text += fmt::format("# size{}: {} {}\n", index, camera.width, camera.height);
@@ -197,6 +214,11 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
     const Eigen::Matrix3d R_rows = pose->R.transpose();
     text += fmt::format("# R_rowmajor: {}\n", fmt::join(R_rows.data(), R_rows.data() + 9, " "));
     text += fmt::format("# t_unit: {}\n", fmt::join(pose->t.data(), pose->t.data() + 3, " "));
+  }
+  if (const std::optional<TruthSd>& sd = file.truth_sd) {
+    const Eigen::Vector3d rotation_deg = sd->rotation_rad / kRadPerDeg;
+    text += fmt::format("# truth_sd: {} {} {} {} {} {}\n", rotation_deg.x(), rotation_deg.y(),
+                        rotation_deg.z(), sd->translation.x(), sd->translation.y(), sd->translation.z());
   }
   text += "x1,y1,x2,y2\n";
   for (const Correspondence& m : file.matches) {

@@ -5,6 +5,7 @@
 
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
+#include "experiments/data/truth_sd.h"
 
 namespace rcme {
 
@@ -16,16 +17,22 @@ namespace rcme {
 //   # K2_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
 //   # R_rowmajor: ... (9)                    optional, with t_unit: the true motion X2 = R X1 + t
 //   # t_unit: ... (3)
-//   # scene: name                            optional, groups pairs in a study
-//   # key: value                             any further one is skipped
-//   x1,y1,x2,y2[,...]                        column names, optional, before the first match
-//   14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre of the top-left pixel
+//   # truth_sd: 0.01 0.01 0.01 2e-3 2e-3 2e-3   optional: standard deviations of that motion, along camera
+//   2's axes:
+//                                          rotation in degrees, translation over the length of the baseline
+//   # image1: frames/0001.png                optional, with image2: pairs of one scene that share an image
+//   say so # image2: frames/0002.png # scene: name                            optional, groups pairs in a
+//   study # key: value                             any further one is skipped x1,y1,x2,y2[,...] column names,
+//   optional, before the first match 14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre
+//   of the top-left pixel
 struct MatchFile {
   std::string path;
   std::string scene = "unnamed";
   std::vector<Correspondence> matches;
   Camera camera1, camera2;
   std::optional<RelativePose> cam2_from_cam1_true;
+  std::optional<TruthSd> truth_sd;
+  std::string image1, image2;  // empty: not said
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;

@@ -106,6 +106,10 @@ std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64
     for (const double x : pose->t) add(x);
     add(is_direction_known ? 1.0 : 0.0);
   }
+  if (file.truth_sd) {
+    for (const double x : file.truth_sd->rotation_rad) add(x);
+    for (const double x : file.truth_sd->translation) add(x);
+  }
   return hash;
 }
 
@@ -123,6 +127,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   struct Group {
     std::vector<TrialData> pairs;
     std::uint64_t digest = 0xcbf29ce484222325ULL;
+    int num_with_truth_sd = 0;
   };
   const std::vector<fs::path> paths = MatchFilesIn(settings.folder);
   const std::set<std::string> weak = PairsWithWeakDirection(settings.folder, paths);
@@ -140,13 +145,16 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     data.origin = path.filename().string();
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.is_direction_known = weak.count(PairId(path)) == 0;
+    data.truth.sd = file.truth_sd;
+    group.num_with_truth_sd += file.truth_sd.has_value();
     group.digest = Digest(file, data.truth.is_direction_known, group.digest);
     data.problem = {std::move(file.matches), file.camera1, file.camera2, settings.sigma_px};
     group.pairs.push_back(std::move(data));
   }
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;
   for (auto& [scene, group] : groups) {
-    const std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
+    std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
+    if (group.num_with_truth_sd > 0) identity += fmt::format(", truth_sd in {}", group.num_with_truth_sd);
     sources.emplace_back(scene, std::make_shared<MatchFolderData>(scene, std::move(group.pairs), identity));
   }
   return sources;

@@ -24,11 +24,14 @@ bool HasRotation(MotionStatus status) {
   return HasMotion(status) || status == MotionStatus::kDirectionNotObservable;
 }
 
-// An answer that is not valid covers nothing.
-double NeesOf(const MotionEstimate& estimate, const RelativePose& pose_true) {
+// An answer that is not valid covers nothing. The truth's own error adds to the estimate's: the two are
+// independent.
+double NeesOf(const MotionEstimate& estimate, const Truth& truth) {
   if (estimate.status != MotionStatus::kOk) return kInfinity;
-  const double nees =
-      NormalizedErrorSquared(LocalCoordinates(estimate.cam2_from_cam1, pose_true), estimate.pose_cov);
+  const RelativePose& pose = estimate.cam2_from_cam1;
+  Matrix5d covariance = estimate.pose_cov;
+  if (truth.sd) covariance += truth.sd->CovarianceAt(pose);
+  const double nees = NormalizedErrorSquared(LocalCoordinates(pose, *truth.cam2_from_cam1_true), covariance);
   return std::isnan(nees) ? kInfinity : nees;  // beyond the range of numbers: Sigma as good as zero
 }
 
@@ -41,7 +44,7 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
   if (!truth.is_direction_known) return;
   if (HasMotion(estimate.status))
     record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  if (!HasRefused(*record)) record->nees = NeesOf(estimate, pose_true);
+  if (!HasRefused(*record)) record->nees = NeesOf(estimate, truth);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,34 @@ TEST_F(MatchFileTest, NoMatchesIsAnAnswerNotAnError) { EXPECT_TRUE(Read(MatchHea
 TEST_F(MatchFileTest, TruePoseIsMadeUnitLength) {
   const MatchFile file = Read(Edited("0 0.6 -0.8", "0 0.60003 -0.80004"));
   EXPECT_NEAR(file.cam2_from_cam1_true->t.norm(), 1.0, 1e-15);
+}
+
+TEST_F(MatchFileTest, TheTruthMayStateItsOwnErrorAndTheImagesTheirNames) {
+  EXPECT_FALSE(Read(FullText()).truth_sd.has_value());
+  const std::string more =
+      "# truth_sd: 0.9 1.8 0 0.01 0.02 0.03\n# image1: a/0001.png\n# image2: a/0002.png\n";
+  const MatchFile file = Read(more + FullText());
+  ASSERT_TRUE(file.truth_sd.has_value());
+  EXPECT_NEAR(file.truth_sd->rotation_rad.x(), 0.005 * std::numbers::pi, 1e-15);
+  EXPECT_NEAR(file.truth_sd->rotation_rad.y(), 0.01 * std::numbers::pi, 1e-15);
+  EXPECT_EQ(file.truth_sd->rotation_rad.z(), 0.0);
+  EXPECT_EQ(file.truth_sd->translation, Eigen::Vector3d(0.01, 0.02, 0.03));
+  EXPECT_EQ(file.image1, "a/0001.png");
+  EXPECT_EQ(file.image2, "a/0002.png");
+  const std::string path = folder_.path() + "/again.csv";
+  WriteMatchFile(file, path);
+  const MatchFile again = ReadMatchFile(path);
+  ASSERT_TRUE(again.truth_sd.has_value());
+  EXPECT_NEAR((again.truth_sd->rotation_rad - file.truth_sd->rotation_rad).norm(), 0.0, 1e-15);
+  EXPECT_EQ(again.truth_sd->translation, file.truth_sd->translation);
+  EXPECT_EQ(again.image2, file.image2);
+}
+
+TEST_F(MatchFileTest, TruthSdThatCannotBe) {
+  EXPECT_TRUE(Refuses("# truth_sd: 1 1 1\n" + FullText(), {":1: truth_sd", "6 are needed"}));
+  EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 -1 1 1\n" + FullText(), {":1: truth_sd", ">= 0"}));
+  EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 nan 1 1\n" + FullText(), {":1: truth_sd", "'nan'"}));
+  EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 1 1 1\n" + MatchHeader(), {":1: truth_sd", "is of no truth"}));
 }
 
 TEST_F(MatchFileTest, DamagedGzip) {

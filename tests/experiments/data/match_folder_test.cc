@@ -1,5 +1,6 @@
 #include "experiments/data/match_folder.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -7,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "experiments/analysis/truth_quality.h"
 #include "experiments/data/match_file.h"
+#include "experiments/study/run_description.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "tests/test_support/expect_input_error.h"
@@ -39,6 +42,22 @@ class MatchFolderTest : public testing::Test {
 
   TempFolder folder_;
 };
+
+// What summaries print of it.
+TEST_F(MatchFolderTest, HowGoodTheTruthIsCountsAndIsSaid) {
+  const std::string unknown = Describe(MakePlan(FolderStudy())).identity;
+  EXPECT_THAT(TruthQualityInWords(unknown), testing::HasSubstr("3 of 3 pairs do not say"));
+  const std::string rest = MatchHeader() + TruePoseHeader() + "# truth_sd: 0.01 0.01 0.01 1e-3 1e-3 1e-3\n";
+  folder_.Write("a_001.csv", "# scene: a\n" + rest + MatchRows(12, 1));
+  const StudyPlan plan = MakePlan(FolderStudy());
+  EXPECT_THAT(TruthQualityInWords(Describe(plan).identity), testing::HasSubstr("2 of 3 pairs do not say"));
+  EXPECT_NE(Describe(plan).identity, unknown);
+  EXPECT_FALSE(plan.conditions[0].source->Make({1, 0, 0, 0}).truth.sd.has_value());
+  EXPECT_TRUE(plan.conditions[0].source->Make({1, 0, 1, 0}).truth.sd.has_value());
+  EXPECT_EQ(TruthQualityInWords("a simulation"), "");
+  EXPECT_THAT(TruthQualityInWords("# condition 0: 2 files, digest 00ff, truth_sd in 2\n"),
+              testing::HasSubstr("all 2 pairs state"));
+}
 
 TEST_F(MatchFolderTest, GroupsByScene) {
   const StudyPlan plan = MakePlan(FolderStudy());
