@@ -76,6 +76,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddMapCommand(app);
   AddRareCommand(app);
   AddModelChoiceCommand(app);
+  AddValidateCommand(app);
   AddCheckEstimatorCommand(app);
   AddEstimateCommand(app);
   AddMatchCommand(app);

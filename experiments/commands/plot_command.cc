@@ -27,6 +27,7 @@ const std::vector<Kind>& Kinds() {
       {"transfer", "TRANSFER.json", "what `rcme transfer` draws, again"},
       {"audit", "FOLDER", "what `rcme audit` draws, again"},
       {"validity_map", "FOLDER", "where first-order covariances hold, of `rcme map`"},
+      {"validation", "VALIDATION.json", "what `rcme validate` draws, again"},
       {"audit_power", "POWER.csv", "how often the audit notices a wrong sigma"},
       {"benchmarks", "BENCHMARKS.json", "times of `scripts/benchmark`"}};
   return kinds;

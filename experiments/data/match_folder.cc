@@ -23,33 +23,6 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxPairs = 100'000;
 constexpr size_t kMaxMatches = 10'000'000;
 
-std::vector<fs::path> MatchFilesIn(const std::string& folder) {
-  if (!fs::is_directory(folder)) {
-    throw InputError(
-        fmt::format("folder: '{}' is not a folder, seen from {}; give one with *.csv or *.csv.gz match files",
-                    folder, fs::current_path().string()));
-  }
-  std::vector<fs::path> paths;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name == "INDEX.csv" || !(name.ends_with(".csv") || name.ends_with(".csv.gz"))) continue;
-    if (FindNotPlain(name) != std::string::npos) {
-      throw InputError(
-          fmt::format("folder: '{}' holds {}; give the file a name of UTF-8 without control characters",
-                      folder, Quoted(name)));
-    }
-    if (paths.size() == kMaxPairs) {
-      throw InputError(
-          fmt::format("folder: '{}' holds too many pairs; at most {} are allowed", folder, kMaxPairs));
-    }
-    paths.push_back(entry.path());
-  }
-  if (paths.empty())
-    throw InputError(fmt::format("folder: '{}' holds no *.csv or *.csv.gz match files", folder));
-  std::sort(paths.begin(), paths.end());
-  return paths;
-}
-
 // The name of a pair in the index.
 std::string PairId(const fs::path& match_file) {
   const std::string name = match_file.filename().string();
@@ -114,6 +87,33 @@ std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64
 }
 
 }  // namespace
+
+std::vector<fs::path> MatchFilesIn(const std::string& folder) {
+  if (!fs::is_directory(folder)) {
+    throw InputError(
+        fmt::format("folder: '{}' is not a folder, seen from {}; give one with *.csv or *.csv.gz match files",
+                    folder, fs::current_path().string()));
+  }
+  std::vector<fs::path> paths;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "INDEX.csv" || !(name.ends_with(".csv") || name.ends_with(".csv.gz"))) continue;
+    if (FindNotPlain(name) != std::string::npos) {
+      throw InputError(
+          fmt::format("folder: '{}' holds {}; give the file a name of UTF-8 without control characters",
+                      folder, Quoted(name)));
+    }
+    if (paths.size() == kMaxPairs) {
+      throw InputError(
+          fmt::format("folder: '{}' holds too many pairs; at most {} are allowed", folder, kMaxPairs));
+    }
+    paths.push_back(entry.path());
+  }
+  if (paths.empty())
+    throw InputError(fmt::format("folder: '{}' holds no *.csv or *.csv.gz match files", folder));
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
 
 int MatchFolderData::NumTrials(int trials) const {
   const auto product = static_cast<std::int64_t>(trials) * static_cast<std::int64_t>(pairs_.size());

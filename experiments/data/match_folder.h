@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ class MatchFolderData : public DataSource {
   std::vector<TrialData> pairs_;
   std::string identity_;
 };
+
+// The match files of a folder in the order of names. Throws InputError: no such folder, none in it, too many.
+std::vector<std::filesystem::path> MatchFilesIn(const std::string& folder);
 
 // Reads every *.csv and *.csv.gz of the folder in the order of names, grouped by the header's scene. An
 // INDEX.csv in the folder or above it may mark pairs whose true direction is not to be scored (columns

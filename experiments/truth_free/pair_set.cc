@@ -1,0 +1,45 @@
+#include "experiments/truth_free/pair_set.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+#include "experiments/data/match_file.h"
+#include "experiments/data/match_folder.h"
+
+namespace rcme {
+
+std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px) {
+  std::map<std::string, PairSet> sets;
+  for (const std::filesystem::path& path : MatchFilesIn(folder)) {
+    MatchFile file = ReadMatchFile(path.string());
+    PairSet& set = sets[file.scene];
+    set.name = file.scene;
+    set.pairs.push_back({path.filename().string(),
+                         file.image1,
+                         file.image2,
+                         {std::move(file.matches), file.camera1, file.camera2, sigma_px}});
+  }
+  std::vector<PairSet> all;
+  for (auto& [scene, set] : sets) all.push_back(std::move(set));
+  return all;
+}
+
+std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan) {
+  std::vector<PairSet> all;
+  for (const Condition& condition : plan.conditions) {
+    PairSet set{
+        condition.levels.empty() ? plan.study.name : fmt::format("{}", fmt::join(condition.levels, ", ")),
+        {}};
+    for (int trial = 0; trial < condition.num_trials; ++trial) {
+      const auto number = static_cast<std::uint32_t>(trial);
+      set.pairs.push_back({fmt::format("{} trial {}", set.name, trial), "", "",
+                           condition.source->Make(NameOfScene(plan, condition, number)).problem});
+    }
+    all.push_back(std::move(set));
+  }
+  return all;
+}
+
+}  // namespace rcme

@@ -1,0 +1,30 @@
+// The image pairs that are validated without a truth.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/motion_problem.h"
+#include "experiments/study/study_plan.h"
+
+namespace rcme {
+
+struct NamedPair {
+  std::string name;
+  std::string image1, image2;  // equal names: the same image; empty: not known
+  MotionProblem problem;
+};
+
+// Pairs of one scene, or of one condition of a study.
+struct PairSet {
+  std::string name;
+  std::vector<NamedPair> pairs;
+};
+
+// Every match file of a folder, by the scenes of their headers; the assumed noise level is sigma_px. Throws
+// InputError (match_folder.h, match_file.h).
+std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px);
+// Every trial of every condition of a study.
+std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan);
+
+}  // namespace rcme

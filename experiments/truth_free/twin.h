@@ -1,0 +1,23 @@
+// The simulated twin of a pair: what the matches would be if the estimate were the truth and errors
+// independent.
+#pragma once
+
+#include <string>
+
+#include "estimator/motion_estimate.h"
+#include "experiments/truth_free/pair_set.h"
+#include "stats/random.h"
+
+namespace rcme {
+
+// Residual noise of the matches that agree with an answer, px: as the estimator says, else from the median of
+// their residuals.
+double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate);
+
+// The inliers of an answer at the nearest points that satisfy it, with independent normal noise of its
+// standard deviation anew; all other matches as they are. The noise is each key point's own: matches that
+// share one, of this or another pair of the image, share its noise. `twin`: the number of the twin.
+NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
+                 std::uint32_t twin);
+
+}  // namespace rcme

@@ -1,0 +1,59 @@
+// Whether an estimator's covariances hold on pairs whose true motions nobody knows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/motion_estimator.h"
+#include "experiments/truth_free/pair_set.h"
+#include "stats/median_ratio.h"
+
+namespace rcme {
+
+// A variance that is wrong by less than this factor is nominal: 22 % of a standard deviation.
+inline constexpr double kNominalVariance = 1.5;
+// A correlation of residuals below it is nominal.
+inline constexpr double kNominalCorrelation = 0.05;
+
+enum class TruthFreeVerdict { kHolds, kTooSmall, kTooLarge, kUndecided, kNoData };
+// The verdict that an interval of a ratio of variances allows: one of too small and too large if it lies
+// beyond 1 and is not all nominal, "holds" if it is.
+TruthFreeVerdict VerdictOn(const ComparedMedians& ratio);
+
+// A test of the covariances: normalised squared differences against those of the twins.
+struct TruthFreeTest {
+  std::string name;  // spatial_halves, random_halves, closure
+  int degrees_of_freedom = 5;
+  int num_values = 0;                          // of the pairs themselves
+  double coverage = 0.0, twin_coverage = 0.0;  // share within the 95 % region; NaN: none
+  ComparedMedians ratio;  // of the medians, pairs' over twins': by what the covariances are too small
+  TruthFreeVerdict verdict = TruthFreeVerdict::kNoData;
+};
+
+// How alike residuals are at a distance, beyond what they are in the twins.
+struct DistanceCorrelation {
+  double from_px = 0.0, to_px = 0.0;
+  double num_products = 0.0;
+  double correlation = 0.0, twin_correlation = 0.0;
+  Interval difference;  // NaN: too few
+};
+
+struct SetReport {
+  std::string name;
+  int num_pairs = 0, num_answered = 0, num_triples = 0;
+  std::vector<TruthFreeTest> tests;
+  double assumed_sigma_px = 0.0;
+  ComparedMedians sigma_px;  // estimated from residuals, median over pairs
+  std::vector<DistanceCorrelation> correlations;
+  std::vector<std::string> advice;  // what to change, in words
+};
+
+struct ValidationOptions {
+  std::uint64_t seed = 1;
+  int num_twins = 1;  // of each pair
+};
+
+// Pure in the options' seed and the pairs' names. The random numbers of a pair are named by it.
+SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options);
+
+}  // namespace rcme

@@ -1,0 +1,177 @@
+#include "experiments/truth_free/validate_output.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "experiments/base/columns.h"
+#include "experiments/base/field_text.h"
+#include "experiments/base/json_output.h"
+
+namespace rcme {
+namespace {
+
+const char* NameOf(TruthFreeVerdict verdict) {
+  switch (verdict) {
+    case TruthFreeVerdict::kHolds:
+      return "holds";
+    case TruthFreeVerdict::kTooSmall:
+      return "too small";
+    case TruthFreeVerdict::kTooLarge:
+      return "too large";
+    case TruthFreeVerdict::kUndecided:
+      return "undecided";
+    case TruthFreeVerdict::kNoData:
+      break;
+  }
+  return "no data";
+}
+
+std::string RangeText(double value, const Interval& interval) {
+  return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);
+}
+
+std::string ShareText(double share) {
+  return std::isnan(share) ? "-" : fmt::format("{:.0f} %", 100.0 * share);
+}
+
+std::string CorrelationName(const DistanceCorrelation& c) {
+  return fmt::format("correlation_{:g}_to_{:g}_px", c.from_px, c.to_px);
+}
+
+bool IsKnown(const DistanceCorrelation& c) { return std::isfinite(c.difference.lower); }
+
+std::string CorrelationVerdict(const DistanceCorrelation& c) {
+  if (!IsKnown(c)) return "no data";
+  if (c.difference.upper < kNominalCorrelation) return "holds";
+  return c.difference.lower > kNominalCorrelation ? "correlated" : "undecided";
+}
+
+std::string SetAsTable(const SetReport& report) {
+  std::string text = fmt::format("{}: {} pairs, {} answered, {} triples of images\n", report.name,
+                                 report.num_pairs, report.num_answered, report.num_triples);
+  std::vector<std::vector<std::string>> rows = {{"test", "verdict", "n", "covered", "twins covered"}};
+  for (const TruthFreeTest& test : report.tests) {
+    rows.push_back({test.name, VerdictInWords(test), std::to_string(test.num_values),
+                    ShareText(test.coverage), ShareText(test.twin_coverage)});
+  }
+  for (const DistanceCorrelation& c : report.correlations) {
+    if (!IsKnown(c)) continue;
+    rows.push_back({fmt::format("residuals {:g} to {:g} px apart", c.from_px, c.to_px),
+                    fmt::format("{}: correlation {}", CorrelationVerdict(c),
+                                RangeText(c.correlation - c.twin_correlation, c.difference)),
+                    fmt::format("{:.0f}", c.num_products), "", ""});
+  }
+  rows.push_back(
+      {"noise",
+       fmt::format("sigma {} px, assumed {:g}", RangeText(report.sigma_px.value, report.sigma_px.interval),
+                   report.assumed_sigma_px),
+       std::to_string(report.num_answered), "", ""});
+  text += FormatColumns(rows);
+  for (const std::string& advice : report.advice) text += "  -> " + advice + "\n";
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string VerdictInWords(const TruthFreeTest& test) {
+  const ComparedMedians& ratio = test.ratio;
+  switch (test.verdict) {
+    case TruthFreeVerdict::kTooSmall:
+      return fmt::format("too small by {} in variance", RangeText(ratio.value, ratio.interval));
+    case TruthFreeVerdict::kTooLarge:
+      return fmt::format(
+          "too large by {} in variance",
+          RangeText(1.0 / ratio.value, {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower}));
+    case TruthFreeVerdict::kNoData:
+      return NameOf(test.verdict);
+    default:
+      return fmt::format("{}: {}", NameOf(test.verdict), RangeText(ratio.value, ratio.interval));
+  }
+}
+
+std::string ValidationAsTable(const std::vector<SetReport>& reports) {
+  std::string text;
+  for (const SetReport& report : reports) text += SetAsTable(report);
+  return text + fmt::format(
+                    "Covariances against the differences of two halves of the matches (5 degrees of freedom) "
+                    "and the closure of\n"
+                    "rotations around three images (3), as ratios of medians to those of simulated twins: "
+                    "the same matches at the\n"
+                    "estimated geometry with independent noise anew. 95 % intervals: bootstrap over pairs "
+                    "(closure: triples), which\n"
+                    "share images, so that they are too narrow. holds: the whole interval within [1/{0:g}, "
+                    "{0:g}]. Correlations are\n"
+                    "beyond those of the twins; nominal below {1:g}.\n",
+                    kNominalVariance, kNominalCorrelation);
+}
+
+std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
+  std::string text = "set,pairs,answered,test,value,lower,upper,n,coverage,twin_coverage,verdict\n";
+  const auto row = [&](const SetReport& report, const std::string& test, double value,
+                       const Interval& interval, double n, double coverage, double twin_coverage,
+                       const std::string& verdict) {
+    text += fmt::format("{},{},{},{},{},{},{},{:.0f},{},{},{}\n", CsvField(report.name), report.num_pairs,
+                        report.num_answered, test, CsvNumber(value), CsvFinite(interval.lower),
+                        CsvFinite(interval.upper), n, CsvNumber(coverage), CsvNumber(twin_coverage), verdict);
+  };
+  const double none = std::nan("");
+  for (const SetReport& report : reports) {
+    for (const TruthFreeTest& test : report.tests) {
+      row(report, test.name, test.ratio.value, test.ratio.interval, test.num_values, test.coverage,
+          test.twin_coverage, NameOf(test.verdict));
+    }
+    for (const DistanceCorrelation& c : report.correlations) {
+      row(report, CorrelationName(c), IsKnown(c) ? c.correlation - c.twin_correlation : none, c.difference,
+          c.num_products, none, none, CorrelationVerdict(c));
+    }
+    row(report, "sigma_px", report.sigma_px.value, report.sigma_px.interval, report.num_answered, none, none,
+        "");
+  }
+  return text;
+}
+
+std::string ValidationAsJson(const std::vector<SetReport>& reports) {
+  const auto interval_of = [](const Interval& interval) {
+    return nlohmann::ordered_json{JsonNumber(interval.lower), JsonNumber(interval.upper)};
+  };
+  nlohmann::ordered_json json = {{"nominal_variance", kNominalVariance},
+                                 {"nominal_correlation", kNominalCorrelation},
+                                 {"sets", nlohmann::ordered_json::array()}};
+  for (const SetReport& report : reports) {
+    nlohmann::ordered_json set = {{"name", report.name},
+                                  {"pairs", report.num_pairs},
+                                  {"answered", report.num_answered},
+                                  {"triples", report.num_triples},
+                                  {"assumed_sigma_px", JsonNumber(report.assumed_sigma_px)},
+                                  {"sigma_px", JsonNumber(report.sigma_px.value)},
+                                  {"sigma_px_interval", interval_of(report.sigma_px.interval)},
+                                  {"tests", nlohmann::ordered_json::array()},
+                                  {"correlations", nlohmann::ordered_json::array()},
+                                  {"advice", report.advice}};
+    for (const TruthFreeTest& test : report.tests) {
+      set["tests"].push_back({{"test", test.name},
+                              {"degrees_of_freedom", test.degrees_of_freedom},
+                              {"n", test.num_values},
+                              {"coverage", JsonNumber(test.coverage)},
+                              {"twin_coverage", JsonNumber(test.twin_coverage)},
+                              {"ratio", JsonNumber(test.ratio.value)},
+                              {"interval", interval_of(test.ratio.interval)},
+                              {"verdict", NameOf(test.verdict)}});
+    }
+    for (const DistanceCorrelation& c : report.correlations) {
+      set["correlations"].push_back({{"from_px", c.from_px},
+                                     {"to_px", c.to_px},
+                                     {"n", c.num_products},
+                                     {"correlation", JsonNumber(c.correlation)},
+                                     {"twin_correlation", JsonNumber(c.twin_correlation)},
+                                     {"difference_interval", interval_of(c.difference)},
+                                     {"verdict", CorrelationVerdict(c)}});
+    }
+    json["sets"].push_back(std::move(set));
+  }
+  return JsonText(kValidationFormat, json);
+}
+
+}  // namespace rcme

@@ -1,0 +1,106 @@
+#!/usr/bin/python3
+"""Draws what `rcme validate` found, as PNG and PDF: for each scene by what its covariances are too small, test by test,
+with the range that is nominal; beside it how alike residuals are at each distance.
+It draws what the file says and computes nothing: ratios, intervals and verdicts are those of the program.
+"""
+
+import argparse
+import json
+import math
+import sys
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from common.command_line import Parser, PlotError, check_figure_path, draw_figure
+
+EXAMPLE = """
+example:
+  rcme plot validation validation/validation.json --out validation
+draws validation.png and validation.pdf.
+"""
+FORMAT = "rcme validation 1"
+TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "closure"}
+COLORS = {"holds": "tab:green", "too small": "tab:red", "too large": "tab:purple", "undecided": "0.45"}
+MARKERS = {"spatial_halves": "o", "random_halves": "s", "closure": "^"}
+
+
+def drawn_tests(one_set):
+    """The tests of a scene that have a ratio."""
+    return [test for test in one_set["tests"] if test["ratio"] is not None]
+
+
+def draw_ratios(axes, sets):
+    nominal = axes.nominal
+    axes.axvspan(1 / nominal, nominal, color="0.92", zorder=0)
+    axes.axvline(1, color="0.6", linewidth=0.8, zorder=1)
+    for row, one_set in enumerate(sets):
+        for number, test in enumerate(drawn_tests(one_set)):
+            y = row + 0.22 * (number - 1)
+            lower, upper = (x if x is not None and x > 0 else test["ratio"] for x in test["interval"])
+            color = COLORS.get(test["verdict"], "0.45")
+            axes.plot([lower, upper], [y, y], color=color, linewidth=1.6)
+            axes.plot([test["ratio"]], [y], MARKERS[test["test"]], color=color, markersize=5)
+    axes.set_xscale("log")
+    axes.set_yticks(range(len(sets)), [f"{s['name']} ({s['pairs']})" for s in sets])
+    axes.set_ylim(len(sets) - 0.5, -0.5)
+    axes.set_xlabel("covariances too small by, in variance")
+    for test, words in TESTS.items():
+        axes.plot([], [], MARKERS[test], color="0.45", label=words)
+    axes.legend(loc="upper right", fontsize=7, frameon=False)
+
+
+def draw_correlations(axes, sets):
+    axes.axhline(0, color="0.6", linewidth=0.8)
+    for number, one_set in enumerate(sets):
+        known = [c for c in one_set["correlations"] if c["difference_interval"][0] is not None]
+        x = [math.sqrt(max(c["from_px"], 0.25) * c["to_px"]) * 1.03 ** number for c in known]
+        y = [c["correlation"] - c["twin_correlation"] for c in known]
+        error = [[max(v - c["difference_interval"][0], 0) for v, c in zip(y, known)],
+                 [max(c["difference_interval"][1] - v, 0) for v, c in zip(y, known)]]
+        axes.errorbar(x, y, yerr=error, fmt="o-", markersize=3, linewidth=0.9, label=one_set["name"])
+    axes.set_xscale("log")
+    axes.set_xlabel("distance of key points, px")
+    axes.set_ylabel("correlation of residuals")
+    axes.legend(fontsize=6, frameon=False)
+
+
+def draw(validation):
+    sets = validation["sets"]
+    figure = Figure(figsize=(9, 1.4 + 0.45 * len(sets)), layout="constrained")
+    FigureCanvasAgg(figure)
+    ratios, correlations = figure.subplots(1, 2, width_ratios=[1.3, 1])
+    ratios.nominal = validation["nominal_variance"]
+    draw_ratios(ratios, sets)
+    draw_correlations(correlations, sets)
+    return figure
+
+
+def read_validation(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            validation = json.load(file)
+    except OSError as error:
+        raise PlotError(f"{path}: cannot be read: {error.strerror}.") from error
+    except ValueError as error:
+        raise PlotError(f"{path}: is no JSON: {error}.") from error
+    if not isinstance(validation, dict) or validation.get("format") != FORMAT or not validation.get("sets"):
+        raise PlotError(f"{path}: is not what `rcme validate --out` writes (format '{FORMAT}', at least one set).")
+    return validation
+
+
+def parse(arguments):
+    parser = Parser(description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("validation", metavar="VALIDATION.json", help="of `rcme validate --out`")
+    parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
+    options = parser.parse_args(arguments)
+    check_figure_path(options.out)
+    return options
+
+
+def main(arguments=None):
+    return draw_figure("validation.py", parse, lambda options: draw(read_validation(options.validation)), arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,51 @@
+#include "stats/median_ratio.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rcme {
+namespace {
+
+double RatioIn(std::span<const UnitValues* const> units) {
+  std::vector<double> observed, null;
+  for (const UnitValues* unit : units) {
+    observed.insert(observed.end(), unit->observed.begin(), unit->observed.end());
+    null.insert(null.end(), unit->null.begin(), unit->null.end());
+  }
+  return MedianOf(std::move(observed)) / MedianOf(std::move(null));
+}
+
+}  // namespace
+
+double MedianOf(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confidence, int num_resamples,
+                               RandomStream& rng) {
+  std::vector<const UnitValues*> drawn;
+  for (const UnitValues& unit : units) drawn.push_back(&unit);
+  ComparedMedians compared{RatioIn(drawn), {0.0, std::numeric_limits<double>::infinity()}};
+  if (std::isnan(compared.value)) return compared;
+  std::vector<double> ratios;
+  for (int resample = 0; resample < num_resamples; ++resample) {
+    for (const UnitValues*& unit : drawn)
+      unit = &units[rng.IntegerBelow(static_cast<std::uint32_t>(units.size()))];
+    const double ratio = RatioIn(drawn);
+    if (!std::isnan(ratio)) ratios.push_back(ratio);
+  }
+  if (ratios.empty()) return compared;
+  std::ranges::sort(ratios);
+  const auto quantile = [&](double p) {
+    return ratios[static_cast<size_t>(p * static_cast<double>(ratios.size() - 1) + 0.5)];
+  };
+  compared.interval = {quantile(0.5 * (1.0 - confidence)), quantile(0.5 * (1.0 + confidence))};
+  return compared;
+}
+
+}  // namespace rcme

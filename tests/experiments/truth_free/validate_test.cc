@@ -1,0 +1,239 @@
+// What holds covariances against data alone: its parts by hand and by Monte Carlo, and the whole on simulated
+// pairs with and without faults.
+#include "experiments/truth_free/validate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "estimator/estimator_registry.h"
+#include "estimator/geometry/sampson.h"
+#include "estimator/refinement/sampson_mle.h"
+#include "experiments/study/study_file.h"
+#include "experiments/truth_free/closure.h"
+#include "experiments/truth_free/halves.h"
+#include "experiments/truth_free/residual_correlation.h"
+#include "experiments/truth_free/twin.h"
+#include "experiments/truth_free/validate_output.h"
+#include "stats/consistency.h"
+#include "tests/test_support/paths.h"
+#include "tests/test_support/two_camera_scene.h"
+
+namespace rcme {
+namespace {
+
+// The fit to all matches of a scene without wrong ones.
+MotionEstimate FitOf(const MotionProblem& problem, const RelativePose& start) {
+  const RefinedMotion motion = RefineAllBySampson(problem, start);
+  MotionEstimate estimate;
+  estimate.status = MotionStatus::kOk;
+  estimate.cam2_from_cam1 = motion.cam2_from_cam1;
+  estimate.pose_cov = motion.pose_cov;
+  for (int i = 0; i < static_cast<int>(problem.matches.size()); ++i) estimate.inliers.push_back(i);
+  return estimate;
+}
+
+// Two motions drawn about one with covariances of their own, whose directions have different bases: mean of
+// 2,000 normalised differences 5, z-test at 1e-4.
+TEST(NormalizedDifference, IsChiSquareOfTwoIndependentMotions) {
+  RandomStream rng({.seed = 1, .purpose = 70});
+  const RelativePose pose{RotationFromVector({0.1, 0.2, -0.3}), Eigen::Vector3d(0.2, 0.3, 0.9).normalized()};
+  const Vector5d sd_a(1e-3, 2e-3, 3e-3, 4e-3, 1e-2), sd_b(2e-3, 1e-3, 1e-3, 2e-2, 5e-3);
+  const auto drawn = [&](const Vector5d& sd) {
+    Vector5d error;
+    for (double& x : error) x = rng.Normal();
+    MotionEstimate estimate;
+    estimate.cam2_from_cam1 = Retract(pose, sd.cwiseProduct(error));
+    estimate.pose_cov = sd.cwiseAbs2().asDiagonal();
+    return estimate;
+  };
+  double sum = 0.0;
+  for (int i = 0; i < 2000; ++i) sum += NormalizedDifference(drawn(sd_a), drawn(sd_b));
+  EXPECT_NEAR(sum / 2000, 5.0, 3.89 * std::sqrt(10.0 / 2000));
+}
+
+// dc = R_ab' w_ab + R_ac' (w_bc - w_ac), against differences of the closure itself.
+TEST(ClosureOf, MovesWithTheRotationsAsItsCovarianceSays) {
+  MotionEstimate ab, bc, ac;
+  ab.cam2_from_cam1.R = RotationFromVector({0.1, -0.3, 0.2});
+  bc.cam2_from_cam1.R = RotationFromVector({-0.2, 0.1, 0.3});
+  ac.cam2_from_cam1.R = bc.cam2_from_cam1.R * ab.cam2_from_cam1.R;
+  EXPECT_LT(ClosureOf(ab, bc, ac).norm(), 1e-12);
+  const Eigen::Matrix3d to_ab = ab.cam2_from_cam1.R.transpose(), to_bc = ac.cam2_from_cam1.R.transpose();
+  const Eigen::Vector3d w(1e-6, -2e-6, 3e-6);
+  for (const auto& [moved, M] :
+       {std::pair<MotionEstimate*, Eigen::Matrix3d>{&ab, to_ab}, {&bc, to_bc}, {&ac, -to_bc}}) {
+    const Eigen::Matrix3d R = moved->cam2_from_cam1.R;
+    moved->cam2_from_cam1.R = RotationFromVector(w) * R;
+    EXPECT_LT((ClosureOf(ab, bc, ac) - M * w).norm(), 1e-10);
+    moved->cam2_from_cam1.R = R;
+  }
+}
+
+TEST(FindTriples, AreOfImagesThatPairsName) {
+  const auto pair = [](const char* image1, const char* image2) { return NamedPair{"", image1, image2, {}}; };
+  const std::vector<NamedPair> pairs = {pair("1", "2"), pair("2", "3"), pair("1", "3"), pair("3", "4"),
+                                        pair("", ""),   pair("", "2"),  pair("2", "4")};
+  const std::vector<Triple> triples = FindTriples(pairs);
+  ASSERT_EQ(triples.size(), 2u);  // 1 2 3 and 2 3 4
+  EXPECT_EQ(triples[0].ab, 0u);
+  EXPECT_EQ(triples[0].bc, 1u);
+  EXPECT_EQ(triples[0].ac, 2u);
+  EXPECT_EQ(triples[1].ac, 6u);
+}
+
+// Three images of one cloud; every image's key point has one error, which its two pairs share. Mean of 150
+// closures over 3 in (0.75, 1.35), 4 standard errors of chi-square with 3 degrees of freedom: without what
+// the pairs have in common it is not: power.
+TEST(NormalizedClosure, HasOneVarianceWhereKeyPointsAreShared) {
+  double sum = 0.0, sum_without = 0.0;
+  constexpr int kTrials = 150;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 70});
+    const Camera camera{600.0, 600.0, 319.5, 239.5, 640, 480};
+    const RelativePose b{RotationFromVector({0.02, 0.05, -0.03}), {0.5, 0.1, 0.0}},
+        c{RotationFromVector({-0.03, 0.09, 0.02}), {0.9, -0.2, 0.2}};  // t in metres
+    std::vector<std::array<Eigen::Vector2d, 3>> points;
+    while (points.size() < 150) {
+      const double z = rng.Uniform(3.0, 9.0);
+      const Eigen::Vector3d X(z * rng.Uniform(-0.5, 0.5), z * rng.Uniform(-0.4, 0.4), z);
+      std::array<Eigen::Vector2d, 3> x = {camera.Project(X), camera.Project(b.R * X + b.t),
+                                          camera.Project(c.R * X + c.t)};
+      for (Eigen::Vector2d& x_px : x) {
+        const double dx = rng.Normal(), dy = rng.Normal();
+        x_px += 0.3 * Eigen::Vector2d(dx, dy);
+      }
+      points.push_back(x);
+    }
+    const auto pair_of = [&](size_t i, size_t k) {
+      NamedPair pair{"", std::to_string(i), std::to_string(k), {{}, camera, camera, 0.3}};
+      for (const auto& x : points) pair.problem.matches.push_back({x[i], x[k]});
+      return pair;
+    };
+    const NamedPair ab = pair_of(0, 1), bc = pair_of(1, 2), ac = pair_of(0, 2);
+    const RelativePose of_ab{b.R, b.t.normalized()}, of_ac{c.R, c.t.normalized()};
+    const Eigen::Matrix3d R_bc = c.R * b.R.transpose();
+    const RelativePose of_bc{R_bc, (c.t - R_bc * b.t).normalized()};
+    const MotionEstimate e_ab = FitOf(ab.problem, of_ab), e_bc = FitOf(bc.problem, of_bc),
+                         e_ac = FitOf(ac.problem, of_ac);
+    const auto closure = NormalizedClosure({&ab, &e_ab}, {&bc, &e_bc}, {&ac, &e_ac}, Eigen::Vector3d::Zero());
+    ASSERT_TRUE(closure.has_value());
+    sum += *closure / 3.0;
+    NamedPair apart = ac;  // its key points look like others
+    for (Correspondence& match : apart.problem.matches) match.x1_px.x() += 1e-9, match.x2_px.x() += 1e-9;
+    sum_without += NormalizedClosure({&ab, &e_ab}, {&bc, &e_bc}, {&apart, &e_ac}, Eigen::Vector3d::Zero())
+                       .value_or(0.0) /
+                   3.0;
+  }
+  EXPECT_GT(sum / kTrials, 0.75);
+  EXPECT_LT(sum / kTrials, 1.35);
+  EXPECT_TRUE(sum_without / kTrials < 0.75 || sum_without / kTrials > 1.35) << sum_without / kTrials;
+}
+
+// Inliers of the twin lie at the answer's geometry with noise of the stated size; a key point that two of
+// them share has one error; the others are the pair's own.
+TEST(TwinOf, HasTheGeometryOfTheAnswerWithNewNoise) {
+  RelativePose pose_true;
+  NamedPair pair{"a", "", "", TwoCameraProblem(400, 0.5, 0.0, 1, &pose_true)};
+  pair.problem.matches[7].x1_px = pair.problem.matches[3].x1_px;
+  MotionEstimate estimate = FitOf(pair.problem, pose_true);
+  estimate.sigma_estimated_px = 0.25;
+  estimate.inliers.erase(estimate.inliers.begin());
+  const NamedPair twin = TwinOf(pair, estimate, 1, 1), again = TwinOf(pair, estimate, 1, 1),
+                  other = TwinOf(pair, estimate, 1, 2);
+  EXPECT_EQ(twin.problem.matches[0].x1_px, pair.problem.matches[0].x1_px);
+  EXPECT_EQ(twin.problem.matches[5].x2_px, again.problem.matches[5].x2_px);
+  EXPECT_NE(twin.problem.matches[5].x2_px, other.problem.matches[5].x2_px);
+  const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(estimate.cam2_from_cam1),
+                                                     pair.problem.camera1, pair.problem.camera2);
+  double sum = 0.0;
+  for (size_t i = 10; i < 400; ++i) sum += SquaredSampsonDistance(F, twin.problem.matches[i]) / (0.25 * 0.25);
+  EXPECT_NEAR(sum / 390, 1.0, 3.89 * std::sqrt(2.0 / 390));
+  EXPECT_EQ(NoiseOf(pair.problem, estimate), 0.25);
+  estimate.sigma_estimated_px = std::nan("");
+  EXPECT_NEAR(NoiseOf(pair.problem, estimate), 0.5, 0.1);
+}
+
+// Two matches at each place, whose residuals are the same, 20 px from the next place: correlation 1 below 1
+// px.
+TEST(ProductsOf, ComparesResidualsAtTheirDistance) {
+  RelativePose pose_true;
+  MotionProblem problem = TwoCameraProblem(100, 0.5, 0.0, 1, &pose_true);
+  MotionEstimate estimate = FitOf(problem, pose_true);
+  for (const Correspondence& match : std::vector<Correspondence>(problem.matches)) {
+    estimate.inliers.push_back(static_cast<int>(problem.matches.size()));
+    problem.matches.push_back(match);
+  }
+  const ResidualProducts products = ProductsOf(problem, estimate);
+  EXPECT_GE(products.counts[0], 100.0);
+  EXPECT_NEAR(products.Correlation(0), 1.0, 0.05);
+  EXPECT_LT(std::abs(products.Correlation(3)), 0.2);
+  EXPECT_GT(products.counts[3], 100.0);
+}
+
+TEST(VerdictOn, ByHand) {
+  EXPECT_EQ(VerdictOn({1.1, {0.8, 1.4}}), TruthFreeVerdict::kHolds);
+  EXPECT_EQ(VerdictOn({1.2, {1.05, 1.45}}), TruthFreeVerdict::kHolds);
+  EXPECT_EQ(VerdictOn({2.1, {1.8, 2.5}}), TruthFreeVerdict::kTooSmall);
+  EXPECT_EQ(VerdictOn({0.5, {0.4, 0.6}}), TruthFreeVerdict::kTooLarge);
+  EXPECT_EQ(VerdictOn({1.3, {0.9, 1.9}}), TruthFreeVerdict::kUndecided);
+  EXPECT_EQ(VerdictOn({std::nan(""), {0.0, 1.0}}), TruthFreeVerdict::kNoData);
+  TruthFreeTest test;
+  test.ratio = {2.1, {1.8, 2.5}};
+  test.verdict = TruthFreeVerdict::kTooSmall;
+  EXPECT_EQ(VerdictInWords(test), "too small by 2.1 [1.8, 2.5] in variance");
+}
+
+// 14 pairs of 300 matches, 10 % of them wrong.
+SetReport ReportOn(const Settings& data, const Settings& options) {
+  Study study = ParseStudy(
+      "data: {scene: uniform_volume, num_matches: 300, outlier_ratio: 0.1}\nestimators: [{name: "
+      "rcme_calibrated}]\n"
+      "trials: 14\n",
+      "study.yaml");
+  for (const auto& [key, value] : data) Override(&study, key, value);
+  const std::vector<PairSet> sets = PairSetsOfStudy(MakePlan(study));
+  EXPECT_EQ(sets.size(), 1u);
+  return Validate(sets[0], *MakeEstimator("rcme_calibrated", options), {1, 1});
+}
+
+// Independent noise: no test calls the covariances too small. Errors that neighbours within 60 px share, and
+// points that are found twice: both are found, and named by the correlation of residuals; robust covariances
+// bring the halves back. One seed stands for the rates of experiments/results/robust.
+TEST(Validate, FindsCorrelatedNoiseAndRepeatedPointsAndNothingElse) {
+  const SetReport independent = ReportOn({}, {});
+  EXPECT_EQ(independent.num_answered, 14);
+  for (const TruthFreeTest& test : independent.tests)
+    EXPECT_NE(test.verdict, TruthFreeVerdict::kTooSmall) << test.name << ": " << VerdictInWords(test);
+  EXPECT_NEAR(independent.sigma_px.value, 0.5, 0.05);
+
+  const Settings correlated = {{"noise", "correlated"}, {"noise_correlation_length_px", "60"}};
+  const SetReport neighbours = ReportOn(correlated, {}),
+                  robust = ReportOn(correlated, {{"covariance", "robust"}});
+  EXPECT_EQ(neighbours.tests[0].verdict, TruthFreeVerdict::kTooSmall) << VerdictInWords(neighbours.tests[0]);
+  EXPECT_LT(robust.tests[0].ratio.value, 0.8 * neighbours.tests[0].ratio.value);
+  EXPECT_GT(neighbours.correlations[2].difference.lower, 0.1);
+
+  const SetReport repeated = ReportOn({{"noise", "duplicated"}, {"duplicated_share", "0.5"}}, {});
+  EXPECT_GT(repeated.correlations[0].difference.lower, 0.3);
+  EXPECT_THAT(repeated.advice, testing::Contains(testing::HasSubstr("one point found twice")));
+}
+
+TEST(Validate, OfNoPairsHasNoData) {
+  const SetReport report = Validate({"empty", {}}, *MakeEstimator("standard"), {1, 1});
+  for (const TruthFreeTest& test : report.tests) EXPECT_EQ(test.verdict, TruthFreeVerdict::kNoData);
+  EXPECT_THAT(ValidationAsTable({report}), testing::HasSubstr("no data"));
+  EXPECT_THAT(ValidationAsJson({report}), testing::HasSubstr("rcme validation 1"));
+}
+
+TEST(Validate, RealScenesNameTheirImages) {
+  const std::string folder = SourceFolder() + "/../shared/real/dev";
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "needs the real pairs, " << folder;
+  for (const PairSet& set : PairSetsOfFolder(folder, 0.5)) {
+    if (set.name == "strecha_fountain") EXPECT_GT(FindTriples(set.pairs).size(), 10u);
+  }
+}
+
+}  // namespace
+}  // namespace rcme
