@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "estimator/refinement/sampson_equations.h"
+#include "estimator/robust_covariance/disjoint_sets.h"
 
 namespace rcme {
 namespace {
@@ -18,49 +19,24 @@ namespace {
 constexpr size_t kMostOfCell = 16;
 constexpr double kLeastKept = 0.05;  // of the information along a direction, without a group
 
-// Disjoint sets.
-class Groups {
- public:
-  explicit Groups(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int Find(int i) {
-    while (parent_[At(i)] != i) i = parent_[At(i)] = parent_[At(parent_[At(i)])];
-    return i;
-  }
-  void Unite(int i, int k) { parent_[At(Find(i))] = Find(k); }
-  // Numbered 0, 1, ... in the order of their first members.
-  std::vector<int> Numbers() {
-    std::vector<int> numbers;
-    std::map<int, int> number_of;
-    for (size_t i = 0; i < parent_.size(); ++i) {
-      const int next = static_cast<int>(number_of.size());
-      numbers.push_back(number_of.try_emplace(Find(static_cast<int>(i)), next).first->second);
-    }
-    return numbers;
-  }
-
- private:
-  static size_t At(int i) { return static_cast<size_t>(i); }
-  std::vector<int> parent_;
-};
-
 // Unites the matches whose points in one image are within the radius: each looks at the points before it in
 // its own and the eight cells around it, of a grid as wide as the radius.
 void UniteNeighbours(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px,
-                     double radius_px, Groups* groups) {
-  std::map<std::pair<double, double>, std::vector<int>> cells;
-  for (int i = 0; i < static_cast<int>(matches.size()); ++i) {
-    const Eigen::Vector2d& x = matches[static_cast<size_t>(i)].*x_px;
+                     double radius_px, DisjointSets* groups) {
+  std::map<std::pair<double, double>, std::vector<size_t>> cells;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const Eigen::Vector2d& x = matches[i].*x_px;
     const Eigen::Vector2d cell = (x / radius_px).array().floor();
     for (const double dx : {-1.0, 0.0, 1.0}) {
       for (const double dy : {-1.0, 0.0, 1.0}) {
         const auto found = cells.find({cell.x() + dx, cell.y() + dy});
         if (found == cells.end()) continue;
-        for (const int k : found->second) {
-          if ((matches[static_cast<size_t>(k)].*x_px - x).norm() <= radius_px) groups->Unite(i, k);
+        for (const size_t k : found->second) {
+          if ((matches[k].*x_px - x).norm() <= radius_px) groups->Unite(i, k);
         }
       }
     }
-    std::vector<int>& own = cells[{cell.x(), cell.y()}];
+    std::vector<size_t>& own = cells[{cell.x(), cell.y()}];
     if (own.size() < kMostOfCell) own.push_back(i);
   }
 }
@@ -123,7 +99,7 @@ std::vector<int> Separate(size_t num_matches) {
 }
 
 std::vector<int> KeyPointGroups(const std::vector<Correspondence>& matches, double radius_px) {
-  Groups groups(matches.size());
+  DisjointSets groups(matches.size());
   UniteNeighbours(matches, &Correspondence::x1_px, radius_px, &groups);
   UniteNeighbours(matches, &Correspondence::x2_px, radius_px, &groups);
   return groups.Numbers();

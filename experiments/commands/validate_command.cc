@@ -24,7 +24,7 @@ struct ValidateArguments {
   std::string scene;              // empty: all
   double sigma_px = 0.5;
   std::int64_t seed = 1;
-  int num_twins = 1, trials = 0;
+  int num_twins = 3, trials = 0;
   bool draws_no_figure = false;
 };
 

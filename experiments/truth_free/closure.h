@@ -28,10 +28,12 @@ Eigen::Vector3d ClosureOf(const MotionEstimate& ab, const MotionEstimate& bc, co
 //
 //   dc = R_ab' w_ab + R_ac' (w_bc - w_ac),
 //
-// so that Sigma is the sum of the three covariances so turned, and of what pairs have in common: the moves
-// that the residuals of two matches of one key point of a shared image make, A^-1 J' r / (1 - h) each,
-// multiplied. Nothing where Sigma is not positive definite. `expected` is c_0: zero, or, of a twin, what its
-// truth closes to.
+// so that Sigma is the sum Sigma_0 of the three covariances so turned where pairs are independent. They are
+// not: a key point's error is in every match of it. The moves of the closure that the residuals of single
+// matches make, A^-1 J' r / (1 - h) so turned, have the outer products V_i, match by match, and V_c, summed
+// first over the matches that share key points; Sigma = L_0 (L_i^-1 V_c L_i^-T) L_0', L_0 and L_i the roots
+// of Sigma_0 and V_i. Nothing where either is not positive definite. `expected` is c_0: zero, or, of a twin,
+// what its truth closes to.
 std::optional<double> NormalizedClosure(const AnsweredPair& ab, const AnsweredPair& bc,
                                         const AnsweredPair& ac, const Eigen::Vector3d& expected);
 

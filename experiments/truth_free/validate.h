@@ -50,7 +50,7 @@ struct SetReport {
 
 struct ValidationOptions {
   std::uint64_t seed = 1;
-  int num_twins = 1;  // of each pair
+  int num_twins = 3;  // of each pair
 };
 
 // Pure in the options' seed and the pairs' names. The random numbers of a pair are named by it.

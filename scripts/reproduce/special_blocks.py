@@ -219,6 +219,39 @@ def least_coverage(spec):
             f"errors covers as little as {plain:.3f}.")
 
 
+def truth_free(spec):
+    """Of each scene, for each table of `rcme validate` (tables: NAME as WORDS; ...): the share that the 95 % region covers, the
+    same of the twins, and by what the covariances are too small; one test."""
+    tables = [(read_table(name), words) for name, words in spec.parts("tables")]
+    body = []
+    for scene in levels_of(tables[0][0], "set"):
+        line = [scene]
+        for rows, _ in tables:
+            row = the_row(rows, f"set={scene}, test={spec.argument}")
+            if not row["value"]:
+                line.append("-")
+                continue
+            covered, twins = (f"{100 * float(row[name]):.0f}" for name in ("coverage", "twin_coverage"))
+            line.append(f"{covered} ({twins}) of {row['n']}; {float(row['value']):.2g} "
+                        f"[{float(row['lower']):.2g}, {float(row['upper']):.2g}], {row['verdict']}")
+        body.append(line)
+    return markdown(["scene", *(words for _, words in tables)], body)
+
+
+def caught(spec):
+    """In how many sets each test gave the verdict that something is wrong, a row per table (tables: NAME as WORDS; ...)."""
+    wrong = {"too small", "correlated"}
+    body, tests = [], words_of(spec.get("tests"))
+    for name, words in spec.parts("tables"):
+        rows = read_table(name)
+        line = [words]
+        for test in tests:
+            verdicts = [row["verdict"] for row in select(rows, f"test={test}")]
+            line.append(f"{sum(verdict in wrong for verdict in verdicts)} of {len(verdicts)}")
+        body.append(line)
+    return markdown(["what is planted", *tests], body)
+
+
 def winners(spec):
     """Of each study and each kind of table who succeeds most often, whose interval overlaps the winner's, and which of all
     these is fastest."""
@@ -243,4 +276,5 @@ def winners(spec):
 SPECIAL = {"made": made, "list": all_results, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
            "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
            "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "transfer": transfer,
-           "least_coverage": least_coverage, "winners": winners}
+           "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
+           "caught": caught}

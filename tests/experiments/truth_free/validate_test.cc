@@ -83,9 +83,9 @@ TEST(FindTriples, AreOfImagesThatPairsName) {
   EXPECT_EQ(triples[1].ac, 6u);
 }
 
-// Three images of one cloud; every image's key point has one error, which its two pairs share. Mean of 150
-// closures over 3 in (0.75, 1.35), 4 standard errors of chi-square with 3 degrees of freedom: without what
-// the pairs have in common it is not: power.
+// Three images of one cloud; every image's key point has one error, which its two pairs share. The mean of
+// 150 closures over 3 lies within four of its standard errors, 0.067, of one; where the pairs are taken to be
+// independent, the same closures seem smaller: power.
 TEST(NormalizedClosure, HasOneVarianceWhereKeyPointsAreShared) {
   double sum = 0.0, sum_without = 0.0;
   constexpr int kTrials = 150;
@@ -126,9 +126,8 @@ TEST(NormalizedClosure, HasOneVarianceWhereKeyPointsAreShared) {
                        .value_or(0.0) /
                    3.0;
   }
-  EXPECT_GT(sum / kTrials, 0.75);
-  EXPECT_LT(sum / kTrials, 1.35);
-  EXPECT_TRUE(sum_without / kTrials < 0.75 || sum_without / kTrials > 1.35) << sum_without / kTrials;
+  EXPECT_NEAR(sum / kTrials, 1.0, 4.0 * 0.067);
+  EXPECT_LT(sum_without, 0.95 * sum) << sum / kTrials << " " << sum_without / kTrials;
 }
 
 // Inliers of the twin lie at the answer's geometry with noise of the stated size; a key point that two of
@@ -136,7 +135,7 @@ TEST(NormalizedClosure, HasOneVarianceWhereKeyPointsAreShared) {
 TEST(TwinOf, HasTheGeometryOfTheAnswerWithNewNoise) {
   RelativePose pose_true;
   NamedPair pair{"a", "", "", TwoCameraProblem(400, 0.5, 0.0, 1, &pose_true)};
-  pair.problem.matches[7].x1_px = pair.problem.matches[3].x1_px;
+  pair.problem.matches[7] = pair.problem.matches[3];
   MotionEstimate estimate = FitOf(pair.problem, pose_true);
   estimate.sigma_estimated_px = 0.25;
   estimate.inliers.erase(estimate.inliers.begin());
@@ -145,6 +144,7 @@ TEST(TwinOf, HasTheGeometryOfTheAnswerWithNewNoise) {
   EXPECT_EQ(twin.problem.matches[0].x1_px, pair.problem.matches[0].x1_px);
   EXPECT_EQ(twin.problem.matches[5].x2_px, again.problem.matches[5].x2_px);
   EXPECT_NE(twin.problem.matches[5].x2_px, other.problem.matches[5].x2_px);
+  EXPECT_EQ(twin.problem.matches[7].x1_px, twin.problem.matches[3].x1_px);
   const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(estimate.cam2_from_cam1),
                                                      pair.problem.camera1, pair.problem.camera2);
   double sum = 0.0;
@@ -185,12 +185,12 @@ TEST(VerdictOn, ByHand) {
   EXPECT_EQ(VerdictInWords(test), "too small by 2.1 [1.8, 2.5] in variance");
 }
 
-// 14 pairs of 300 matches, 10 % of them wrong.
+// 24 pairs of 500 matches, 10 % of them wrong.
 SetReport ReportOn(const Settings& data, const Settings& options) {
   Study study = ParseStudy(
-      "data: {scene: uniform_volume, num_matches: 300, outlier_ratio: 0.1}\nestimators: [{name: "
+      "data: {scene: uniform_volume, num_matches: 500, outlier_ratio: 0.1}\nestimators: [{name: "
       "rcme_calibrated}]\n"
-      "trials: 14\n",
+      "trials: 24\n",
       "study.yaml");
   for (const auto& [key, value] : data) Override(&study, key, value);
   const std::vector<PairSet> sets = PairSetsOfStudy(MakePlan(study));
@@ -198,14 +198,18 @@ SetReport ReportOn(const Settings& data, const Settings& options) {
   return Validate(sets[0], *MakeEstimator("rcme_calibrated", options), {1, 1});
 }
 
-// Independent noise: no test calls the covariances too small. Errors that neighbours within 60 px share, and
-// points that are found twice: both are found, and named by the correlation of residuals; robust covariances
-// bring the halves back. One seed stands for the rates of experiments/results/robust.
+// Independent noise: the ratios are one. Of 48 values each, the logarithm of a ratio of medians has a
+// standard deviation of 0.18, so that one beyond 2 or below 1/2 is a false alarm of 1e-4. Errors that
+// neighbours within 60 px share, and points that are found twice: both are found, and named by the
+// correlation of residuals; robust covariances bring the halves back. One seed stands for the rates of
+// experiments/results/robust.
 TEST(Validate, FindsCorrelatedNoiseAndRepeatedPointsAndNothingElse) {
   const SetReport independent = ReportOn({}, {});
-  EXPECT_EQ(independent.num_answered, 14);
-  for (const TruthFreeTest& test : independent.tests)
-    EXPECT_NE(test.verdict, TruthFreeVerdict::kTooSmall) << test.name << ": " << VerdictInWords(test);
+  EXPECT_EQ(independent.num_answered, 24);
+  for (const size_t halves : {0, 1}) {
+    EXPECT_LT(independent.tests[halves].ratio.value, 2.0) << VerdictInWords(independent.tests[halves]);
+    EXPECT_GT(independent.tests[halves].ratio.value, 0.5) << VerdictInWords(independent.tests[halves]);
+  }
   EXPECT_NEAR(independent.sigma_px.value, 0.5, 0.05);
 
   const Settings correlated = {{"noise", "correlated"}, {"noise_correlation_length_px", "60"}};
@@ -216,7 +220,7 @@ TEST(Validate, FindsCorrelatedNoiseAndRepeatedPointsAndNothingElse) {
   EXPECT_GT(neighbours.correlations[2].difference.lower, 0.1);
 
   const SetReport repeated = ReportOn({{"noise", "duplicated"}, {"duplicated_share", "0.5"}}, {});
-  EXPECT_GT(repeated.correlations[0].difference.lower, 0.3);
+  EXPECT_GT(repeated.correlations[0].difference.lower, 0.1);
   EXPECT_THAT(repeated.advice, testing::Contains(testing::HasSubstr("one point found twice")));
 }
 
@@ -231,7 +235,8 @@ TEST(Validate, RealScenesNameTheirImages) {
   const std::string folder = SourceFolder() + "/../shared/real/dev";
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "needs the real pairs, " << folder;
   for (const PairSet& set : PairSetsOfFolder(folder, 0.5)) {
-    if (set.name == "strecha_fountain") EXPECT_GT(FindTriples(set.pairs).size(), 10u);
+    if (set.name != "strecha_fountain") continue;
+    EXPECT_GT(FindTriples(set.pairs).size(), 10u);
   }
 }
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <numeric>
+#include <vector>
+
+namespace rcme {
+
+// Things 0, 1, ... in sets that are united.
+class DisjointSets {
+ public:
+  explicit DisjointSets(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), size_t{0}); }
+  size_t Find(size_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void Unite(size_t i, size_t k) { parent_[Find(i)] = Find(k); }
+  // The number of each thing's set: 0, 1, ... in the order of their first members.
+  std::vector<int> Numbers() {
+    std::vector<int> numbers;
+    std::map<size_t, int> number_of;
+    for (size_t i = 0; i < parent_.size(); ++i)
+      numbers.push_back(number_of.try_emplace(Find(i), static_cast<int>(number_of.size())).first->second);
+    return numbers;
+  }
+
+ private:
+  std::vector<size_t> parent_;
+};
+
+}  // namespace rcme
