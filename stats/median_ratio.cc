@@ -7,6 +7,8 @@
 namespace rcme {
 namespace {
 
+constexpr std::ptrdiff_t kLeastUnits = 5;
+
 double RatioIn(std::span<const UnitValues* const> units) {
   std::vector<double> observed, null;
   for (const UnitValues* unit : units) {
@@ -31,7 +33,8 @@ ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confide
   std::vector<const UnitValues*> drawn;
   for (const UnitValues& unit : units) drawn.push_back(&unit);
   ComparedMedians compared{RatioIn(drawn), {0.0, std::numeric_limits<double>::infinity()}};
-  if (std::isnan(compared.value)) return compared;
+  const auto has_values = [](const UnitValues& unit) { return !unit.observed.empty(); };
+  if (std::isnan(compared.value) || std::ranges::count_if(units, has_values) < kLeastUnits) return compared;
   std::vector<double> ratios;
   for (int resample = 0; resample < num_resamples; ++resample) {
     for (const UnitValues*& unit : drawn)

@@ -22,7 +22,8 @@ struct UnitValues {
 
 // Median of all observed values over the median of all null values. Where the values are quadratic forms, it
 // is by what a variance is too small, whatever a few gross ones are. Percentile bootstrap over units (Efron
-// 1979), since the values of one are not independent.
+// 1979), since the values of one are not independent; of fewer than five units with values the interval is
+// [0, infinity].
 ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confidence, int num_resamples,
                                RandomStream& rng);
 

@@ -31,6 +31,15 @@ TEST(RatioOfMedians, WithoutValuesThereIsNone) {
   EXPECT_TRUE(std::isnan(RatioOfMedians(units, 0.95, 10, rng).value));
 }
 
+TEST(RatioOfMedians, OfFourUnitsSaysNothing) {
+  RandomStream rng({.seed = 1, .purpose = 70});
+  const std::vector<UnitValues> four(4, {{2.0}, {1.0}}), five(5, {{2.0}, {1.0}});
+  EXPECT_EQ(RatioOfMedians(four, 0.95, 10, rng).value, 2.0);
+  EXPECT_EQ(RatioOfMedians(four, 0.95, 10, rng).interval.lower, 0.0);
+  EXPECT_TRUE(std::isinf(RatioOfMedians(four, 0.95, 10, rng).interval.upper));
+  EXPECT_EQ(RatioOfMedians(five, 0.95, 10, rng).interval.lower, 2.0);
+}
+
 // Thirty units of two values each whose observed ones have twice the variance, and nulls alike within a unit.
 // The interval must cover the true ratio 2: nominal 0.90 to 0.99 for a bootstrap of so few units, 300
 // repeats, at 1e-4; and exclude 1 nearly always: power.
