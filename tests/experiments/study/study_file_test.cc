@@ -124,7 +124,7 @@ TEST(ParseStudyErrors, UnknownKeys) {
   EXPECT_TRUE(Refuses(Edited("outlier_ratio:", "outlier_rate:"),
                       {":6:", "'outlier_rate'", "known keys", "outlier_ratio"}));
   EXPECT_TRUE(Refuses(Edited("label: ours", "alias: ours"),
-                      {":9:", "'alias'", "known keys", "file, label, name, options, provenance"}));
+                      {":9:", "'alias'", "known keys", "file, label, name, options, process, provenance"}));
   EXPECT_TRUE(Refuses(Edited("reading: rank_aware", "readings: x"),
                       {":9:", "no option 'readings'", "its options", "num_iterations"}));
   EXPECT_TRUE(Refuses(SmallStudyYaml() + "failure:\n  max_error: 3\n",
