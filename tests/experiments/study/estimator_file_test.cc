@@ -63,7 +63,8 @@ TEST(ParseEstimatorFile, FillsInWhatIsLeftOut) {
 }
 
 TEST(ParseEstimatorFileErrors, NameLineKeyAndWhatIsAllowed) {
-  EXPECT_TRUE(Refuses(Edited("label:", "lable:"), {":3:", "'lable'", "label, name, options, process, provenance"}));
+  EXPECT_TRUE(
+      Refuses(Edited("label:", "lable:"), {":3:", "'lable'", "label, name, options, process, provenance"}));
   EXPECT_TRUE(Refuses(Edited("label: rcme_tuned", "name: rcme"), {":3:", "'name'", "twice"}));
   EXPECT_TRUE(Refuses(Edited("label: rcme_tuned", "label: [a]"), {":3:", "label", "one value is needed"}));
   EXPECT_TRUE(Refuses(Edited("name: rcme", "name: magsac"), {"'magsac'", "standard, prcme, rcme"}));
