@@ -52,7 +52,7 @@ class AnyLanguage(unittest.TestCase):
     def test_the_same_numbers_by_every_way(self):
         by_function = rcme.run(self.study, {"opencv": example().estimate})
         estimator = self.folder / "opencv.yaml"
-        estimator.write_text(f"process: \"{sys.executable} {EXAMPLE}\"\nlabel: opencv\n")
+        estimator.write_text(f"process: \"{sys.executable} {EXAMPLE}\"\nlabel: opencv\noptions: {{timeout_s: 100}}\n")
         by_process = self.folder / "process.sqlite"
         self.program("run", self.study, "--add-estimator", estimator, "--out", by_process)
         self.program("export", self.study, "--out", self.folder / "problems")
