@@ -114,6 +114,12 @@ double ShareWithin(std::span<const UnitValues> units, std::vector<double> UnitVa
   return n > 0.0 ? num_within / n : kNaN;
 }
 
+double MedianOfNull(std::span<const UnitValues> units) {
+  std::vector<double> all;
+  for (const UnitValues& unit : units) all.insert(all.end(), unit.null.begin(), unit.null.end());
+  return MedianOf(std::move(all));
+}
+
 TruthFreeTest TestOf(std::string name, int degrees_of_freedom, const std::vector<UnitValues>& units,
                      RandomStream& rng) {
   TruthFreeTest test;
@@ -124,6 +130,9 @@ TruthFreeTest TestOf(std::string name, int degrees_of_freedom, const std::vector
   test.coverage = ShareWithin(units, &UnitValues::observed, bound);
   test.twin_coverage = ShareWithin(units, &UnitValues::null, bound);
   test.ratio = RatioOfMedians(units, kConfidence, kResamples, rng);
+  const double conservative = std::min(1.0, MedianOfNull(units) / ChiSquareQuantile(degrees_of_freedom, 0.5));
+  for (double* x : {&test.ratio.value, &test.ratio.interval.lower, &test.ratio.interval.upper})
+    *x *= conservative;
   test.verdict = VerdictOn(test.ratio);
   return test;
 }

@@ -26,7 +26,9 @@ struct TruthFreeTest {
   int degrees_of_freedom = 5;
   int num_values = 0;                          // of the pairs themselves
   double coverage = 0.0, twin_coverage = 0.0;  // share within the 95 % region; NaN: none
-  ComparedMedians ratio;  // of the medians, pairs' over twins': by what the covariances are too small
+  // By what the covariances are too small, in variance: the pairs' median over that of the twins, or, where
+  // the covariances are wider than even the twins need (a factor does that), over the median of chi-square.
+  ComparedMedians ratio;
   TruthFreeVerdict verdict = TruthFreeVerdict::kNoData;
 };
 

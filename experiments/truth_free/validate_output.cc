@@ -97,13 +97,14 @@ std::string ValidationAsTable(const std::vector<SetReport>& reports) {
   return text + fmt::format(
                     "Covariances against the differences of two halves of the matches (5 degrees of freedom) "
                     "and the closure of\n"
-                    "rotations around three images (3), as ratios of medians to those of simulated twins: "
-                    "the same matches at the\n"
-                    "estimated geometry with independent noise anew. 95 % intervals: bootstrap over pairs "
-                    "(closure: triples), which\n"
-                    "share images, so that they are too narrow. holds: the whole interval within [1/{0:g}, "
-                    "{0:g}]. Correlations are\n"
-                    "beyond those of the twins; nominal below {1:g}.\n",
+                    "rotations around three images (3): medians over those of simulated twins (the same "
+                    "matches at the estimated\n"
+                    "geometry with independent noise anew), or over the median of chi-square where the "
+                    "twins' are below it. 95 %\n"
+                    "intervals: bootstrap over pairs (closure: triples), which share images, so that they "
+                    "are too narrow. holds: the\n"
+                    "whole interval within [1/{0:g}, {0:g}]. Correlations are beyond those of the twins; "
+                    "nominal below {1:g}.\n",
                     kNominalVariance, kNominalCorrelation);
 }
 

@@ -1,10 +1,11 @@
 """Blocks that one page needs: each is a function of its spec that returns Markdown."""
 
 import json
+import math
 import re
 
 from recipes import MADE, RESULTS, ROOT, read_recipes
-from tables import as_number, is_level, levels_of, rate, read_table, scientific, select, the_row
+from tables import as_number, is_level, levels_of, rate, read_table, scientific, select, the_row, words_of
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
 
@@ -232,8 +233,9 @@ def truth_free(spec):
                 line.append("-")
                 continue
             covered, twins = (f"{100 * float(row[name]):.0f}" for name in ("coverage", "twin_coverage"))
+            upper = float(row["upper"]) if row["upper"] else math.inf
             line.append(f"{covered} ({twins}) of {row['n']}; {float(row['value']):.2g} "
-                        f"[{float(row['lower']):.2g}, {float(row['upper']):.2g}], {row['verdict']}")
+                        f"[{float(row['lower']):.2g}, {upper:.2g}], {row['verdict']}")
         body.append(line)
     return markdown(["scene", *(words for _, words in tables)], body)
 
