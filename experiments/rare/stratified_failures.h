@@ -1,7 +1,7 @@
 // Failure rates from plain trials of which hard ones are run and most easy ones are not: stratification by
 // the Cramer-Rao bound.
 //
-// A trial's scene and outliers are drawn as ever, and the bound of its motion is computed: some 20
+// A trial's scene and outliers are drawn as ever, and the bound of its motion is computed: some 10
 // microseconds, where an estimator may take milliseconds. If errors were normal with that covariance, the
 // failure would have the probability
 //   p = max over rotation and direction of P(|Normal(0, lambda)| > bound),  lambda the greatest eigenvalue,
