@@ -159,6 +159,7 @@ TEST_F(DividedWork, WhatDoesNotBelongTogetherIsRefused) {
   };
   const std::string program = changed("program", "rcme 0.0.1");
   EXPECT_TRUE(IsRefused({second, program}, {program, "another program, 'rcme 0.0.1' there"}));
+  EXPECT_TRUE(IsRefused({program}, {program, "this knitting", "another program, 'rcme 0.0.1' there"}));
   const std::string machine = changed("instruction_set", "abacus");
   EXPECT_TRUE(IsRefused({second, machine}, {machine, second, "another instruction set, 'abacus' there"}));
   EXPECT_TRUE(ThrowsInputError([&] { JoinParts({second, machine}); }, {machine, second, "abacus"}));

@@ -114,6 +114,14 @@ TEST_F(TuneParts, OfATransferGiveTheBytesOfOneMachine) {
   }
 }
 
+TEST_F(TuneParts, OfOtherLevelsAreRefused) {
+  const std::string path = PartsOf(PiecesOfTransfer(plan_), 1).front();
+  StudyPlan other = plan_;
+  other.study.tuning->options.front().levels.back() = "5";
+  EXPECT_TRUE(ThrowsInputError([&] { MergeParts(PiecesOfTransfer(other).pieces, {path}); },
+                               {path, "tune: mu: 1, 2, 3, 6' there", "tune: mu: 1, 2, 3, 5' here"}));
+}
+
 TEST_F(TuneParts, DamageIsNamed) {
   const TuningPieces work = PiecesOfTuning(plan_);
   const std::string path = PartsOf(work, 1).front();

@@ -196,6 +196,19 @@ TEST(MapParts, GiveTheBytesOfOneMachine) {
   }
 }
 
+TEST(MapParts, OfAnotherSeedAreRefused) {
+  const TempFolder folder;
+  const std::string path = folder.Path("part.json");
+  MapWork work{SmallMap(3), std::nullopt, ""};
+  RunMapPart(work, {1, 1}, path);
+  work.map.seed = 2;
+  EXPECT_TRUE(ThrowsInputError(
+      [&] {
+        RunMapPart(work, {1, 1}, path);
+      },
+      {path, "'seed: 1' there, 'seed: 2' here"}));
+}
+
 TEST(MapParts, DamageIsNamed) {
   MapWork work{SmallMap(3), ValidityReferenceOptions{}, ""};
   work.reference->num_samples = work.reference->num_noises = work.reference->num_draws = 20;
