@@ -85,7 +85,7 @@ TEST_F(Description, TheFolderOfRealPairsIsNotNeeded) {
   const StudyPlan simulated = MakePlan(SmallStudy());
   const TrialData data = simulated.conditions[0].source->Make({1, 0, 0, 0});
   WriteMatchFile({"", "street", data.problem.matches, data.problem.camera1, data.problem.camera2,
-                  data.truth.cam2_from_cam1_true},
+                  data.truth.cam2_from_cam1_true, {}, {}, {}},
                  pairs + "/one.csv");
   Study study = SmallStudy();
   study.factors.clear();
