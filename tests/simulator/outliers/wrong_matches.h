@@ -59,8 +59,8 @@ inline WrongMatches MakeWrong(const OutlierLaw& law, const Scene& scene, size_t 
   wrong.points.resize(n);
   std::iota(wrong.points.begin(), wrong.points.end(), 0u);
   const std::span<const std::uint32_t> all(wrong.points);
-  law.Replace(all.first(num_wrong), {scene, all.subspan(num_wrong), wrong.matches, wrong.is_undetectable},
-              rng);
+  law.Replace(all.first(num_wrong),
+              {scene, all.subspan(num_wrong), wrong.matches, wrong.is_undetectable, wrong.exact}, rng);
   return wrong;
 }
 
