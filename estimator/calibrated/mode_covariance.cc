@@ -34,18 +34,20 @@ Matrix5d GreaterOf(const Matrix5d& a, const Matrix5d& b) {
   return root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose();
 }
 
-// Along each principal axis of the covariance times k / (k - 2), k the effective number of matches that it
-// rests on where these are fewer than kFew, else the degrees of freedom of the whole.
-Matrix5d WidenedForFew(const Matrix5d& covariance, const Matrix5d& inverse, const Mode& mode,
-                       const Explanation& e, double freedom) {
-  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(covariance);
-  const Vector5d effective = EffectiveMatches(mode, e, inverse * eigen.eigenvectors());
-  Vector5d widened = eigen.eigenvalues();
+// Along each principal axis of the covariance root root' times k / (k - 2), k the effective number of matches
+// that it rests on where these are fewer than kFew, else the degrees of freedom of the whole. By its root, so
+// that rounding does not make it indefinite.
+Matrix5d WidenedForFew(const Matrix5d& root, const Matrix5d& inverse, const Mode& mode, const Explanation& e,
+                       double freedom) {
+  const Matrix5d axes = Eigen::SelfAdjointEigenSolver<Matrix5d>(root * root.transpose()).eigenvectors();
+  const Vector5d effective = EffectiveMatches(mode, e, inverse * axes);
+  Vector5d factor;
   for (int axis = 0; axis < 5; ++axis) {
     const double k = std::max(effective(axis) < kFew ? std::min(effective(axis), freedom) : freedom, 3.0);
-    widened(axis) *= k / (k - 2.0);
+    factor(axis) = std::sqrt(k / (k - 2.0));
   }
-  return eigen.eigenvectors() * widened.asDiagonal() * eigen.eigenvectors().transpose();
+  const Matrix5d widened = axes * factor.asDiagonal() * axes.transpose() * root;
+  return widened * widened.transpose();
 }
 
 }  // namespace
@@ -106,7 +108,7 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(scores);
   const Matrix5d root =
       inverse * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const Matrix5d covariance = WidenedForFew(root * root.transpose(), inverse, mode, e, freedom);
+  const Matrix5d covariance = WidenedForFew(root, inverse, mode, e, freedom);
   return covariance.allFinite() ? covariance : mode.inverse_hessian;
 }
 
