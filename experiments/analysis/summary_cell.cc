@@ -157,7 +157,8 @@ void ReadAllTexts(const TextsByName& texts, size_t estimator, std::int64_t num_t
                   const std::vector<Quantity<Record>>& quantities, std::vector<QuantityCounts>* counts) {
   for (size_t q = 0; q < quantities.size(); ++q) {
     const auto found = texts.find({estimator, quantities[q].name});
-    if (found == texts.end()) throw Damage(fmt::format("table counts lacks '{}'", quantities[q].name));
+    if (found == texts.end())
+      throw Damage(fmt::format("table counts lacks '{}' (of another version of rcme?)", quantities[q].name));
     const CountedQuantity& row = *found->second;
     try {
       if (row.n < 0 || row.n > num_trials) throw std::invalid_argument("more numbers than trials");

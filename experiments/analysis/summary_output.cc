@@ -12,6 +12,33 @@
 #include "experiments/base/json_output.h"
 
 namespace rcme {
+
+std::string IntervalKindInWords(IntervalKind kind) {
+  switch (kind) {
+    case IntervalKind::kExact:
+      return "exact 95 % (Clopper-Pearson)";
+    case IntervalKind::kAnytimeValid:
+      return "anytime-valid 95 % (confidence sequence)";
+    case IntervalKind::kWeighted:
+      return "weighted 95 % (Fay-Feuer, cautious upper end)";
+    case IntervalKind::kBetting:
+      return "anytime-valid 95 % (betting)";
+    case IntervalKind::kLogStudent:
+      return "approximate 95 % (Student on the logarithm)";
+  }
+  return "";
+}
+
+std::string IntervalKindsIn(const Summary& summary) {
+  std::set<std::string> kinds;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.kind == SummaryRow::Kind::kRate && row.estimator != kSceneLabel &&
+        !row.quantity.ends_with("_flips"))
+      kinds.insert(IntervalKindInWords(row.interval_kind));
+  }
+  return fmt::format("{}", fmt::join(kinds, " and "));
+}
+
 namespace {
 
 bool HasKindOfInterval(const SummaryRow& row) {
@@ -59,34 +86,6 @@ std::string IntervalKindName(IntervalKind kind) {
       return "log_student";
   }
   return "";
-}
-
-// For people.
-std::string IntervalKindInWords(IntervalKind kind) {
-  switch (kind) {
-    case IntervalKind::kExact:
-      return "exact 95 % (Clopper-Pearson)";
-    case IntervalKind::kAnytimeValid:
-      return "anytime-valid 95 % (confidence sequence)";
-    case IntervalKind::kWeighted:
-      return "weighted 95 % (Fay-Feuer, cautious upper end)";
-    case IntervalKind::kBetting:
-      return "anytime-valid 95 % (betting)";
-    case IntervalKind::kLogStudent:
-      return "approximate 95 % (Student on the logarithm)";
-  }
-  return "";
-}
-
-// "exact 95 % (Clopper-Pearson)", or several kinds.
-std::string IntervalKindsIn(const Summary& summary) {
-  std::set<std::string> kinds;
-  for (const SummaryRow& row : summary.rows) {
-    if (row.kind == SummaryRow::Kind::kRate && row.estimator != kSceneLabel &&
-        !row.quantity.ends_with("_flips"))
-      kinds.insert(IntervalKindInWords(row.interval_kind));
-  }
-  return fmt::format("{}", fmt::join(kinds, " and "));
 }
 
 // The last two columns: the verdict of a coverage, and how many trials would decide it.
@@ -200,11 +199,12 @@ std::string SplitAsTable(const Summary& summary) {
 }  // namespace
 
 std::string SummaryAsTable(const Summary& summary) {
-  std::string text = fmt::format(
-      "Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
-      summary.num_trials_planned,
-      EstimatorsAsTable(summary, {"failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage",
-                                  "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"}));
+  std::string text =
+      fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
+                  summary.num_trials_planned,
+                  EstimatorsAsTable(summary, {"failure", "failure_or_refusal", "no_candidate",
+                                              "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
+                                              "rotation_error_deg", "direction_error_deg", "time_ms"}));
   text += AccuracyAsTable(summary) + SplitAsTable(summary);
   text += SeverityAsTable(summary);
   text += fmt::format(

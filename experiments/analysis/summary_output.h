@@ -18,4 +18,10 @@ std::string SummaryAsCsv(const Summary& summary);
 // numbers are null.
 std::string SummaryAsJson(const Summary& summary);
 
+// "exact 95 % (Clopper-Pearson)", for people.
+std::string IntervalKindInWords(IntervalKind kind);
+
+// Of the rates of the estimators: one kind, or several joined by "and".
+std::string IntervalKindsIn(const Summary& summary);
+
 }  // namespace rcme

@@ -48,6 +48,8 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       {"failure", kRate,
        "a motion beyond a failure bound or an answer that is not valid, of all trials but those not scored",
        [](R r, B b) { return If(IsScored(r), HasFailed(r, b)); }},
+      {"failure_or_refusal", kRate, "no success: a failure or no motion, of all trials but those not scored",
+       [](R r, B b) { return If(IsScored(r), HasFailedOrRefused(r, b)); }},
       StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
       {"other_refusal", kRate, "no motion for any other reason (the sum of the next fifteen), of all trials",
        [](R r, B) { return Yes(HasRefused(r) && r.status != MotionStatus::kNoCandidate); }},

@@ -13,6 +13,8 @@ std::string CsvField(const std::string& text);
 std::string CsvNumber(double x);
 // The same, empty for infinite ones too.
 std::string CsvFinite(double x);
+// As LaTeX prints it: no character of it is a command, or an argument of the command before it.
+std::string LatexText(const std::string& text);
 // All digits; null for what is not finite.
 nlohmann::ordered_json JsonNumber(double x);
 

@@ -4,11 +4,13 @@
 
 #include "experiments/analysis/forecast_output.h"
 #include "experiments/analysis/summarize_counts.h"
+#include "experiments/analysis/summary_latex.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/analysis/trial_table.h"
 #include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -26,10 +28,30 @@ std::string Tables(const ResultStore& store, const Summary& summary) {
                                           : text;
 }
 
-std::string TextOf(const Summary& summary, const std::string& format) {
-  return format == "csv"    ? SummaryAsCsv(summary)
-         : format == "json" ? SummaryAsJson(summary)
-                            : SummaryAsTable(summary);
+struct Arguments {
+  std::string run, format = "table", raw, fifths_of, out;
+  std::vector<std::string> quantities = DefaultLatexQuantities(), labels;  // of a table for a paper
+  bool with_times = false, is_pooled = false;
+};
+
+// NAME=TEXT each, the text with whatever it has.
+Settings LabelsOf(const std::vector<std::string>& texts) {
+  Settings labels;
+  for (const std::string& text : texts) {
+    const size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw InputError(fmt::format("--labels: {} is not allowed; give name=text", Quoted(text)));
+    labels.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  return labels;
+}
+
+std::string TextOf(const Summary& summary, const Arguments& arguments) {
+  const std::string& format = arguments.format;
+  return format == "csv"     ? SummaryAsCsv(summary)
+         : format == "json"  ? SummaryAsJson(summary)
+         : format == "latex" ? SummaryAsLatex(summary, arguments.quantities, LabelsOf(arguments.labels))
+                             : SummaryAsTable(summary);
 }
 
 }  // namespace
@@ -38,10 +60,6 @@ void AddSummarizeCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "summarize",
       "Rates, scores and medians with 95 % intervals, means with standard errors, from a result file");
-  struct Arguments {
-    std::string run, format = "table", raw, fifths_of, out;
-    bool with_times = false, is_pooled = false;
-  };
   command->footer(
       "Beside rates and means: AUC at 5, 10 and 20 degrees, the mean over trials of max(0, 1 - e / T), e "
       "the\n"
@@ -62,14 +80,29 @@ void AddSummarizeCommand(CLI::App& app) {
       "Examples:\n"
       "  rcme summarize run.sqlite\n"
       "  rcme summarize run.sqlite --format csv --out summary.csv\n"
+      "  rcme summarize run.sqlite --format latex --quantities failure,nees_coverage --labels rcme=RCME\n"
       "  rcme summarize run.sqlite --fifths-of crb_direction_deg\n"
       "  rcme summarize run.sqlite --raw csv --out trials.csv");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   CLI::Option* format =
-      command->add_option("--format", arguments->format, "table (for people), csv or json (every quantity)")
-          ->check(CLI::IsMember({"table", "csv", "json"}))
+      command
+          ->add_option(
+              "--format", arguments->format,
+              "table (for people), csv or json (every quantity), latex (a table of a paper, booktabs)")
+          ->check(CLI::IsMember({"table", "csv", "json", "latex"}))
           ->capture_default_str();
+  command
+      ->add_option("--quantities", arguments->quantities,
+                   "a,b,...: the columns of --format latex (rcme list quantities)")
+      ->delimiter(',')
+      ->needs(format)
+      ->capture_default_str();
+  command
+      ->add_option("--labels", arguments->labels,
+                   "name=text, repeatable: what --format latex prints for an estimator, factor or quantity")
+      ->allow_extra_args(false)
+      ->needs(format);
   command->add_option("--raw", arguments->raw, "csv: every trial in a row of its own, nothing summarized")
       ->check(CLI::IsMember({"csv"}))
       ->excludes(format);
@@ -93,7 +126,7 @@ void AddSummarizeCommand(CLI::App& app) {
       if (!arguments->fifths_of.empty())
         throw InputError(arguments->run + ": --fifths-of needs all trials, not counts (rcme run --keep all)");
       const Summary summary = SummarizeCounts(OpenCounts(arguments->run), arguments->with_times, pooling);
-      return PrintOrWrite(arguments->out, TextOf(summary, arguments->format));
+      return PrintOrWrite(arguments->out, TextOf(summary, *arguments));
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
@@ -102,7 +135,7 @@ void AddSummarizeCommand(CLI::App& app) {
             ? Summarize(store, arguments->with_times, pooling)
             : Summarize(store, arguments->with_times, GroupByFifth(store, arguments->fifths_of));
     PrintOrWrite(arguments->out,
-                 arguments->format == "table" ? Tables(store, summary) : TextOf(summary, arguments->format));
+                 arguments->format == "table" ? Tables(store, summary) : TextOf(summary, *arguments));
   });
 }
 

@@ -24,6 +24,7 @@ class SummarizeTest : public SummarizedRun {};
 TEST_F(SummarizeTest, RatesByHand) {
   ExpectRate("success", 4, 10);
   ExpectRate("failure", 2, 10);
+  ExpectRate("failure_or_refusal", 6, 10);
   ExpectRate("no_candidate", 2, 10);
   ExpectRate("too_few_matches", 1, 10);
   ExpectRate("degenerate_matches", 0, 10);

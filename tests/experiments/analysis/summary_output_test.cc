@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/analysis/summary_latex.h"
+#include "parameters/input_error.h"
 #include "tests/test_support/summarized_run.h"
 
 namespace rcme {
@@ -108,6 +110,44 @@ TEST_F(SummaryOutputTest, TableShowsIntervalsAndCounts) {
   EXPECT_NE(table.find("Study small: 10 of 12 trials done"), std::string::npos) << table;
   EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;  // failure, 2 of 10
   EXPECT_NE(table.find("Clopper-Pearson"), std::string::npos) << table;
+}
+
+TEST_F(SummaryOutputTest, LatexHasARowPerConditionAndEstimatorAndIntervals) {
+  const std::vector<std::string> lines = Lines(
+      SummaryAsLatex(SummaryOf("run"), {"failure", "nees_median", "rotation_error_deg", "kappa_flag"}, {}));
+  ASSERT_EQ(lines.size(), 12u);
+  EXPECT_EQ(lines[3], "\\begin{tabular}{llrrrrr}");
+  EXPECT_EQ(lines[4], "\\toprule");
+  EXPECT_EQ(lines[5],
+            "outlier ratio & estimator & $n$ & failure (\\%) & nees median & rotation error deg & "
+            "kappa flag (\\%) \\\\");
+  EXPECT_EQ(lines[6], "\\midrule");
+  EXPECT_TRUE(lines[7].starts_with("0 & standard & 10 & 20.00 [2.52, 55.61] & ")) << lines[7];
+  EXPECT_NE(lines[7].find("2 $\\pm$ 0.41 ($n = 4$)"), std::string::npos) << lines[7];
+  EXPECT_NE(lines[7].find("16.67 [0.42, 64.12] ($n = 6$) \\\\"), std::string::npos) << lines[7];
+  EXPECT_EQ(lines[8], "\\addlinespace");
+  EXPECT_EQ(lines[9], "0.3 & standard & 0 & -- & -- & -- & -- \\\\");
+  EXPECT_EQ(lines[11], "\\end{tabular}");
+}
+
+TEST_F(SummaryOutputTest, LatexEscapesEveryNameAndTakesLabels) {
+  study_.name = "50 %\nof_all";
+  study_.estimators[0].label = "[a]_b&c\\d~$";
+  Write("named", HandMadeRecords());
+  const Summary summary = SummaryOf("named");
+  const std::string text = SummaryAsLatex(summary, {"failure"}, {{"outlier_ratio", "share of x_i"}});
+  EXPECT_NE(text.find("% Study 50 \\% of\\_all: "), std::string::npos) << text;
+  EXPECT_NE(text.find("{[}a]\\_b\\&c\\textbackslash{}d\\textasciitilde{}\\$ & "), std::string::npos) << text;
+  EXPECT_NE(text.find("share of x\\_i & estimator"), std::string::npos) << text;
+  EXPECT_NE(SummaryAsLatex(summary, {"failure"}, {{"[a]_b&c\\d~$", "Ours"}}).find("0 & Ours & "),
+            std::string::npos);
+}
+
+TEST_F(SummaryOutputTest, LatexRefusesNamesThatThereAreNot) {
+  const Summary summary = SummaryOf("run");
+  EXPECT_THROW(SummaryAsLatex(summary, {"failures"}, {}), InputError);
+  EXPECT_THROW(SummaryAsLatex(summary, {"failure"}, {{"sandard", "S"}}), InputError);
+  EXPECT_THROW(SummaryAsLatex(summary, {"failure"}, {{"nees_median", "not shown"}}), InputError);
 }
 
 TEST_F(SummaryOutputTest, EqualDataGiveEqualBytesInWhateverOrderTheyCame) {
