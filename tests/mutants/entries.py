@@ -14,7 +14,7 @@ import tomllib
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 SOURCE = FOLDER.parents[1]
-ROOMS = ("stats", "simulator", "estimator", "experiments", "plots")
+ROOMS = ("stats", "simulator", "estimator", "peers", "experiments", "plots")
 KEYS = {"was", "now", "in", "equivalent"}
 
 

@@ -9,7 +9,7 @@ import time
 
 # A room's mutants are to be caught by the room's own tests.
 PROGRAMS = {"stats": ["stats_test"], "simulator": ["simulator_test"], "estimator": ["estimator_test"],
-            "experiments": ["experiments_test", "end_to_end_test"]}
+            "peers": ["peers_test"], "experiments": ["experiments_test", "end_to_end_test"]}
 MAX_MEMORY_BYTES = 6 << 30
 
 
