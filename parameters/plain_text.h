@@ -15,7 +15,7 @@ size_t Utf8Length(std::string_view text);
 // line end. npos: nowhere.
 size_t FindNotPlain(std::string_view text);
 
-// `text` with escapes in place of line ends and of what is not plain (\n, \x1B); where it has more than
+// `text` with escapes in place of line ends and of what is not plain (a line end becomes a backslash and n); where it has more than
 // `max_bytes` the middle gives way to "[... 1234 bytes ...]".
 std::string Printable(std::string_view text, size_t max_bytes = 4000);
 

@@ -25,4 +25,23 @@ std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
+std::string FormatMarkdown(const std::vector<std::vector<std::string>>& rows) {
+  std::string text;
+  for (size_t r = 0; r < rows.size(); ++r) {
+    for (const std::string& cell : rows[r]) {
+      text += "| ";
+      for (const char c : cell) {
+        if (c == '|' || c == '<' || c == '*' || c == '\\') text += '\\';
+        text += c;
+      }
+      text += ' ';
+    }
+    text += "|\n";
+    if (r > 0) continue;
+    for (size_t c = 0; c < rows[r].size(); ++c) text += "|---";
+    text += "|\n";
+  }
+  return text;
+}
+
 }  // namespace rcme

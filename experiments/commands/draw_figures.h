@@ -14,7 +14,7 @@ enum class ScriptEnd {
 // What a script prints on standard output: the names of what it wrote, or its help.
 enum class ScriptOutput { kShown, kDropped };
 
-// Runs the script plots/<kind>.py with these arguments, with a Python that has what it needs.
+// Runs the script plots/KIND.py with these arguments, with a Python that has what it needs.
 ScriptEnd RunPlotScript(const std::string& kind, const std::vector<std::string>& arguments,
                         ScriptOutput output);
 

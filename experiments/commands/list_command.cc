@@ -14,6 +14,7 @@
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
+#include "experiments/study/study_keys.h"
 #include "parameters/input_error.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"
@@ -100,6 +101,13 @@ Rows ListSettings() {
   return rows;
 }
 
+Rows ListKeys() {
+  Rows rows = {{"block", "key", "default", "allowed", "what it is"}};
+  for (const StudyKey& key : StudyKeys())
+    rows.push_back({key.block, key.name, key.value, key.allowed, key.doc});
+  return rows;
+}
+
 Rows ListQuantities() {
   Rows rows = {{"quantity", "kind", "what it is"}};
   for (const QuantityHelp& q : SummaryQuantities()) rows.push_back({q.name, q.kind, q.doc});
@@ -138,21 +146,26 @@ Rows ListStudies() {
 void AddListCommand(CLI::App& app) {
   using Lister = std::function<Rows()>;
   static const std::vector<std::pair<std::string, Lister>> kLists = {
-      {"estimators", ListEstimators}, {"options", ListOptions},   {"scenes", ListScenes},
-      {"cameras", ListCameras},       {"motions", ListMotions},   {"noise", ListNoise},
-      {"outliers", ListOutliers},     {"settings", ListSettings}, {"quantities", ListQuantities},
-      {"claims", ListClaims},         {"studies", ListStudies}};
+      {"estimators", ListEstimators}, {"options", ListOptions}, {"scenes", ListScenes},
+      {"cameras", ListCameras},       {"motions", ListMotions}, {"noise", ListNoise},
+      {"outliers", ListOutliers},     {"keys", ListKeys},       {"settings", ListSettings},
+      {"quantities", ListQuantities}, {"claims", ListClaims},   {"studies", ListStudies}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
   CLI::App* command = app.add_subcommand(
       "list",
       "What there is: estimators and their options; scenes, cameras, motions, noise and outliers with their "
-      "settings; quantities, claims, studies");
+      "settings; keys of a study, quantities, claims, studies");
   auto what = std::make_shared<std::string>();
+  auto format = std::make_shared<std::string>("table");
   command->add_option("what", *what, "one list; default: all but studies")->check(CLI::IsMember(names));
-  command->callback([what] {
+  command->add_option("--format", *format, "table: columns for a terminal; markdown: as in docs/reference")
+      ->check(CLI::IsMember({"table", "markdown"}))
+      ->capture_default_str();
+  command->callback([what, format] {
     for (const auto& [name, lister] : kLists) {
-      if (what->empty() ? name != "studies" : name == *what) fmt::print("{}\n", FormatColumns(lister()));
+      if (what->empty() ? name == "studies" : name != *what) continue;
+      fmt::print("{}\n", *format == "table" ? FormatColumns(lister()) : FormatMarkdown(lister()));
     }
   });
 }

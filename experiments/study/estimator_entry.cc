@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/study/study_keys.h"
 
 namespace rcme {
 namespace {
@@ -43,7 +44,7 @@ Parameter BudgetParameter(double* budget_ms) {
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller) {
   EstimatorSpec spec;
-  std::set<std::string> known = {"name", "process", "answers", "label", "options", "budget_ms", "provenance"};
+  std::set<std::string> known = StudyKeysOf("estimator");
   known.insert(keys_of_caller.begin(), keys_of_caller.end());
   for (const auto& [key, value] : Entries(place, node, block, known)) {
     const bool is_outside = key == "process" || key == "answers";

@@ -10,6 +10,7 @@
 #include "experiments/data/make_data.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
+#include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
 #include "parameters/plain_text.h"
 
@@ -59,7 +60,8 @@ Parameter CommonScenesParameter(bool* common_scenes) {
 
 // An entry of the list of estimators; {file: tuned.yaml} is that file's, seen from the study's folder.
 EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
-  if (!node.IsMap() || !node["file"]) return ReadEstimatorEntry(place, node, "estimators", {"file"});
+  if (!node.IsMap() || !node["file"])
+    return ReadEstimatorEntry(place, node, "estimators", StudyKeysOf("estimators"));
   EstimatorSpec spec;
   std::string label;
   for (const auto& [key, value] : Entries(place, node, "estimators: file", {"file", "label"})) {
@@ -148,9 +150,7 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
 
 Ademp ReadAdemp(const Place& place, const YAML::Node& node) {
   Ademp ademp;
-  std::set<std::string> known;
-  for (const auto& [key, text] : Parts(ademp)) known.insert(key);
-  const auto entries = Entries(place, node, "ademp", known);
+  const auto entries = Entries(place, node, "ademp", StudyKeysOf("ademp"));
   for (const auto& [key, text] : Parts(ademp)) {
     const auto entry = std::ranges::find(entries, key, &std::pair<std::string, YAML::Node>::first);
     if (entry == entries.end()) place.Fail(node, fmt::format("ademp: key '{}' is missing", key));
@@ -247,10 +247,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
   Study study;
   study.name = std::filesystem::path(path).stem().string();
-  for (const auto& [key, node] :
-       Entries(place, root, "study",
-               {"name", "description", "ademp", "seed", "trials", "repeats_per_scene", "common_scenes",
-                "data", "design", "factors", "estimators", "failure", "tune"})) {
+  for (const auto& [key, node] : Entries(place, root, "study", StudyKeysOf("study"))) {
     if (key == "name") study.name = Name(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/study/study_keys.h"
 
 namespace rcme {
 namespace {
@@ -135,9 +136,7 @@ const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<Esti
 Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<EstimatorSpec>& estimators) {
   Tuning tuning;
   const std::vector<Parameter> parameters = Parameters(tuning);
-  std::set<std::string> known = {"options"};
-  for (const Parameter& p : parameters) known.insert(p.name());
-  for (const auto& [key, value] : Entries(place, node, "tune", known)) {
+  for (const auto& [key, value] : Entries(place, node, "tune", StudyKeysOf("tune"))) {
     if (key == "options") continue;
     place.At(value, [&, key = key, value = value] {
       FindParameter(parameters, key).SetFromText(Scalar(place, value, "tune: " + key));

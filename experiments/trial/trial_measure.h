@@ -1,7 +1,7 @@
 // The field's measures of a motion's error: what each trial contributes, by name. All are made of one error,
 // the greater of the rotation's and the direction's, or of one of these, in degrees.
 //
-//   AUC@t    mean over trials of max(0, 1 - error / t): the area under the recall curve (the share of trials
+//   AUC at t mean over trials of max(0, 1 - error / t): the area under the recall curve (the share of trials
 //            with an error of at most u, over u) from 0 to t, divided by t; exactly, where published code
 //            often joins the points of the curve by straight lines.
 //   mAA(10)  mean over the thresholds 1, 2, ..., 10 degrees of the share of trials with an error of at most

@@ -34,7 +34,7 @@ KEY = re.compile(r"^([a-z]+): (.*)$")
 
 
 def pages():
-    return sorted([ROOT / "experiments" / "RESULTS.md", *RESULTS.glob("*/README.md")])
+    return sorted([ROOT / "README.md", ROOT / "experiments" / "RESULTS.md", *RESULTS.glob("*/README.md")])
 
 
 class Spec:

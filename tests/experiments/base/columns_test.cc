@@ -10,5 +10,10 @@ TEST(FormatColumns, PadsToTheWidestCell) {
             "a     bcd\n----  ---  \nlong  x\n      y\n");
 }
 
+TEST(FormatMarkdown, EscapesWhatEndsACellOrBeginsATag) {
+  EXPECT_EQ(FormatMarkdown({{"a", "b"}, {"x|y", "<i> 2*3"}}),
+            "| a | b |\n|---|---|\n| x\\|y | \\<i> 2\\*3 |\n");
+}
+
 }  // namespace
 }  // namespace rcme

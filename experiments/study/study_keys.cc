@@ -1,0 +1,82 @@
+#include "experiments/study/study_keys.h"
+
+#include <fmt/format.h>
+
+#include "experiments/study/study.h"
+
+namespace rcme {
+namespace {
+
+const std::vector<StudyKey>& FixedKeys() {
+  static const std::vector<StudyKey> keys = {
+      {"study", "name", "the file's name", "letters, digits, _, - and .", "what results call the study"},
+      {"study", "description", "", "text", "what it asks, in a sentence"},
+      {"study", "ademp", "", "the keys of ademp, all of them",
+       "aims, data, estimands, methods and performance, for readers (Morris, White & Crowther 2019)"},
+      {"study", "seed", "1", "a whole number >= 0", "of all random streams"},
+      {"study", "trials", "100", "a whole number >= 1",
+       "per condition; of a folder of pairs, passes over each pair"},
+      {"study", "repeats_per_scene", "1", fmt::format("a whole number in [1, {}]", kMaxRepeatsPerScene),
+       "consecutive trials that meet one scene and differ in the samples of the estimators"},
+      {"study", "common_scenes", "false", "one of: true, false",
+       "the same scenes in all conditions whose scene is shaped alike, so that their differences are paired"},
+      {"study", "data", "", "a map; `scene` must be there, all else has a default (`rcme list settings`)",
+       "what is simulated, or which folder of match files is read"},
+      {"study", "design", "full_factorial", "one of: full_factorial, one_at_a_time",
+       "all combinations of the factors' levels, or each factor alone, the others as in data"},
+      {"study", "factors", "none", "a map: a key of the data -> a list of levels",
+       "what is varied; a condition is a combination of levels"},
+      {"study", "estimators", "", "a list of 1 to 100 entries, each with the keys of estimator, or file",
+       "what is compared, on the same matches"},
+      {"study", "failure", "", "the keys of failure", "when a motion counts as failed"},
+      {"study", "tune", "none", "the keys of tune", "what `rcme tune` and `rcme transfer` do with the study"},
+      {"estimator", "name", "", "a name of `rcme list estimators`",
+       "the estimator; or process, or answers, or file (in a study)"},
+      {"estimator", "process", "", "a command for sh", "an estimator in any language, by lines of JSON"},
+      {"estimator", "answers", "", "a path, seen from the file that names it",
+       "answers that were made elsewhere (`rcme export`)"},
+      {"estimator", "label", "the name", "letters, digits, _, - and .; different ones in a study",
+       "what results call it"},
+      {"estimator", "options", "", "a map of its options (`rcme list options`)",
+       "those that are not at their defaults"},
+      {"estimator", "budget_ms", "none", "a number in [1e-06, 1000000000]",
+       "time of a call that its effort was chosen for (`rcme budget`); kept for people"},
+      {"estimator", "provenance", "none", "a map of any texts",
+       "where its options are from; kept for people"},
+      {"estimators", "file", "", "a path, seen from the study's folder",
+       "an estimator file with these same keys; a label beside it takes the place of the file's"},
+      {"tune", "options", "", "a map: option -> levels, or {from: 0, to: 12, step: 0.5}",
+       fmt::format("what is open; at most {} combinations", kMaxTunedSettings)}};
+  return keys;
+}
+
+void Add(const std::string& block, const std::vector<Parameter>& parameters, std::vector<StudyKey>* keys) {
+  for (const Parameter& p : parameters) {
+    const std::string value = p.unit().empty() ? p.Value() : p.Value() + " " + p.unit();
+    keys->push_back({block, p.name(), value, p.allowed(), p.doc()});
+  }
+}
+
+}  // namespace
+
+std::vector<StudyKey> StudyKeys() {
+  std::vector<StudyKey> keys = FixedKeys();
+  Ademp ademp;
+  for (const auto& [name, text] : Parts(ademp))
+    keys.push_back({"ademp", name, "", "text", "in the study's own words"});
+  FailureBounds bounds;
+  Add("failure", Parameters(bounds), &keys);
+  Tuning tuning;
+  Add("tune", Parameters(tuning), &keys);
+  return keys;
+}
+
+std::set<std::string> StudyKeysOf(const std::string& block) {
+  std::set<std::string> names;
+  for (const StudyKey& key : StudyKeys()) {
+    if (key.block == block) names.insert(key.name);
+  }
+  return names;
+}
+
+}  // namespace rcme

@@ -1,0 +1,26 @@
+// The keys of a study file: what the reader accepts, and what `rcme list keys` and the reference say of each.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace rcme {
+
+// A key of one block of the file. The blocks: "study" (the top), "ademp", "estimators" (what an
+// entry of the list may be beside an estimator), "estimator" (such an entry, or an estimator file),
+// "failure", "tune". The keys of `data` and `factors` are those of the data
+// (DescribeSettings), those of an estimator's `options` are its parameters.
+struct StudyKey {
+  std::string block, name;
+  std::string value;  // the default; empty: none
+  std::string allowed, doc;
+};
+
+// All of them, block by block.
+std::vector<StudyKey> StudyKeys();
+
+// The names of a block's keys.
+std::set<std::string> StudyKeysOf(const std::string& block);
+
+}  // namespace rcme

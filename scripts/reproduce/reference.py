@@ -1,0 +1,47 @@
+"""The tables of docs/reference: see scripts/reference.
+
+A page holds a table between the lines `<!-- begin list: NAME -->` and `<!-- end list: NAME -->`, NAME one of `rcme list`."""
+
+import argparse
+import difflib
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES = ROOT / "docs" / "reference"
+TABLE = re.compile(r"(<!-- begin list: (\S+) -->\n).*?(<!-- end list: \2 -->)", re.DOTALL)
+
+
+def list_as_markdown(program, name):
+    """The same text wherever it is made: without estimators that are not in every build, and versions of libraries."""
+    lines = subprocess.run([program, "list", name, "--format", "markdown"], check=True, capture_output=True,
+                           text=True).stdout.strip().splitlines()
+    lines = [line for line in lines if not line.startswith("| poselib ")]
+    return "\n".join(re.sub(r"\b(OpenCV|OpenGV) [\d.]+\b", r"\1", line) for line in lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/reference", description=__doc__.split("\n\n")[0])
+    parser.add_argument("--check", action="store_true", help="only compare; exit code 1 where a page is out of date")
+    parser.add_argument("--program", default="build/release/bin/rcme", help="default: %(default)s")
+    arguments = parser.parse_args()
+    is_stale = False
+    for page in sorted(PAGES.glob("*.md")):
+        old = page.read_text()
+        new = TABLE.sub(lambda m: m[1] + list_as_markdown(arguments.program, m[2]) + m[3], old)
+        if new == old:
+            continue
+        if not arguments.check:
+            page.write_text(new)
+            print(f"written: {page.relative_to(ROOT)}")
+            continue
+        is_stale = True
+        print(f"{page.relative_to(ROOT)} is not what the program says; `scripts/reference` writes it anew:")
+        print("\n".join(difflib.unified_diff(old.splitlines(), new.splitlines(), "page", "program", lineterm="", n=0)))
+    sys.exit(1 if is_stale else 0)
+
+
+if __name__ == "__main__":
+    main()
