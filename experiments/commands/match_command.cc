@@ -5,6 +5,7 @@
 #include "experiments/base/file_output.h"
 #include "experiments/base/message.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/front_end_options.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_images.h"
@@ -13,7 +14,11 @@ namespace rcme {
 
 void AddMatchCommand(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("match", "Match two undistorted images (SIFT) into a file for `rcme estimate`");
+      app.add_subcommand("match", "Match two undistorted images into a file for `rcme estimate`");
+  command->footer(
+      "Every match carries the sigma that its key points' sizes stand for (sigma_px, "
+      "experiments/data/features.h):\n"
+      "kept in the file, used by no estimator.");
   auto arguments = std::make_shared<MatchImagesOptions>();
   auto out = std::make_shared<std::string>();
   command
@@ -28,10 +33,7 @@ void AddMatchCommand(CLI::App& app) {
   command->add_option("--K2", arguments->K2, "fx fy cx cy of the second camera; default: as the first")
       ->transform(NumberIn())
       ->expected(4);
-  command
-      ->add_option("--ratio", arguments->max_ratio, "keep a match if nearest / second nearest is below this")
-      ->transform(NumberIn({0.01, 1.0}))
-      ->capture_default_str();
+  AddFrontEndOptions(command, &arguments->detector, &arguments->matcher);
   command->add_option("-o,--out", *out, "match file to write")->required();
   command->callback([arguments, out] {
     CheckIsNoInput(*out, {arguments->image1, arguments->image2});

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
+constexpr std::string_view kSigmaColumn = "sigma_px";
 constexpr size_t kMaxColumns = 1000;
 constexpr size_t kMaxSceneBytes = 200;
 constexpr std::array<std::string_view, 10> kHeaderKeys = {
@@ -157,20 +158,52 @@ Correspondence MatchFrom(const std::vector<std::string>& fields, const GzipLines
   return {{x[0], x[1]}, {x[2], x[3]}};
 }
 
-// A match, or the names of the columns, which stand before the first match.
-void AddRow(std::string_view line, const GzipLines& lines, std::vector<Correspondence>* matches) {
-  if (std::ranges::count(line, ',') >= static_cast<std::ptrdiff_t>(kMaxColumns))
-    lines.Fail(fmt::format("too many columns; at most {} are allowed", kMaxColumns));
-  const std::vector<std::string> fields = Split(line, ',');
-  if (!AreColumnNames(fields)) {
-    if (matches->size() == kMaxMatchesPerFile)
+// The rows of a file: the names of the columns, which stand before the first match, and the matches.
+class Rows {
+ public:
+  explicit Rows(MatchFile* file) : file_(file) {}
+
+  void Add(std::string_view line, const GzipLines& lines) {
+    if (std::ranges::count(line, ',') >= static_cast<std::ptrdiff_t>(kMaxColumns))
+      lines.Fail(fmt::format("too many columns; at most {} are allowed", kMaxColumns));
+    const std::vector<std::string> fields = Split(line, ',');
+    if (AreColumnNames(fields)) {
+      SetNames(fields, line, lines);
+    } else if (file_->matches.size() == kMaxMatchesPerFile) {
       lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
-    matches->push_back(MatchFrom(fields, lines));
-  } else if (!matches->empty() || !HasColumnsFirst(fields)) {
-    lines.Fail(fmt::format("column names {} are not allowed; give {}[,...], before the first match, or none",
-                           Quoted(line), fmt::join(kColumns, ",")));
+    } else {
+      file_->matches.push_back(MatchFrom(fields, lines));
+      if (sigma_column_ > 0) file_->sigma_px.push_back(SigmaFrom(fields, lines));
+    }
   }
-}
+
+ private:
+  void SetNames(const std::vector<std::string>& fields, std::string_view line, const GzipLines& lines) {
+    if (!file_->matches.empty() || !HasColumnsFirst(fields)) {
+      lines.Fail(
+          fmt::format("column names {} are not allowed; give {}[,...], before the first match, or none",
+                      Quoted(line), fmt::join(kColumns, ",")));
+    }
+    if (std::ranges::count(fields, kSigmaColumn) > 1)
+      lines.Fail(fmt::format("column {} stands twice", kSigmaColumn));
+    const auto found = std::ranges::find(fields, kSigmaColumn);
+    sigma_column_ = 0;
+    if (found != fields.end()) sigma_column_ = static_cast<size_t>(found - fields.begin());
+  }
+
+  double SigmaFrom(const std::vector<std::string>& fields, const GzipLines& lines) const {
+    double sigma_px = 0.0;
+    const std::string text = sigma_column_ < fields.size() ? fields[sigma_column_] : "";
+    if (!ParseReal(text, &sigma_px) || sigma_px <= 0.0 || sigma_px > kMaxCoordinatePx) {
+      lines.Fail(fmt::format("{}: {} is not a finite number in (0, {}] px", kSigmaColumn, Quoted(text),
+                             kMaxCoordinatePx));
+    }
+    return sigma_px;
+  }
+
+  MatchFile* file_;
+  size_t sigma_column_ = 0;  // 0, where x1 is: none
+};
 
 }  // namespace
 
@@ -178,6 +211,7 @@ MatchFile ReadMatchFile(const std::string& path) {
   MatchFile file;
   file.path = path;
   Header header(path);
+  Rows rows(&file);
   GzipLines lines(path, {"match file", "a match file"});
   for (std::string_view line; lines.Next(&line);) {
     if (lines.line_number() == 1 && line.starts_with(kByteOrderMark))
@@ -187,7 +221,7 @@ MatchFile ReadMatchFile(const std::string& path) {
     if (line.front() == '#') {
       header.AddLine(line, lines);
     } else {
-      AddRow(line, lines, &file.matches);
+      rows.Add(line, lines);
     }
   }
   file.camera1 = CameraFrom(header, "size1", "K1_fx_fy_cx_cy");
@@ -220,9 +254,14 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
     text += fmt::format("# truth_sd: {} {} {} {} {} {}\n", rotation_deg.x(), rotation_deg.y(),
                         rotation_deg.z(), sd->translation.x(), sd->translation.y(), sd->translation.z());
   }
-  text += "x1,y1,x2,y2\n";
-  for (const Correspondence& m : file.matches) {
-    text += fmt::format("{},{},{},{}\n", m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y());
+  const bool has_sigma = !file.sigma_px.empty();
+  text +=
+      fmt::format("{}{}{}\n", fmt::join(kColumns, ","), has_sigma ? "," : "", has_sigma ? kSigmaColumn : "");
+  for (size_t i = 0; i < file.matches.size(); ++i) {
+    const Correspondence& m = file.matches[i];
+    text += fmt::format("{},{},{},{}", m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y());
+    if (has_sigma) text += fmt::format(",{}", file.sigma_px.at(i));
+    text += '\n';
   }
   WriteFileWhole(path, text);
 }

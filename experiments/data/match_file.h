@@ -17,14 +17,19 @@ namespace rcme {
 //   # K2_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
 //   # R_rowmajor: ... (9)                    optional, with t_unit: the true motion X2 = R X1 + t
 //   # t_unit: ... (3)
-//   # truth_sd: 0.01 0.01 0.01 2e-3 2e-3 2e-3   optional: standard deviations of that motion, along camera
-//   2's axes:
-//                                          rotation in degrees, translation over the length of the baseline
-//   # image1: frames/0001.png                optional, with image2: pairs of one scene that share an image
-//   say so # image2: frames/0002.png # scene: name                            optional, groups pairs in a
-//   study # key: value                             any further one is skipped x1,y1,x2,y2[,...] column names,
-//   optional, before the first match 14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre
-//   of the top-left pixel
+//   # truth_sd: 0.01 0.01 0.01 2e-3 2e-3 2e-3   optional: that motion's own standard deviations, along the
+//                                          axes of camera 2: rotation in degrees, translation over the
+//                                          baseline
+//   # image1: frames/0001.png                optional, with image2: pairs of one scene
+//   # image2: frames/0002.png                that share an image say so
+//   # scene: name                            optional, groups pairs in a study
+//   # key: value                             any further one is skipped
+//   x1,y1,x2,y2[,...]                        column names, optional, before the first match
+//   14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre of the top-left pixel
+//
+// A further column named sigma_px is each match's own standard deviation per coordinate (features.h says
+// what those of our front end are). It is kept beside the match; no estimator uses it: each assumes one
+// sigma. Other columns are skipped.
 struct MatchFile {
   std::string path;
   std::string scene = "unnamed";
@@ -32,15 +37,16 @@ struct MatchFile {
   Camera camera1, camera2;
   std::optional<RelativePose> cam2_from_cam1_true;
   std::optional<TruthSd> truth_sd;
-  std::string image1, image2;  // empty: not said
+  std::string image1, image2;    // empty: not said
+  std::vector<double> sigma_px;  // per match; empty: the file has no such column
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
 
 // Reads line by line; memory is that of the matches. Throws InputError that names the file, the line, what is
 // wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible, an invalid
-// rotation, columns in another order, a coordinate that is not finite, more than kMaxMatchesPerFile matches,
-// 1,000 columns or what GzipLines allows.
+// rotation, columns in another order, a coordinate that is not finite, a sigma_px that is not positive, more
+// than kMaxMatchesPerFile matches, 1,000 columns or what GzipLines allows.
 MatchFile ReadMatchFile(const std::string& path);
 
 // Writes the same format, plain. Throws InputError if the path cannot be written; never leaves half a file.

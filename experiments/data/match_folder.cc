@@ -23,12 +23,6 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxPairs = 100'000;
 constexpr size_t kMaxMatches = 10'000'000;
 
-// The name of a pair in the index.
-std::string PairId(const fs::path& match_file) {
-  const std::string name = match_file.filename().string();
-  return name.substr(0, name.find(".csv"));
-}
-
 std::vector<std::string> Fields(std::string_view line) {
   if (line.ends_with('\r')) line.remove_suffix(1);
   std::vector<std::string> fields;
@@ -53,18 +47,6 @@ void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<s
   }
 }
 
-std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
-                                             const std::vector<fs::path>& files) {
-  // Without a slash at the end, so that 'x/' too has its parent above it.
-  const fs::path folder = (fs::absolute(given_folder) / "").lexically_normal().parent_path();
-  std::set<std::string> ids, weak;
-  for (const fs::path& file : files) ids.insert(PairId(file));
-  for (const fs::path& index : {folder / "INDEX.csv", folder.parent_path() / "INDEX.csv"}) {
-    if (fs::exists(index)) AddWeak(index, ids, &weak);
-  }
-  return weak;
-}
-
 // FNV-1a over the numbers of a pair and its truth: changed data are another study.
 std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64_t hash) {
   const auto add = [&hash](double x) { hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3ULL; };
@@ -87,6 +69,23 @@ std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64
 }
 
 }  // namespace
+
+std::string PairIdOf(const fs::path& match_file) {
+  const std::string name = match_file.filename().string();
+  return name.substr(0, name.find(".csv"));
+}
+
+std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
+                                             const std::vector<fs::path>& files) {
+  // Without a slash at the end, so that 'x/' too has its parent above it.
+  const fs::path folder = (fs::absolute(given_folder) / "").lexically_normal().parent_path();
+  std::set<std::string> ids, weak;
+  for (const fs::path& file : files) ids.insert(PairIdOf(file));
+  for (const fs::path& index : {folder / "INDEX.csv", folder.parent_path() / "INDEX.csv"}) {
+    if (fs::exists(index)) AddWeak(index, ids, &weak);
+  }
+  return weak;
+}
 
 std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   if (!fs::is_directory(folder)) {
@@ -144,7 +143,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     TrialData data;
     data.origin = path.filename().string();
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
-    data.truth.is_direction_known = weak.count(PairId(path)) == 0;
+    data.truth.is_direction_known = weak.count(PairIdOf(path)) == 0;
     data.truth.sd = file.truth_sd;
     group.num_with_truth_sd += file.truth_sd.has_value();
     group.digest = Digest(file, data.truth.is_direction_known, group.digest);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,13 @@ class MatchFolderData : public DataSource {
 
 // The match files of a folder in the order of names. Throws InputError: no such folder, none in it, too many.
 std::vector<std::filesystem::path> MatchFilesIn(const std::string& folder);
+
+// The name of a pair in an index: that of its file without the ending.
+std::string PairIdOf(const std::filesystem::path& match_file);
+
+// Of these files of a folder the pairs whose true direction an INDEX.csv in it or above it calls weak.
+std::set<std::string> PairsWithWeakDirection(const std::filesystem::path& given_folder,
+                                             const std::vector<std::filesystem::path>& files);
 
 // Reads every *.csv and *.csv.gz of the folder in the order of names, grouped by the header's scene. An
 // INDEX.csv in the folder or above it may mark pairs whose true direction is not to be scored (columns

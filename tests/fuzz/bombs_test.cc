@@ -206,7 +206,7 @@ class ImageBomb : public testing::Test {
     return IsRefusedWithin(
         kMaxMb,
         [&] {
-          MatchImages({path, path, {1.0, 1.0, 0.0, 0.0}, {}, 0.8});
+          MatchImages({path, path, {1.0, 1.0, 0.0, 0.0}, {}, {}, {}});
         },
         fragments);
   }
@@ -249,7 +249,7 @@ TEST_F(ImageBomb, OtherFormatsAndDamagedImages) {
   EXPECT_TRUE(IsRefused("P5 0 10 255\n", {"the header of the PNM image is damaged"}));
   EXPECT_TRUE(IsRefused("II*\0\x08\0\0\0"s, {"the header of the TIFF image is damaged"}));
   EXPECT_NO_THROW(
-      MatchImages({folder_.Write("a", png), folder_.Write("b", png), {1.0, 1.0, 0.0, 0.0}, {}, 0.8}));
+      MatchImages({folder_.Write("a", png), folder_.Write("b", png), {1.0, 1.0, 0.0, 0.0}, {}, {}, {}}));
 }
 
 // To open a pipe without a writer waits for ever, to read a device may never end.
@@ -264,7 +264,7 @@ TEST(SpecialFiles, AreRefused) {
   EXPECT_TRUE(ThrowsInputError([&] { LoadEstimatorFile(pipe); }, {message + "n estimator file"}));
   EXPECT_TRUE(ThrowsInputError(
       [&] {
-        MatchImages({pipe, pipe, {1.0, 1.0, 0.0, 0.0}, {}, 0.8});
+        MatchImages({pipe, pipe, {1.0, 1.0, 0.0, 0.0}, {}, {}, {}});
       },
       {message + "n image"}));
   EXPECT_TRUE(

@@ -124,6 +124,27 @@ TEST_F(MatchFileTest, WithoutColumnNamesSceneOrTruePose) {
   EXPECT_EQ(file.matches.size(), 1u);
 }
 
+TEST_F(MatchFileTest, AColumnMayGiveEachMatchItsOwnSigma) {
+  EXPECT_TRUE(Read(FullText()).sigma_px.empty());
+  const std::string text =
+      MatchHeader() + "x1,y1,x2,y2,ratio,sigma_px\n1,2,3,4,nan,0.5\n5,6,7,8,0.1,1.25,9\n";
+  const MatchFile file = Read(text);
+  EXPECT_EQ(file.sigma_px, (std::vector<double>{0.5, 1.25}));
+  const std::string copy = folder_.Path("copy.csv");
+  WriteMatchFile(file, copy);
+  EXPECT_EQ(ReadMatchFile(copy).sigma_px, file.sigma_px);
+  EXPECT_EQ(ReadMatchFile(copy).matches[1].x2_px, file.matches[1].x2_px);
+  for (const char* wrong : {"0", "-1", "nan", "inf", "2e6", "", "1.25 px"}) {
+    std::string row = "5,6,7,8,0.1,";
+    EXPECT_TRUE(Refuses(MatchHeader() + "x1,y1,x2,y2,ratio,sigma_px\n" + row.append(wrong) + "\n",
+                        {":6: sigma_px: '", "is not a finite number in (0, 1000000] px"}))
+        << wrong;
+  }
+  EXPECT_TRUE(Refuses(MatchHeader() + "x1,y1,x2,y2,sigma_px\n1,2,3,4\n", {":6: sigma_px: ''"}));
+  EXPECT_TRUE(
+      Refuses(MatchHeader() + "x1,y1,x2,y2,sigma_px,sigma_px\n", {":5: column sigma_px stands twice"}));
+}
+
 TEST_F(MatchFileTest, NoMatchesIsAnAnswerNotAnError) { EXPECT_TRUE(Read(MatchHeader()).matches.empty()); }
 
 TEST_F(MatchFileTest, TruePoseIsMadeUnitLength) {

@@ -84,8 +84,16 @@ TEST_F(Description, TheFolderOfRealPairsIsNotNeeded) {
   std::filesystem::create_directory(pairs);
   const StudyPlan simulated = MakePlan(SmallStudy());
   const TrialData data = simulated.conditions[0].source->Make({1, 0, 0, 0});
-  WriteMatchFile({"", "street", data.problem.matches, data.problem.camera1, data.problem.camera2,
-                  data.truth.cam2_from_cam1_true, {}, {}, {}},
+  WriteMatchFile({"",
+                  "street",
+                  data.problem.matches,
+                  data.problem.camera1,
+                  data.problem.camera2,
+                  data.truth.cam2_from_cam1_true,
+                  {},
+                  {},
+                  {},
+                  {}},
                  pairs + "/one.csv");
   Study study = SmallStudy();
   study.factors.clear();

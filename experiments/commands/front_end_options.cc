@@ -1,0 +1,36 @@
+#include "experiments/commands/front_end_options.h"
+
+#include <string>
+#include <vector>
+
+#include "experiments/commands/number_option.h"
+
+namespace rcme {
+
+void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOptions* matcher) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : DetectorNames()) names.push_back(name);
+  command
+      ->add_option_function<std::string>(
+          "--detector",
+          [detector](const std::string& chosen) {
+            for (const auto& [name, value] : DetectorNames()) {
+              if (name == chosen) detector->detector = value;
+            }
+          },
+          "what finds and describes key points; default: sift")
+      ->check(CLI::IsMember(names));
+  command
+      ->add_option("--max-features", detector->max_features,
+                   "keep the strongest key points of an image; 0: all that sift and akaze find, 2,000 of orb")
+      ->transform(WholeNumberIn(0, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--ratio", matcher->max_ratio, "keep a match if nearest / second nearest is below this")
+      ->transform(NumberIn({0.01, 1.0}))
+      ->capture_default_str();
+  command->add_flag_callback(
+      "--one-way", [matcher] { matcher->is_mutual = false; },
+      "keep matches that are not each other's nearest too; a key point of image 2 may then be in several");
+}
+
+}  // namespace rcme

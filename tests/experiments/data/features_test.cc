@@ -1,0 +1,150 @@
+// The front end on rendered images, whose matches are known.
+#include "experiments/data/features.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "estimator/geometry/essential_matrix.h"
+#include "estimator/geometry/sampson.h"
+#include "experiments/data/feature_cache.h"
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/rendered_sequence.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+const RenderedCamera& TestCamera() {
+  static const RenderedCamera camera;
+  return camera;
+}
+
+GreyImage Rendered(double u) {
+  return {TestCamera().camera.width, TestCamera().camera.height, RenderHall(TestCamera(), PoseOnWalk(u))};
+}
+
+// Of each match the distance of its second point from the true epipolar line of the first, px.
+std::vector<double> DistancesFromEpipolarLines(const Features& f1, const Features& f2, double u1, double u2,
+                                               const std::vector<FeatureMatch>& matches) {
+  const Eigen::Matrix3d F =
+      FundamentalFromEssential(EssentialFromPose(TrueMotion(PoseOnWalk(u1), PoseOnWalk(u2))),
+                               TestCamera().camera, TestCamera().camera);
+  std::vector<double> distances;
+  for (const FeatureMatch& match : matches) {
+    const KeyPoint &p1 = f1.key_points[match.at1], &p2 = f2.key_points[match.at2];
+    const Eigen::Vector3d line = F * Eigen::Vector3d(p1.x_px, p1.y_px, 1.0);
+    distances.push_back(line.dot(Eigen::Vector3d(p2.x_px, p2.y_px, 1.0)) / line.head<2>().norm());
+  }
+  return distances;
+}
+
+TEST(FrontEnd, MostMatchesOfEveryDetectorLieOnTheTrueEpipolarLines) {
+  for (const auto& [name, detector] : DetectorNames()) {
+    const Features f1 = DetectFeatures(Rendered(4), {detector}), f2 = DetectFeatures(Rendered(6), {detector});
+    const std::vector<FeatureMatch> matches = MatchFeatures(f1, f2, {});
+    ASSERT_GE(matches.size(), 150u) << name;
+    const std::vector<double> distances = DistancesFromEpipolarLines(f1, f2, 4, 6, matches);
+    const auto num_near = std::ranges::count_if(distances, [](double d) { return std::abs(d) < 1.5; });
+    EXPECT_GE(static_cast<double>(num_near), 0.8 * static_cast<double>(matches.size())) << name;
+    for (const auto at : {&FeatureMatch::at1, &FeatureMatch::at2}) {
+      std::set<std::pair<float, float>> places;
+      const Features& features = at == &FeatureMatch::at1 ? f1 : f2;
+      for (const FeatureMatch& match : matches) {
+        const KeyPoint& point = features.key_points[match.*at];
+        EXPECT_TRUE(places.emplace(point.x_px, point.y_px).second) << name;
+      }
+    }
+    const std::vector<FeatureMatch> one_way = MatchFeatures(f1, f2, {.max_ratio = 0.8, .is_mutual = false});
+    EXPECT_GT(one_way.size(), matches.size()) << name;
+    for (const FeatureMatch& match : matches) EXPECT_EQ(std::ranges::count(one_way, match), 1) << name;
+    EXPECT_LT(MatchFeatures(f1, f2, {.max_ratio = 0.6}).size(), matches.size()) << name;
+    const size_t num_strongest = DetectFeatures(Rendered(4), {detector, 100}).key_points.size();
+    EXPECT_TRUE(num_strongest > 90 && num_strongest <= 100) << name << ": " << num_strongest;
+  }
+}
+
+// A bright disc whose centre is known to a hundredth of a pixel, at many places within a pixel.
+TEST(FrontEnd, SiftPlacesADiscAtItsCentre) {
+  double sum_x = 0.0, sum_y = 0.0;
+  int n = 0;
+  for (int k = 0; k < 25; ++k) {
+    const double cx = 40.0 + 0.2 * (k % 5), cy = 30.0 + 0.2 * (k / 5);  // NOLINT(bugprone-integer-division)
+    GreyImage image{81, 61, std::vector<std::uint8_t>(81 * 61)};
+    for (int y = 0; y < 61; ++y) {
+      for (int x = 0; x < 81; ++x) {
+        const double r2 = (x - cx) * (x - cx) + (y - cy) * (y - cy);
+        image.grey[static_cast<size_t>(y * 81 + x)] =
+            static_cast<std::uint8_t>(std::lround(30.0 + 200.0 * std::exp(-r2 / (2.0 * 3.0 * 3.0))));
+      }
+    }
+    for (const KeyPoint& point : DetectFeatures(image, {}).key_points) {
+      if (std::hypot(point.x_px - cx, point.y_px - cy) > 1.0) continue;
+      sum_x += point.x_px - cx;
+      sum_y += point.y_px - cy;
+      ++n;
+    }
+  }
+  ASSERT_GE(n, 25);
+  EXPECT_NEAR(sum_x / n, 0.0, 0.03);
+  EXPECT_NEAR(sum_y / n, 0.0, 0.03);
+}
+
+TEST(FrontEnd, SigmaGrowsWithTheSizes) {
+  const KeyPoint fine{0, 0, 2.0159f}, coarse{0, 0, 4.0f * 2.0159f};
+  EXPECT_NEAR(SigmaOfMatch(Detector::kSift, fine, fine), 0.5, 1e-4);
+  EXPECT_NEAR(SigmaOfMatch(Detector::kSift, coarse, coarse), 2.0, 1e-3);
+  EXPECT_NEAR(SigmaOfMatch(Detector::kSift, fine, coarse), 0.5 * std::sqrt(8.5), 1e-3);
+  const Features features = DetectFeatures(Rendered(4), {});
+  for (const KeyPoint& point : features.key_points)
+    EXPECT_GE(SigmaOfMatch(Detector::kSift, point, point), 0.4);
+}
+
+TEST(FrontEnd, OfAnImageWithoutTextureThereIsNothing) {
+  const GreyImage grey{64, 48, std::vector<std::uint8_t>(64 * 48, 100)};
+  for (const auto& [name, detector] : DetectorNames()) {
+    const Features none = DetectFeatures(grey, {detector});
+    EXPECT_TRUE(none.key_points.empty()) << name;
+    EXPECT_TRUE(MatchFeatures(none, DetectFeatures(Rendered(0), {detector}), {}).empty()) << name;
+    EXPECT_TRUE(MatchFeatures(DetectFeatures(Rendered(0), {detector}), none, {}).empty()) << name;
+  }
+}
+
+TEST(FeatureCache, FindsAnImageByItsContentAndMakesWhatIsDamagedAgain) {
+  const TempFolder folder;
+  const std::string image = folder.Path("a.png"), cached = folder.Path("cache");
+  WriteImage(image, TestCamera().camera, Rendered(3).grey);
+  FeatureCache cache(cached);
+  const std::string first = PackFeatures(cache.Get(image, {}));
+  EXPECT_EQ(cache.num_found(), 0);
+  std::filesystem::copy_file(image, folder.Path("b.png"));
+  EXPECT_EQ(PackFeatures(cache.Get(folder.Path("b.png"), {})), first);
+  EXPECT_EQ(cache.num_found(), 1);
+  cache.Get(image, {Detector::kOrb});
+  cache.Get(image, {Detector::kSift, 50});
+  EXPECT_EQ(cache.num_found(), 1);
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(cached))
+    files.push_back(entry.path().string());
+  ASSERT_EQ(files.size(), 3u);
+  for (const std::string& file : files) {
+    std::string bytes = ReadBytes(file);
+    EXPECT_TRUE(UnpackFeatures(bytes).has_value());
+    for (const size_t size : {size_t{0}, size_t{20}, bytes.size() / 2, bytes.size() - 1})
+      EXPECT_FALSE(UnpackFeatures(bytes.substr(0, size)).has_value()) << size;
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    EXPECT_FALSE(UnpackFeatures(bytes).has_value());
+    std::ofstream(file, std::ios::binary) << bytes;
+  }
+  EXPECT_EQ(PackFeatures(cache.Get(image, {})), first);
+  EXPECT_EQ(cache.num_found(), 1);
+  EXPECT_EQ(PackFeatures(cache.Get(image, {})), first);
+  EXPECT_EQ(cache.num_found(), 2);
+  EXPECT_TRUE(ThrowsInputError([&] { cache.Get(folder.Write("c.png", "x"), {}); }, {"c.png: is not a PNG"}));
+}
+
+}  // namespace
+}  // namespace rcme
