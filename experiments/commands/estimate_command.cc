@@ -1,99 +1,123 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "estimator/ransac_estimator.h"
-#include "experiments/base/field_text.h"
+#include "experiments/answer/estimate_output.h"
+#include "experiments/base/columns.h"
 #include "experiments/base/json_output.h"
+#include "experiments/base/message.h"
+#include "experiments/base/progress.h"
+#include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/data/match_file.h"
+#include "experiments/data/match_folder.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
+constexpr const char* kStandardInput = "-";
+
 struct EstimateArguments {
-  std::string matches;
+  std::vector<std::string> matches;  // files and folders, or kStandardInput
+  std::vector<std::string> intrinsics;
   EstimatorChoice estimator;
   double sigma_px = 0.5;
   std::int64_t seed = 1;
   bool as_json = false;
 };
 
-// The row-major numbers of a matrix.
-std::vector<double> RowMajor(const Eigen::MatrixXd& matrix) {
-  std::vector<double> numbers;
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) numbers.push_back(matrix(r, c));
+Camera CameraOf(const std::string& text) {
+  std::array<double, 4> k{};
+  size_t count = 0;
+  bool are_numbers = true;
+  for (size_t begin = 0; begin <= text.size(); ++count) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    are_numbers &= count < k.size() && ParseReal(text.substr(begin, end - begin), &k[count]);
+    begin = end + 1;
+    if (!are_numbers) break;
   }
-  return numbers;
+  const Camera camera{k[0], k[1], k[2], k[3], 1, 1};
+  if (are_numbers && count == k.size() && camera.IsValid()) return camera;
+  throw InputError(
+      fmt::format("--K: {} is not allowed; give fx,fy,cx,cy in px, fx and fy > 0", Quoted(text)));
 }
 
-// Of an estimator that states them; see motion_estimate.h.
-void AddProbabilities(const MotionEstimate& estimate, nlohmann::ordered_json* json) {
-  (*json)["failure_probability"] = estimate.failure_probability;
-  (*json)["sigma_estimated_px"] = estimate.sigma_estimated_px;
-  (*json)["sigma_estimated_sd_px"] = estimate.sigma_estimated_sd_px;
-  (*json)["inlier_probabilities"] = estimate.inlier_probabilities;
-  (*json)["other_modes"] = nlohmann::ordered_json::array();
-  for (const MotionMode& mode : estimate.other_modes) {
-    (*json)["other_modes"].push_back({{"weight", mode.weight},
-                                      {"explained_share", mode.explained_share},
-                                      {"R", RowMajor(mode.cam2_from_cam1.R)},
-                                      {"t", RowMajor(mode.cam2_from_cam1.t)},
-                                      {"pose_cov", RowMajor(mode.pose_cov)}});
-  }
+// Of both images, or one each.
+GivenCameras CamerasOf(const std::vector<std::string>& intrinsics) {
+  if (intrinsics.empty()) return std::nullopt;
+  if (intrinsics.size() > 2)
+    throw InputError("--K: given more than twice; give it once for both images, or once for each");
+  return std::array<Camera, 2>{CameraOf(intrinsics.front()), CameraOf(intrinsics.back())};
 }
 
-nlohmann::ordered_json AsJson(const MotionEstimate& estimate, const TrialRecord& record,
-                              const std::string& estimator, bool has_truth_sd) {
-  nlohmann::ordered_json json = {{"status", StatusName(estimate.status)},
-                                 {"message", estimate.message},
-                                 {"estimator", estimator},
-                                 {"R", nullptr},
-                                 {"t", nullptr},
-                                 {"pose_cov", nullptr},
-                                 {"num_matches", record.num_matches},
-                                 {"num_inliers", record.num_inliers},
-                                 {"failed_by_kappa", nullptr}};
-  if (estimate.status == MotionStatus::kDirectionNotObservable) {
-    json["R"] = RowMajor(estimate.cam2_from_cam1.R);
-    json["rotation_cov"] = RowMajor(estimate.pose_cov.topLeftCorner<3, 3>());
+// What the arguments name, folders opened.
+std::vector<std::string> FilesOf(const std::vector<std::string>& arguments) {
+  std::vector<std::string> files;
+  for (const std::string& argument : arguments) {
+    if (argument == kStandardInput && arguments.size() > 1)
+      throw InputError("estimate: '-' (standard input) stands alone; give files, or a single '-'");
+    if (!std::filesystem::is_directory(argument)) {
+      files.push_back(argument);
+      continue;
+    }
+    for (const std::filesystem::path& file : MatchFilesIn(argument)) files.push_back(file.string());
   }
-  if (estimate.status != MotionStatus::kOk) return json;
-  json["R"] = RowMajor(estimate.cam2_from_cam1.R);
-  json["t"] = RowMajor(estimate.cam2_from_cam1.t);
-  json["pose_cov"] = RowMajor(estimate.pose_cov);
-  json["failed_by_kappa"] = estimate.failed_by_kappa;
-  if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
-  if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
-  if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
-  if (!std::isnan(record.nees)) {
-    json["nees"] = JsonNumber(record.nees);
-    json["truth_sd"] = has_truth_sd ? "stated" : "unknown";
-  }
-  return json;
+  return files;
 }
 
-constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+// Reads pairs and answers them.
+class Answerer {
+ public:
+  explicit Answerer(const EstimateArguments& arguments)
+      : arguments_(arguments),
+        given_(CamerasOf(arguments.intrinsics)),
+        spec_(ChosenEstimator(arguments.estimator)),
+        estimator_(Make(spec_)) {}
 
-void PrintRotation(const MotionEstimate& estimate) {
-  fmt::print("rotation of camera 2 from camera 1 (X2 = R X1 + t; t is not known)\n");
-  for (int row = 0; row < 3; ++row) {
-    const auto& R = estimate.cam2_from_cam1.R;
-    fmt::print("  R {:>12.8f} {:>12.8f} {:>12.8f}\n", R(row, 0), R(row, 1), R(row, 2));
+  const EstimatorSpec& spec() const { return spec_; }
+  const MotionEstimator& estimator() const { return *estimator_; }
+
+  // Throws InputError (match_file.h).
+  TrialData Read(const std::string& path) const {
+    const bool is_input = path == kStandardInput;
+    MatchFile file = is_input ? ReadMatchesFromInput(given_) : ReadMatchFile(path, given_);
+    TrialData data;
+    data.origin = file.path;
+    data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments_.sigma_px};
+    data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
+    data.truth.sd = file.truth_sd;
+    return data;
   }
-  const Eigen::Vector3d sd_deg =
-      kDegreesPerRadian * estimate.pose_cov.topLeftCorner<3, 3>().diagonal().cwiseSqrt();
-  fmt::print("standard deviations (deg), if there is no translation: {:.4f} {:.4f} {:.4f}\n", sd_deg(0),
-             sd_deg(1), sd_deg(2));
-}
+
+  PairAnswer Answer(const TrialData& data) const {
+    const auto seed = static_cast<std::uint64_t>(arguments_.seed);
+    RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
+    PairAnswer answer;
+    answer.estimate = Judged(estimator_->Estimate(data.problem, rng), data.problem.matches.size());
+    answer.record = Score(answer.estimate, data, 0.0);
+    answer.has_truth_sd = data.truth.sd.has_value();
+    if (answer.estimate.status == MotionStatus::kOk)
+      answer.evidence = EvidenceOf(data.problem, answer.estimate);
+    return answer;
+  }
+
+ private:
+  const EstimateArguments& arguments_;
+  GivenCameras given_;
+  EstimatorSpec spec_;
+  std::unique_ptr<MotionEstimator> estimator_;
+};
 
 // The tests of the motion are off as printed. A person should know what they would have said.
 void PrintCaution(const RansacEstimator& estimator, const MotionProblem& problem, std::int64_t seed) {
@@ -109,71 +133,125 @@ void PrintCaution(const RansacEstimator& estimator, const MotionProblem& problem
       StatusName(estimate.status), estimate.message);
 }
 
-void PrintForPeople(const MotionEstimate& estimate, const TrialRecord& record, const std::string& estimator,
-                    bool has_truth_sd) {
-  fmt::print("{}: {} - {}\n", estimator, StatusName(estimate.status), estimate.message);
-  if (estimate.status == MotionStatus::kDirectionNotObservable) PrintRotation(estimate);
-  if (estimate.status != MotionStatus::kOk) return;
-  const RelativePose& pose = estimate.cam2_from_cam1;
-  fmt::print("cam2_from_cam1 (X2 = R X1 + t, |t| = 1)\n");
-  for (int row = 0; row < 3; ++row) {
-    fmt::print("  R {:>12.8f} {:>12.8f} {:>12.8f}   t {:>12.8f}\n", pose.R(row, 0), pose.R(row, 1),
-               pose.R(row, 2), pose.t(row));
-  }
-  const Vector5d sd_deg = kDegreesPerRadian * estimate.pose_cov.diagonal().cwiseSqrt();
-  fmt::print("standard deviations (deg): rotation {:.4f} {:.4f} {:.4f}, direction {:.4f} {:.4f}\n", sd_deg(0),
-             sd_deg(1), sd_deg(2), sd_deg(3), sd_deg(4));
-  fmt::print("inliers: {} of {} matches\n", record.num_inliers, record.num_matches);
-  if (estimate.failed_by_kappa)
-    fmt::print("the paper's failure flag is set: refinement lost half of the inliers\n");
-  if (!std::isnan(record.rotation_error_deg)) {
-    fmt::print("against the file's true motion: rotation error {:.4f} deg, direction error {:.4f} deg\n",
-               record.rotation_error_deg, record.direction_error_deg);
-    fmt::print("normalised error squared (5 degrees of freedom, 95 % below 11.07): {:.2f}; {}\n", record.nees,
-               has_truth_sd ? "the true motion's own error (truth_sd) is part of it"
-                            : "how good the file's motion is, nobody says (no truth_sd)");
-  }
-}
-
-void RunEstimate(const EstimateArguments& arguments) {
-  const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
-  const std::unique_ptr<MotionEstimator> estimator = Make(spec);
-  MatchFile file = ReadMatchFile(arguments.matches);
-  TrialData data;
-  data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments.sigma_px};
-  data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
-  data.truth.sd = file.truth_sd;
-  RandomStream rng =
-      StreamFor({static_cast<std::uint64_t>(arguments.seed), 0, 0, 0}, StreamPurpose::kSampling);
-  const MotionEstimate estimate = Judged(estimator->Estimate(data.problem, rng), data.problem.matches.size());
-  const TrialRecord record = Score(estimate, data, 0.0);
+void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
+  const TrialData data = answerer.Read(path);
+  const PairAnswer answer = answerer.Answer(data);
   if (arguments.as_json) {
-    fmt::print("{}",
-               JsonText(kEstimateFormat, AsJson(estimate, record, spec.label, data.truth.sd.has_value())));
+    fmt::print("{}", JsonText(kEstimateFormat, AnswerAsJson(answer, answerer.spec())));
   } else {
-    PrintForPeople(estimate, record, spec.label, data.truth.sd.has_value());
-    const RansacEstimator* const ransac = AsRansac(*estimator);
-    if (ransac && estimate.status == MotionStatus::kOk) PrintCaution(*ransac, data.problem, arguments.seed);
+    fmt::print("{}", AnswerAsText(answer, answerer.spec()));
+    const RansacEstimator* const ransac = AsRansac(answerer.estimator());
+    if (ransac && answer.estimate.status == MotionStatus::kOk)
+      PrintCaution(*ransac, data.problem, arguments.seed);
   }
   // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
   // answer.
-  const bool is_bad_input = estimate.status == MotionStatus::kInvalidInput ||
-                            estimate.status == MotionStatus::kTooFewMatches ||
-                            estimate.status == MotionStatus::kDegenerateMatches;
-  if (is_bad_input) throw InputError(fmt::format("{}: {}", arguments.matches, estimate.message));
+  if (IsBadInput(answer.estimate.status))
+    throw InputError(fmt::format("{}: {}", data.origin, answer.estimate.message));
+}
+
+// The table of many pairs, filled as they are answered.
+class AnswerTable {
+ public:
+  void Add(const std::string& path, const PairAnswer& answer) {
+    std::string name = std::filesystem::path(path).filename().string();
+    rows_.emplace_back(name.substr(0, name.find(".csv")), answer);
+    has_errors_ |= !std::isnan(answer.record.rotation_error_deg);
+    num_motions_ += answer.estimate.status == MotionStatus::kOk;
+  }
+  void AddUnreadable() { ++num_unreadable_; }
+
+  std::string Text() const {
+    std::vector<std::vector<std::string>> rows = {AnswerColumns(has_errors_)};
+    for (const auto& [name, answer] : rows_) rows.push_back(AnswerRow(name, answer, has_errors_));
+    const size_t num_refused = rows_.size() - num_motions_;
+    return FormatColumns(rows) + "\n" + AnswerLegend(has_errors_) +
+           fmt::format("{} pairs: {} motions, {} without one, {} not read\n", rows_.size() + num_unreadable_,
+                       num_motions_, num_refused, num_unreadable_);
+  }
+
+ private:
+  std::vector<std::pair<std::string, PairAnswer>> rows_;
+  bool has_errors_ = false;
+  size_t num_motions_ = 0, num_unreadable_ = 0;
+};
+
+// One line of JSON.
+std::string JsonLine(const std::string& path, nlohmann::ordered_json object) {
+  nlohmann::ordered_json line = {{"format", kEstimateFormat}, {"file", path}};
+  line.update(object);
+  return line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+// Every file is answered, whatever becomes of the others; in the end the program fails if one could not be.
+void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
+                const std::vector<std::string>& files) {
+  const StopOnSignals stop;
+  AnswerTable table;
+  bool is_any_bad = false;
+  const auto answer_file = [&](const std::string& path) {
+    try {
+      const TrialData data = answerer.Read(path);
+      const PairAnswer answer = answerer.Answer(data);
+      if (arguments.as_json) {
+        fmt::print("{}", JsonLine(path, AnswerAsJson(answer, answerer.spec())));
+        std::fflush(stdout);  // whoever reads along gets each when it is there
+      } else {
+        table.Add(path, answer);
+      }
+      is_any_bad |= IsBadInput(answer.estimate.status);
+    } catch (const InputError& error) {
+      is_any_bad = true;
+      table.AddUnreadable();
+      PrintMessage("rcme: {}\n", Printable(error.what()));
+      if (arguments.as_json)
+        fmt::print("{}", JsonLine(path, {{"status", StatusName(MotionStatus::kInvalidInput)},
+                                         {"message", error.what()}}));
+    }
+  };
+  std::int64_t num_done = 0;
+  {
+    Progress progress("pairs", std::ssize(files), 0);
+    for (const std::string& path : files) {
+      if (IsStopRequested()) break;
+      answer_file(path);
+      progress.Advance(1);
+      ++num_done;
+    }
+  }
+  if (!arguments.as_json) fmt::print("{}", table.Text());
+  if (IsStopRequested()) throw Stopped(fmt::format("stopped after {} of {} pairs", num_done, files.size()));
+  if (is_any_bad) throw EndWith{2};
+}
+
+void RunEstimate(const EstimateArguments& arguments) {
+  const Answerer answerer(arguments);
+  const std::vector<std::string> files = FilesOf(arguments.matches);
+  const bool is_one = arguments.matches.size() == 1 && files.front() == arguments.matches.front();
+  if (is_one) return AnswerOne(arguments, answerer, files.front());
+  AnswerMany(arguments, answerer, files);
 }
 
 }  // namespace
 
 void AddEstimateCommand(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("estimate", "Estimate the motion between two images from a file of matches");
+      app.add_subcommand("estimate", "Estimate the motion between two images from files of matches");
   command->footer(
+      "Says what was found (how camera 2 is turned and where it stands), how sure it is, and what it rests\n"
+      "on: inliers, the noise of their residuals against the assumed one, parallax, the share that could\n"
+      "lie on one plane. Where there is no motion, why, and what to try.\n"
+      "\n"
+      "Several files, or a folder: a table with one line each; with --json one line of JSON each.\n"
+      "'-' reads standard input. A file may be bare, four columns x1 y1 x2 y2 separated by commas or "
+      "blanks;\n"
+      "then --K says the intrinsics, once for both images or once for each.\n"
+      "\n"
       "Without a word about the estimator it is rcme_calibrated, which says how likely it is to be wrong; "
       "the\n"
-      "paper's is --estimator rcme. An estimator file (YAML)\n"
-      "holds a name, a label and options, so that an estimator that was tuned by simulation runs on a real\n"
-      "pair with the very options that were validated; the answer goes by its label. It may be as short as\n"
+      "paper's is --estimator rcme. An estimator file (YAML) holds a name, a label and options, so that an\n"
+      "estimator that was tuned by simulation runs on a real pair with the very options that were\n"
+      "validated; the answer goes by its label. It may be as short as\n"
       "  name: rcme\n"
       "  label: rcme_tuned\n"
       "  options: {reading: rank_aware, mu: 5.25, lambda: 0.6}\n"
@@ -181,15 +259,24 @@ void AddEstimateCommand(CLI::App& app) {
       "\n"
       "Examples:\n"
       "  rcme estimate matches.csv.gz --sigma 0.7 --json\n"
+      "  rcme estimate pairs/                                               one line for each file\n"
+      "  rcme estimate bare.txt --K 800,800,319.5,239.5                     four columns, no header\n"
+      "  some_matcher a.jpg b.jpg | rcme estimate - --K 800,800,319.5,239.5\n"
       "  rcme estimate matches.csv.gz --estimator standard --set num_iterations=1000\n"
-      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml\n"
-      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml --set mu=6      the file's options but mu");
+      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml --set mu=6   the file's options but mu\n"
+      "\n"
+      "Exit codes: 0 answered, a refusal too; 2 a file that cannot be read or holds no problem (too few\n"
+      "matches, all on one line), of several files when one is so.");
   auto arguments = std::make_shared<EstimateArguments>();
   command
       ->add_option("matches", arguments->matches,
-                   "match file, plain or gzip: header '# size1: w h', '# K1_fx_fy_cx_cy: ...' (and 2), rows "
-                   "x1,y1,x2,y2")
+                   "match files, plain or gzip (header '# size1: w h', '# K1_fx_fy_cx_cy: ...' and 2, rows "
+                   "x1,y1,x2,y2), folders of them, or - for standard input")
       ->required();
+  command
+      ->add_option("--K", arguments->intrinsics,
+                   "fx,fy,cx,cy in px, of files that have none; given twice: of image 1, of image 2")
+      ->allow_extra_args(false);
   CLI::Option* estimator =
       command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
           ->capture_default_str();
@@ -200,9 +287,11 @@ void AddEstimateCommand(CLI::App& app) {
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
-  command->add_flag("--json", arguments->as_json,
-                    "one JSON object; R row-major (9), pose_cov row-major (25), rad^2; without a direction "
-                    "(direction_not_observable) R and rotation_cov (9) alone");
+  command->add_flag(
+      "--json", arguments->as_json,
+      "one JSON object (of several files one a line); R row-major (9), pose_cov row-major (25), rad^2; "
+      "without a direction "
+      "(direction_not_observable) R and rotation_cov (9) alone");
   command->callback([arguments] { RunEstimate(*arguments); });
 }
 

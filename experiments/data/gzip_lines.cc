@@ -1,6 +1,7 @@
 #include "experiments/data/gzip_lines.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 #include <zlib.h>
 
 #include "parameters/input_error.h"
@@ -13,9 +14,14 @@ constexpr std::string_view kGzipMagic = "\x1F\x8B";
 }  // namespace
 
 GzipLines::GzipLines(const std::string& path, const FileKind& kind)
-    : path_(path), file_(gzdopen(RegularFile(path, kind).Release(), "rb"), gzclose_r) {
-  if (!file_) throw InputError(fmt::format("{}: cannot be read", path));
+    : GzipLines(path, RegularFile(path, kind).Release()) {}
+
+GzipLines::GzipLines(std::string name, int descriptor)
+    : path_(std::move(name)), file_(gzdopen(descriptor, "rb"), gzclose_r) {
+  if (!file_) throw InputError(fmt::format("{}: cannot be read", path_));
 }
+
+GzipLines GzipLines::OfStandardInput() { return GzipLines("standard input", dup(STDIN_FILENO)); }
 
 bool GzipLines::Next(std::string_view* line) {
   line_.clear();

@@ -19,6 +19,8 @@ class GzipLines {
 
   // Throws InputError as RegularFile does.
   GzipLines(const std::string& path, const FileKind& kind);
+  // Of standard input, which messages call so.
+  static GzipLines OfStandardInput();
 
   // The next line without its end, valid until the next call; false after the last one. Throws InputError: a
   // damaged or truncated gzip file, one packed twice, a line or a file that is too long.
@@ -28,6 +30,7 @@ class GzipLines {
   int line_number() const { return line_number_; }  // from 1
 
  private:
+  GzipLines(std::string name, int descriptor);
   void CheckEnd() const;
 
   std::string path_;

@@ -36,15 +36,24 @@ std::string_view Trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::vector<std::string> Split(std::string_view text, char separator) {
+std::vector<std::string> SplitAtCommas(std::string_view text) {
   std::vector<std::string> parts;
   while (true) {
-    const size_t end = text.find(separator);
-    const std::string_view part = Trim(text.substr(0, end));
-    if (separator != ' ' || !part.empty()) parts.emplace_back(part);
+    const size_t end = text.find(',');
+    parts.emplace_back(Trim(text.substr(0, end)));
     if (end == std::string_view::npos) return parts;
     text.remove_prefix(end + 1);
   }
+}
+
+std::vector<std::string> SplitAtBlanks(std::string_view text) {
+  std::vector<std::string> parts;
+  for (text = Trim(text); !text.empty(); text = Trim(text)) {
+    const size_t end = std::min(text.find_first_of(" \t"), text.size());
+    parts.emplace_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return parts;
 }
 
 // The values of the known header keys with the lines they stand on.
@@ -66,9 +75,13 @@ class Header {
 
   // The `count` numbers of a key that must be there.
   std::vector<double> Numbers(const std::string& key, size_t count) const {
-    if (!Has(key)) throw InputError(fmt::format("{}: header key '# {}: ...' is missing", path_, key));
+    if (!Has(key)) {
+      throw InputError(fmt::format(
+          "{}: header key '# {}: ...' is missing (of a bare file `rcme estimate --K` says the intrinsics)",
+          path_, key));
+    }
     std::vector<double> numbers;
-    for (const std::string& word : Split(entries_.at(key).text, ' ')) {
+    for (const std::string& word : SplitAtBlanks(entries_.at(key).text)) {
       double number = 0.0;
       if (!ParseReal(word, &number)) Fail(key, fmt::format("{} is not a finite number", Quoted(word)));
       numbers.push_back(number);
@@ -91,15 +104,48 @@ class Header {
   std::map<std::string, Entry> entries_;
 };
 
-Camera CameraFrom(const Header& header, const std::string& size_key, const std::string& k_key) {
-  const std::vector<double> size = header.Numbers(size_key, 2);
+constexpr double kMaxImageLength = 1e6;
+
+std::array<int, 2> SizeFrom(const Header& header, const std::string& key) {
+  const std::vector<double> size = header.Numbers(key, 2);
   for (const double length : size) {
-    if (length >= 1.0 && length <= 1e6 && length == std::floor(length)) continue;
-    header.Fail(size_key, "width and height must be whole numbers in [1, 1e6] px");
+    if (length >= 1.0 && length <= kMaxImageLength && length == std::floor(length)) continue;
+    header.Fail(key, "width and height must be whole numbers in [1, 1e6] px");
   }
-  const std::vector<double> k = header.Numbers(k_key, 4);
-  const Camera camera{k[0], k[1], k[2], k[3], static_cast<int>(size[0]), static_cast<int>(size[1])};
-  if (!camera.IsValid()) header.Fail(k_key, "K is singular or mirrored; fx and fy must be > 0");
+  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
+}
+
+// Twice the principal point, or what holds all points if that is more. `x_px`: a point in this image.
+std::array<int, 2> LikelySize(const Camera& camera, const std::vector<Correspondence>& matches,
+                              Eigen::Vector2d Correspondence::*x_px) {
+  Eigen::Vector2d size(2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0);
+  for (const Correspondence& match : matches)
+    size = size.cwiseMax((match.*x_px + Eigen::Vector2d::Constant(0.5)).eval());
+  const auto whole = [](double length) {
+    return static_cast<int>(std::clamp(std::ceil(length), 1.0, kMaxImageLength));
+  };
+  return {whole(size.x()), whole(size.y())};
+}
+
+// Camera 1 or 2. Nothing given: the file has to say it all.
+Camera CameraFrom(const Header& header, const std::string& number, const Camera* given,
+                  const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px) {
+  const std::string size_key = "size" + number, k_key = "K" + number + "_fx_fy_cx_cy";
+  Camera camera;
+  if (given) {
+    if (header.Has(k_key))
+      header.Fail(k_key, "the file has intrinsics of its own; leave out those given (--K)");
+    camera = *given;
+  }
+  const std::array<int, 2> size =
+      given && !header.Has(size_key) ? LikelySize(camera, matches, x_px) : SizeFrom(header, size_key);
+  if (!given) {
+    const std::vector<double> k = header.Numbers(k_key, 4);
+    camera = {k[0], k[1], k[2], k[3]};
+  }
+  camera.width = size[0];
+  camera.height = size[1];
+  if (!given && !camera.IsValid()) header.Fail(k_key, "K is singular or mirrored; fx and fy must be > 0");
   return camera;
 }
 
@@ -164,9 +210,10 @@ class Rows {
   explicit Rows(MatchFile* file) : file_(file) {}
 
   void Add(std::string_view line, const GzipLines& lines) {
-    if (std::ranges::count(line, ',') >= static_cast<std::ptrdiff_t>(kMaxColumns))
+    const std::vector<std::string> fields =
+        line.find(',') == std::string_view::npos ? SplitAtBlanks(line) : SplitAtCommas(line);
+    if (fields.size() > kMaxColumns)
       lines.Fail(fmt::format("too many columns; at most {} are allowed", kMaxColumns));
-    const std::vector<std::string> fields = Split(line, ',');
     if (AreColumnNames(fields)) {
       SetNames(fields, line, lines);
     } else if (file_->matches.size() == kMaxMatchesPerFile) {
@@ -205,14 +252,11 @@ class Rows {
   size_t sigma_column_ = 0;  // 0, where x1 is: none
 };
 
-}  // namespace
-
-MatchFile ReadMatchFile(const std::string& path) {
+MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCameras& given) {
   MatchFile file;
   file.path = path;
   Header header(path);
   Rows rows(&file);
-  GzipLines lines(path, {"match file", "a match file"});
   for (std::string_view line; lines.Next(&line);) {
     if (lines.line_number() == 1 && line.starts_with(kByteOrderMark))
       line.remove_prefix(kByteOrderMark.size());
@@ -224,14 +268,26 @@ MatchFile ReadMatchFile(const std::string& path) {
       rows.Add(line, lines);
     }
   }
-  file.camera1 = CameraFrom(header, "size1", "K1_fx_fy_cx_cy");
-  file.camera2 = CameraFrom(header, "size2", "K2_fx_fy_cx_cy");
+  file.camera1 =
+      CameraFrom(header, "1", given ? &given->front() : nullptr, file.matches, &Correspondence::x1_px);
+  file.camera2 =
+      CameraFrom(header, "2", given ? &given->back() : nullptr, file.matches, &Correspondence::x2_px);
   file.cam2_from_cam1_true = TruePoseFrom(header);
   file.truth_sd = TruthSdFrom(header);
   file.scene = SceneFrom(header);
   if (header.Has("image1")) file.image1 = header.Text("image1");
   if (header.Has("image2")) file.image2 = header.Text("image2");
   return file;
+}
+
+}  // namespace
+
+MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given) {
+  return ReadMatches(path, GzipLines(path, {"match file", "a match file"}), given);
+}
+
+MatchFile ReadMatchesFromInput(const GivenCameras& given) {
+  return ReadMatches("standard input", GzipLines::OfStandardInput(), given);
 }
 
 void WriteMatchFile(const MatchFile& file, const std::string& path) {

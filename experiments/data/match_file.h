@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -43,11 +44,20 @@ struct MatchFile {
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
 
+// The intrinsics of files that have none, camera 1 first; width and height do not count.
+using GivenCameras = std::optional<std::array<Camera, 2>>;
+
 // Reads line by line; memory is that of the matches. Throws InputError that names the file, the line, what is
 // wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible, an invalid
 // rotation, columns in another order, a coordinate that is not finite, a sigma_px that is not positive, more
-// than kMaxMatchesPerFile matches, 1,000 columns or what GzipLines allows.
-MatchFile ReadMatchFile(const std::string& path);
+// than kMaxMatchesPerFile matches, 1,000 columns or what GzipLines allows. Columns are separated by commas
+// or, in a line without one, by blanks.
+//
+// Where the intrinsics are given the file must have none; where it does not say the size of the images
+// either, it is twice the principal point, or what holds all points if that is more.
+MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given = std::nullopt);
+// The same from standard input, which is also the path of the result.
+MatchFile ReadMatchesFromInput(const GivenCameras& given = std::nullopt);
 
 // Writes the same format, plain. Throws InputError if the path cannot be written; never leaves half a file.
 void WriteMatchFile(const MatchFile& file, const std::string& path);

@@ -28,7 +28,7 @@ ALLOWED = {
 # itself, where the program begins.
 FOLDERS = {
     "experiments": ["base", "data", "study", "trial", "result_file", "pieces", "run", "model_choice", "analysis", "claims", "rare", "validity", "truth_free", "tuning",
-                    "contract", "commands", "."],
+                    "contract", "answer", "commands", "."],
     "plots": ["common", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "trial_sheet", "."],
 }
 PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)

@@ -1,10 +1,13 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "estimator/geometry/pose.h"
@@ -97,8 +100,8 @@ TEST_P(EstimateTest, ForPeople) {
   const std::string path = folder.Write("pair.csv", MatchHeader() + TruePoseHeader() + MatchRows(60));
   const ProgramResult result = RunRcme({"estimate", path, "--estimator", GetParam()});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  for (const char* text :
-       {"ok", "cam2_from_cam1", "inliers: 60 of 60 matches", "rotation error 0.0000 deg"}) {
+  for (const char* text : {"ok", "cam2_from_cam1", "inliers    60 of 60 matches", "rotation error 0.0000 deg",
+                           "stands     left, above", "How sure", "What it rests on"}) {
     EXPECT_NE(result.out.find(text), std::string::npos) << text << " is missing in: " << result.out;
   }
 }
@@ -118,6 +121,110 @@ TEST(Estimate, ARefusalIsAnAnswer) {
   EXPECT_TRUE(json["t"].is_null());
   EXPECT_TRUE(json["pose_cov"].is_null());
   EXPECT_EQ(json["num_matches"], 60);
+  EXPECT_EQ(json["what_to_try"][0], "more samples: --set num_iterations=2000") << json;
+}
+
+// As MatchRows, with normal noise of so many pixels.
+std::string NoisyRows(int n, double sigma_px) {
+  RandomStream rng({.seed = 1, .purpose = 78});
+  std::string rows;
+  for (int i = 0; i < n; ++i) {
+    const double depth = rng.Uniform(4.0, 12.0);
+    const double x = rng.Uniform(100.0, 500.0), y = rng.Uniform(100.0, 350.0);
+    const auto noise = [&] { return sigma_px * rng.Normal(); };
+    const double x1 = x + noise(), y1 = y + noise();
+    const double x2 = x + 480.0 / depth + noise(), y2 = y + 360.0 / depth + noise();
+    rows += fmt::format("{},{},{},{}\n", x1, y1, x2, y2);
+  }
+  return rows;
+}
+
+std::string WithBlanks(std::string rows) {
+  std::ranges::replace(rows, ',', ' ');
+  return rows;
+}
+
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Estimate, SaysWhatItRestsOn) {
+  const TempFolder folder;
+  const std::string path = folder.Write("pair.csv", MatchHeader() + NoisyRows(200, 1.0));
+  const nlohmann::json right = Estimate(path, "rcme_calibrated", {"--sigma", "1"})["evidence"];
+  EXPECT_NEAR(right["sigma_px"].get<double>(), 1.0, 0.2) << right;
+  EXPECT_FALSE(right["noise_disagrees"].get<bool>());
+  EXPECT_GT(right["parallax_to_noise"].get<double>(), 20.0);
+  EXPECT_LT(right["planar_share"].get<double>(), 0.6);
+  EXPECT_GT(right["parallax_share"].get<double>(), 0.7);
+  EXPECT_TRUE(
+      Estimate(path, "rcme_calibrated", {"--sigma", "0.25"})["evidence"]["noise_disagrees"].get<bool>());
+  // Of an estimator that does not state the noise, too.
+  const ProgramResult too_large = RunRcme({"estimate", path, "--estimator", "standard", "--sigma", "4"});
+  EXPECT_THAT(too_large.out, testing::HasSubstr("where 4 px was assumed"));
+  EXPECT_THAT(too_large.out, testing::HasSubstr("--sigma 0."));
+  EXPECT_THAT(too_large.out, testing::HasSubstr("not stated by this estimator"));
+  // No line is wider than a terminal.
+  for (const std::string& line : LinesOf(RunRcme({"estimate", path}).out))
+    EXPECT_LE(line.size(), 100u) << line;
+}
+
+TEST(Estimate, ABareFileWithIntrinsicsIsTheFileWithItsHeader) {
+  const TempFolder folder;
+  const std::string rows = MatchRows(60);
+  const std::string whole = folder.Write("whole.csv", MatchHeader() + rows);
+  const std::string bare = folder.Write("bare.txt", WithBlanks(rows));
+  const std::vector<std::string> k = {"--K", "600,600,319.5,239.5"};
+  const nlohmann::json json = Estimate(whole, "rcme");
+  EXPECT_EQ(Estimate(bare, "rcme", k), json);
+  EXPECT_EQ(Estimate(bare, "rcme", {"--K", "600,600,319.5,239.5", "--K", "600,600,319.5,239.5"}), json);
+  const ProgramResult piped =
+      RunShell("cat '" + bare + "' | \"$RCME\" estimate - --estimator rcme --json --K 600,600,319.5,239.5");
+  EXPECT_EQ(piped.exit_code, 0) << piped.err;
+  EXPECT_EQ(nlohmann::json::parse(piped.out), json);
+  const auto refuses = [&](const std::vector<std::string>& arguments, const std::string& what) {
+    const ProgramResult result = RunRcme(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, testing::HasSubstr(what));
+  };
+  refuses({"estimate", bare}, "rcme estimate --K");
+  refuses({"estimate", whole, "--K", k[1]}, "has intrinsics of its own");
+  for (const char* wrong : {"1,2,3", "1,2,3,4,5", "1,1,x,1", "0,1,1,1", "", "inf,1,1,1", "1 1 1 1"})
+    refuses({"estimate", bare, "--K", wrong}, "give fx,fy,cx,cy in px");
+  refuses({"estimate", bare, "--K", k[1], "--K", k[1], "--K", k[1]}, "more than twice");
+  refuses({"estimate", "-", bare, "--K", k[1]}, "stands alone");
+}
+
+TEST(Estimate, AFolderGivesALineForEachFileAndFailsForABadOne) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder.Path("pairs"));
+  folder.Write("pairs/a.csv", MatchHeader() + TruePoseHeader() + MatchRows(60));
+  folder.Write("pairs/b.csv", MatchHeader() + MatchRows(60, 2));
+  const ProgramResult good = RunRcme({"estimate", folder.Path("pairs")});
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_THAT(good.out, testing::HasSubstr("2 pairs: 2 motions, 0 without one, 0 not read"));
+
+  folder.Write("pairs/c.csv", MatchHeader() + "1,2,3\n");
+  folder.Write("pairs/d.csv", MatchHeader() + MatchRows(4));
+  const ProgramResult table = RunRcme({"estimate", folder.Path("pairs")});
+  EXPECT_EQ(table.exit_code, 2);
+  EXPECT_THAT(table.err, testing::HasSubstr("c.csv:5: 3 columns"));
+  EXPECT_THAT(table.out, testing::HasSubstr("too_few_matches"));
+  EXPECT_THAT(table.out, testing::HasSubstr("4 pairs: 2 motions, 1 without one, 1 not read"));
+
+  const ProgramResult lines = RunRcme({"estimate", folder.Path("pairs"), "--json", "--estimator", "rcme"});
+  EXPECT_EQ(lines.exit_code, 2);
+  std::vector<std::string> statuses;
+  for (const std::string& line : LinesOf(lines.out))
+    statuses.push_back(nlohmann::json::parse(line)["status"]);
+  EXPECT_EQ(statuses, (std::vector<std::string>{"ok", "ok", "invalid_input", "too_few_matches"}));
+  // Each answer is that of its file alone.
+  nlohmann::json alone = Estimate(folder.Path("pairs/b.csv"), "rcme");
+  alone["file"] = folder.Path("pairs/b.csv");
+  EXPECT_EQ(nlohmann::json::parse(LinesOf(lines.out)[1]), alone);
 }
 
 }  // namespace
