@@ -5,7 +5,6 @@ It draws what audit.json says and computes nothing: values, intervals, allowed r
 `rcme audit`.
 """
 
-import argparse
 import math
 import os
 import sys
@@ -17,8 +16,7 @@ from audit_figures.forest import ForestPanel
 from audit_figures.page import Titled, draw_page
 from audit_figures.panel import EmptyPanel
 from audit_figures.roc import RocPanel, is_roc
-from common import style
-from common.command_line import Parser, PlotError
+from common.command_line import FigureParser, PlotError, draw_figures
 from common.number_text import power_text
 
 EXAMPLE = """
@@ -84,32 +82,23 @@ def draw_family(audit, family, claims):
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot audit", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot audit", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("folder", metavar="DIR", help="the folder that 'rcme audit --out DIR' wrote; it holds audit.json")
     parser.add_argument("--out", metavar="OUTDIR", help="the folder to write to (default: DIR)")
     options = parser.parse_args(arguments)
-    options.out = options.folder if options.out is None else options.out
+    options.out = os.path.join(options.folder if options.out is None else options.out, "")
     return options
 
 
+def draw_for(options):
+    audit = read_audit(os.path.join(options.folder, "audit.json"))
+    if not os.path.isdir(options.out):
+        raise PlotError(f"--out {options.out}: there is no such folder.")
+    return {f"audit_{family}": draw_family(audit, family, claims) for family, claims in audit.families().items()}
+
+
 def main(arguments=None):
-    try:
-        options = parse(arguments)
-        audit = read_audit(os.path.join(options.folder, "audit.json"))
-        if not os.path.isdir(options.out):
-            raise PlotError(f"--out {options.out}: there is no such folder.")
-        figures = {family: draw_family(audit, family, claims) for family, claims in audit.families().items()}
-        written = [path for family, figure in figures.items()
-                   for path in style.save(figure, os.path.join(options.out, f"audit_{family}"))]
-    except PlotError as error:
-        print(f"audit.py: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"audit.py: cannot write to {options.out}: {error.strerror}.", file=sys.stderr)
-        return 2
-    print("\n".join(written))
-    return 0
+    return draw_figures("audit.py", parse, draw_for, arguments)
 
 
 if __name__ == "__main__":

@@ -4,18 +4,16 @@
 It draws what the file says: medians over interleaved rounds with their intervals, and the fitted slopes.
 """
 
-import argparse
 import json
-import os
 import sys
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from common import style
-from common.command_line import Parser, PlotError
+from common import sheet, style
+from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
 
 LOOKS = {  # the second part of a case's name, or its group
     "fast": dict(color=style.BLUE, marker="o"),
@@ -76,8 +74,9 @@ def draw_times(axes, rows):
     axes.set_xscale("log")
     axes.set_yticks(range(len(rows)), rows)
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.tick_params(axis="y", labelsize=6.5, length=0)
+    axes.tick_params(axis="y", labelsize=style.font_size(6.5), length=0)
     axes.xaxis.set_major_formatter(FuncFormatter(in_time))
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def in_time(microseconds, _=None):
@@ -104,7 +103,9 @@ def draw_series(axes, content, panel):
     axes.set(xscale="log", yscale="log", xlabel=label)
     axes.xaxis.set_major_formatter(FuncFormatter(lambda size, _: f"{size:,g}"))
     axes.yaxis.set_major_formatter(FuncFormatter(in_time))
-    axes.legend(loc="upper left", fontsize=6.5, handlelength=1.4, borderaxespad=0.1)
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.legend(loc="upper left", fontsize=style.font_size(6.5), handlelength=1.4, borderaxespad=0.1)
 
 
 def geometric_mean(values):
@@ -114,14 +115,23 @@ def geometric_mean(values):
     return product
 
 
+def new_figure():
+    """(figure, {panel: axes}): two wide panels above the series; below each other where the sheet is narrow."""
+    names, width = ("stages", "estimators", *SERIES), sheet.current().width
+    if style.panels_abreast(3) < 3:
+        heights = (4.4, 3.0, *(2.0,) * len(SERIES))
+        figure = Figure(figsize=(width, sum(heights)), layout="constrained")
+        cells = figure.add_gridspec(len(names), 1, height_ratios=heights)
+        return figure, {name: figure.add_subplot(cell) for name, cell in zip(names, cells)}
+    figure = Figure(figsize=(width or 7.4, 7.4), layout="constrained")
+    wide, narrow = figure.add_gridspec(2, 1, height_ratios=(2.1, 1))
+    cells = [*wide.subgridspec(1, 2), *narrow.subgridspec(1, len(SERIES))]
+    return figure, {name: figure.add_subplot(cell) for name, cell in zip(names, cells)}
+
+
 def draw(content):
-    figure = Figure(figsize=(7.4, 7.4), layout="constrained")
+    figure, axes = new_figure()
     FigureCanvasAgg(figure)
-    rows = figure.add_gridspec(2, 1, height_ratios=(2.1, 1))
-    axes = {}
-    for row, names in zip(rows, (("stages", "estimators"), tuple(SERIES))):
-        cells = row.subgridspec(1, len(names))
-        axes.update({name: figure.add_subplot(cell) for name, cell in zip(names, cells)})
     draw_times(axes["stages"], rows_of(content["cases"], ["stage"]))
     draw_times(axes["estimators"], rows_of(content["cases"], ["estimator", "peer", "trial"]))
     for panel in SERIES:
@@ -141,21 +151,18 @@ def draw(content):
     return figure
 
 
-def main(argv):
-    parser = Parser(description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter)
+def parse(arguments):
+    parser = FigureParser(prog="rcme plot benchmarks", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("result", help="what rcme_ratios wrote")
     parser.add_argument("--out", required=True, help="path of the figure without .png or .pdf")
-    try:
-        arguments = parser.parse_args(argv)
-        folder = os.path.dirname(arguments.out) or "."
-        if not os.path.isdir(folder):
-            raise PlotError(f"--out {arguments.out}: there is no folder {folder}.")
-        print("\n".join(style.save(draw(read(arguments.result)), arguments.out)))
-    except PlotError as error:
-        print(f"benchmarks.py: {error}", file=sys.stderr)
-        return 2
-    return 0
+    options = parser.parse_args(arguments)
+    check_figure_path(options.out)
+    return options
+
+
+def main(arguments=None):
+    return draw_figure("benchmarks.py", parse, lambda options: draw(read(options.result)), arguments)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

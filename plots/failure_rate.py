@@ -5,10 +5,9 @@ are words, marks and bars side by side.
 It draws what the file says and computes nothing: values and interval bounds are those of `rcme summarize`.
 """
 
-import argparse
 import sys
 
-from common.command_line import Parser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import read_summary, where
 from rates.lines import draw
 
@@ -22,12 +21,15 @@ draws failure_rate.png and failure_rate.pdf: the failure rate and the detect-fai
       --where sigma_px=1 --where estimator=standard --where estimator=rcme --quantities failure --log-y
 draws only the failure rate of two estimators at one noise level, on a logarithmic axis; there a rate of exactly zero,
 which has no place, becomes an arrow that points down from its upper bound.
+
+  rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate --width 3.3 --format pdf,tikz \\
+      --no-caption --labels rcme_rank_aware=Ours --labels failure="Wrong motions"
+draws it for a column of a paper, with names of your own (every kind of figure has these options).
 """
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot failure_rate", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot failure_rate", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("summary", metavar="SUMMARY.csv", help="output of 'rcme summarize RUN.sqlite --format csv'")
     parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor on the x axis; words stand side by side")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")

@@ -5,10 +5,9 @@ It draws what the file says and computes nothing: values and interval bounds are
 helps the eye, and is the same for equal rates of a quantity in all panels; the number is printed in every cell.
 """
 
-import argparse
 import sys
 
-from common.command_line import Parser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import read_summary, where
 from rates.cells import draw
 
@@ -25,8 +24,7 @@ draws the failure rate of two estimators at one level of a third factor.
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot heat_map", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot heat_map", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("summary", metavar="SUMMARY.csv", help="output of 'rcme summarize RUN.sqlite --format csv'")
     parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor from left to right")
     parser.add_argument("--y", required=True, metavar="FACTOR", help="the factor from bottom to top")

@@ -6,10 +6,9 @@ It draws what the file says and computes nothing: differences, their intervals a
 compare`. A mark is filled where the Holm-adjusted p-value is below 0.05.
 """
 
-import argparse
 import sys
 
-from common.command_line import Parser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import read_comparison, where
 from rates.differences import draw
 
@@ -30,8 +29,7 @@ draws scores.
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot paired_difference", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot paired_difference", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("comparison", metavar="COMPARISON.csv", help="output of 'rcme compare RUN.sqlite --format csv'")
     parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor on the x axis; words stand side by side")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")

@@ -5,10 +5,9 @@ right probabilities, with a histogram of the probabilities below, and beside the
 It draws what the file says and computes nothing: curves, bands, intervals and scores are those of `rcme reliability`.
 """
 
-import argparse
 import sys
 
-from common.command_line import Parser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from reliability_figure.panels import draw
 from reliability_figure.reliability_file import read_reliability
 
@@ -22,8 +21,7 @@ example:
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot reliability", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot reliability", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("reliability", metavar="RELIABILITY.json", help="output of 'rcme reliability --format json'")
     parser.add_argument("--estimators", metavar="LABEL,...",
                         help="the estimators with a reliability diagram; default: those that state probabilities, or else "

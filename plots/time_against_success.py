@@ -5,10 +5,9 @@ at several budgets; a line joins the points of one estimator, and a step the poi
 It draws what the files say: values and interval bounds are those of `rcme summarize --pooled --times`.
 """
 
-import argparse
 import sys
 
-from common.command_line import Parser, check_figure_path, draw_figure
+from common.command_line import FigureParser, check_figure_path, draw_figure
 from common.summary_csv import read_summary
 from rates.time_points import draw
 
@@ -21,8 +20,7 @@ example:
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot time_against_success", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot time_against_success", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("summaries", metavar="SUMMARY.csv", nargs="+",
                         help="output of 'rcme summarize RUN.sqlite --pooled --times --format csv'")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")

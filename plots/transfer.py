@@ -6,7 +6,6 @@ and PDF:
 It draws what the file says and computes nothing: rates, intervals and verdicts are those of the program.
 """
 
-import argparse
 import sys
 
 import pandas
@@ -15,7 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
-from common.command_line import Parser, check_figure_path, draw_figures
+from common import sheet, style
+from common.command_line import FigureParser, PlotError, check_figure_path, draw_figures
 from common.number_text import number_text
 from common.paper import HEAD_SIZE, SMALL_SIZE, add_axes, add_text
 from common.text_size import fill, height_of, width_of
@@ -26,7 +26,7 @@ from tuning_figures.marks import EXACT, head_in_words
 from tuning_figures.tune_file import UNDECIDED, VIOLATED, is_real, read_transfer
 
 MATRIX_WIDTH = 4.4  # inches, as all lengths here: cells narrow until so many families fit
-NARROWEST_CELL, LOWEST_CELL = 0.155, 0.15
+NARROWEST_CELL, LOWEST_CELL, LEAST_CELL_IN_PRINT = 0.155, 0.15, 0.26
 MARGIN, GAP, BAR_WIDTH, BAR_ROOM, LONGEST_BAR = 0.1, 0.08, 0.12, 0.5, 2.6
 LONGEST_NAME, LONGEST_HEADER, LEAST_WIDTH = 1.9, 0.75, 4.6
 EMPTY = dict(facecolor="0.95", hatch="////", edgecolor="0.8", linewidth=0)
@@ -52,11 +52,25 @@ class Layout:
 
     def __init__(self, transfer):
         self.transfer, self.count = transfer, len(transfer.families)
+        paper_width = sheet.current().width
         self.cell = max(NARROWEST_CELL, min(CELL_WIDTH, MATRIX_WIDTH / self.count))
-        self.has_intervals = self.cell == CELL_WIDTH
+        if paper_width is not None:
+            self.cell = CELL_WIDTH
+            self.place()
+            self.cell -= max(0, self.needed_width - paper_width) / self.count
+            if self.cell < LEAST_CELL_IN_PRINT:
+                raise PlotError(f"--width {paper_width:g}: {self.count} families need "
+                                f"{paper_width + self.count * (LEAST_CELL_IN_PRINT - self.cell) + 0.05:.1f} inches.")
+        self.place()
+        self.width = paper_width or max(LEAST_WIDTH, self.needed_width)
+
+    def place(self):
+        """All that follows from the cells' width."""
+        transfer = self.transfer
+        self.has_intervals = self.cell == CELL_WIDTH and sheet.current().width is None
         self.cell_height = max(LOWEST_CELL, min(CELL_HEIGHT, 0.7 * self.cell))
-        self.name_size = max(5.8, min(7.5, 36 * self.cell))
-        self.number_size = min(7, 28 * self.cell)
+        self.name_size = style.font_size(max(5.8, min(7.5, 36 * self.cell)))
+        self.number_size = style.font_size(min(7, 28 * self.cell))
         self.outline = min(1.3, 5.2 * self.cell)
         self.names = [shortened(family.words, LONGEST_NAME, self.name_size) for family in transfer.families]
         self.names_width = max(map(self.width_of, self.names + ["Tuned on"]))
@@ -68,7 +82,10 @@ class Layout:
         self.left = MARGIN + self.names_width + GAP
         self.matrix_width, self.matrix_height = self.count * self.cell, self.count * self.cell_height
         self.right = self.left + self.matrix_width
-        self.width = max(LEAST_WIDTH, self.right + sum(self.columns) + GAP + BAR_WIDTH + BAR_ROOM)
+        self.needed_width = self.right + sum(self.columns) + GAP
+        self.has_bar = (sheet.current().width or LEAST_WIDTH) >= LEAST_WIDTH  # the number of a cell says it all
+        if self.has_bar:
+            self.needed_width += BAR_WIDTH + BAR_ROOM
 
     def width_of(self, text):
         return width_of(text, self.name_size)
@@ -169,17 +186,20 @@ def caption_of(transfer, layout, quantity):
 def draw(transfer, quantity, title):
     """One matrix; `quantity`: the rate of a cell, by its name there."""
     layout = Layout(transfer)
-    caption = fill(caption_of(transfer, layout, quantity), layout.width - 2 * MARGIN, SMALL_SIZE)
-    bar_height = max(layout.matrix_height, 1.3)
+    small = style.font_size(SMALL_SIZE)
+    caption = fill(caption_of(transfer, layout, quantity), layout.width - 2 * MARGIN, small) if sheet.current().has_caption else []
+    bar_height = max(layout.matrix_height, 1.3 if layout.has_bar else 0)
     bottom = layout.top + bar_height + GAP
-    figure = Figure(figsize=(layout.width, bottom + height_of(len(caption), SMALL_SIZE) + MARGIN))
+    figure = Figure(figsize=(layout.width, bottom + height_of(len(caption), small) + MARGIN))
     FigureCanvasAgg(figure)
     add_text(figure, MARGIN, MARGIN, title, fontsize=HEAD_SIZE)
     draw_matrix(add_axes(figure, layout.left, layout.top, layout.matrix_width, layout.matrix_height), layout, quantity)
     left = draw_names(figure, layout) + GAP
-    bar = add_axes(figure, left, layout.top, BAR_WIDTH, min(bar_height, LONGEST_BAR))
-    add_color_bar(figure, transfer.target.at_most if quantity == "rate" else transfer.target.max_refusal, cax=bar)
-    add_text(figure, MARGIN, bottom, "\n".join(caption), fontsize=SMALL_SIZE, color="0.3")
+    if layout.has_bar:
+        bar = add_axes(figure, left, layout.top, BAR_WIDTH, min(bar_height, LONGEST_BAR))
+        add_color_bar(figure, transfer.target.at_most if quantity == "rate" else transfer.target.max_refusal, cax=bar)
+    if caption:
+        add_text(figure, MARGIN, bottom, "\n".join(caption), fontsize=small, color="0.3")
     return figure
 
 
@@ -190,8 +210,7 @@ def draw_for(options):
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot transfer", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot transfer", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("transfer", metavar="TRANSFER.json", help="file that 'rcme transfer' wrote")
     parser.add_argument("--out", required=True, metavar="PREFIX",
                         help="where to write: the figures' names begin with it")

@@ -8,10 +8,9 @@ It draws what the file says and computes nothing: rates, intervals, areas and th
 program. Colours and lines between settings are interpolated.
 """
 
-import argparse
 import sys
 
-from common.command_line import Parser, PlotError, check_figure_path, draw_figures
+from common.command_line import FigureParser, PlotError, check_figure_path, draw_figures
 from tuning_figures.front import draw_front
 from tuning_figures.roc import draw_roc
 from tuning_figures.surface import draw_surface
@@ -28,8 +27,7 @@ draws of the surface only the part with one level of a further option; front and
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot tune", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot tune", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("tune", metavar="TUNE.json", help="file that 'rcme tune' wrote")
     parser.add_argument("--out", required=True, metavar="PREFIX",
                         help="where to write: the figures' names begin with it")

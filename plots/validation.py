@@ -4,15 +4,17 @@ with the range that is nominal; beside it how alike residuals are at each distan
 It draws what the file says and computes nothing: ratios, intervals and verdicts are those of the program.
 """
 
-import argparse
 import json
 import math
 import sys
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from common.command_line import Parser, PlotError, check_figure_path, draw_figure
+from common import sheet, style
+from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
 
 EXAMPLE = """
 example:
@@ -20,6 +22,8 @@ example:
 draws validation.png and validation.pdf.
 """
 FORMAT = "rcme validation 1"
+CAPTION = ("In brackets: pairs of the scene; bars: intervals; grey: what counts as nominal; correlation of neighbouring residuals "
+           "minus that of the simulated twin.")
 TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "closure"}
 COLORS = {"holds": "tab:green", "too small": "tab:red", "too large": "tab:purple", "undecided": "0.45"}
 MARKERS = {"spatial_halves": "o", "random_halves": "s", "closure": "^"}
@@ -28,6 +32,14 @@ MARKERS = {"spatial_halves": "o", "random_halves": "s", "closure": "^"}
 def drawn_tests(one_set):
     """The tests of a scene that have a ratio."""
     return [test for test in one_set["tests"] if test["ratio"] is not None]
+
+
+def number_log_axis(axes):
+    """A logarithmic axis whose ticks are plain numbers."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=6))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def draw_ratios(axes, sets):
@@ -41,13 +53,14 @@ def draw_ratios(axes, sets):
             color = COLORS.get(test["verdict"], "0.45")
             axes.plot([lower, upper], [y, y], color=color, linewidth=1.6)
             axes.plot([test["ratio"]], [y], MARKERS[test["test"]], color=color, markersize=5)
-    axes.set_xscale("log")
-    axes.set_yticks(range(len(sets)), [f"{s['name']} ({s['pairs']})" for s in sets])
+    number_log_axis(axes)
+    axes.set_yticks(range(len(sets)), [f"{style.label_of(s['name'])} ({s['pairs']})" for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.set_xlabel("covariances too small by, in variance")
-    for test, words in TESTS.items():
-        axes.plot([], [], MARKERS[test], color="0.45", label=words)
-    axes.legend(loc="upper right", fontsize=7, frameon=False)
+    handles = [Line2D([], [], linestyle="none", marker=MARKERS[test], color="0.45", label=words) for test, words in TESTS.items()]
+    if sheet.current().width is None:
+        axes.legend(handles=handles, loc="upper right", fontsize=7, frameon=False)
+    return handles
 
 
 def draw_correlations(axes, sets):
@@ -58,21 +71,28 @@ def draw_correlations(axes, sets):
         y = [c["correlation"] - c["twin_correlation"] for c in known]
         error = [[max(v - c["difference_interval"][0], 0) for v, c in zip(y, known)],
                  [max(c["difference_interval"][1] - v, 0) for v, c in zip(y, known)]]
-        axes.errorbar(x, y, yerr=error, fmt="o-", markersize=3, linewidth=0.9, label=one_set["name"])
-    axes.set_xscale("log")
+        axes.errorbar(x, y, yerr=error, fmt="o-", markersize=3, linewidth=0.9, label=style.label_of(one_set["name"]))
+    number_log_axis(axes)
     axes.set_xlabel("distance of key points, px")
     axes.set_ylabel("correlation of residuals")
-    axes.legend(fontsize=6, frameon=False)
+    axes.legend(fontsize=style.font_size(6), frameon=False)
 
 
 def draw(validation):
     sets = validation["sets"]
-    figure = Figure(figsize=(9, 1.4 + 0.45 * len(sets)), layout="constrained")
+    width, height = sheet.current().width, 1.4 + 0.45 * len(sets)
+    if width is not None and style.panels_abreast(2) == 1:
+        figure = Figure(figsize=(width, height + 2.6), layout="constrained")
+        ratios, correlations = figure.subplots(2, 1, height_ratios=[height, 2.6])
+    else:
+        figure = Figure(figsize=(width or 9, height), layout="constrained")
+        ratios, correlations = figure.subplots(1, 2, width_ratios=[1.3, 1])
     FigureCanvasAgg(figure)
-    ratios, correlations = figure.subplots(1, 2, width_ratios=[1.3, 1])
     ratios.nominal = validation["nominal_variance"]
-    draw_ratios(ratios, sets)
+    handles = draw_ratios(ratios, sets)
     draw_correlations(correlations, sets)
+    if width is not None:
+        style.add_legend_and_caption(figure, handles, CAPTION)
     return figure
 
 
@@ -90,7 +110,7 @@ def read_validation(path):
 
 
 def parse(arguments):
-    parser = Parser(description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot validation", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("validation", metavar="VALIDATION.json", help="of `rcme validate --out`")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     options = parser.parse_args(arguments)

@@ -9,7 +9,6 @@ Up to three figures, each as PNG and PDF, from the tables of `rcme map`; of a st
 It draws what the files say and computes nothing: coverages, intervals and counts are those of the program.
 """
 
-import argparse
 import itertools
 import os
 import sys
@@ -18,8 +17,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from common import style
-from common.command_line import Parser, PlotError
+from common import sheet, style
+from common.command_line import FigureParser, PlotError, draw_figures
 from common.summary_csv import numbers, read_table
 from common.text_size import wrap
 
@@ -119,7 +118,7 @@ def draw_cells(axes, grid):
     for (y, row), x in itertools.product(enumerate(grid.to_numpy()), range(grid.shape[1])):
         if row[x] == row[x]:
             axes.fill_between([x, x + 1], y, y + 1, color=shade_of(row[x]), linewidth=0)
-            axes.text(x + 0.5, y + 0.47, f"{100 * row[x]:.1f}", ha="center", va="center", fontsize=5.8,
+            axes.text(x + 0.5, y + 0.47, f"{100 * row[x]:.1f}", ha="center", va="center", fontsize=style.font_size(5.8),
                       color="white" if row[x] < 0.70 else "black")
     axes.set(xlim=(0, grid.shape[1]), ylim=(0, grid.shape[0]))
     axes.grid(False)
@@ -145,7 +144,8 @@ def draw_map(path, rows):
     points, sigmas = sorted(set(rows.num_points)), sorted(set(rows.sigma_px))
     figure, panels = style.new_figure(len(quantities), len(conditions))
     width = max(4.6 / len(conditions), 1.0 + 0.2 * len(sigmas))  # of a panel, inches
-    figure.set_size_inches(width * len(conditions), 1.0 + 1.45 * len(quantities))
+    if sheet.current().width is None:
+        figure.set_size_inches(width * len(conditions), 1.0 + 1.45 * len(quantities))
     for (r, quantity), (c, condition) in itertools.product(enumerate(quantities), enumerate(conditions)):
         part = rows[(rows.quantity == quantity) & (rows.condition == condition)]
         grid = part.pivot(index="num_points", columns="sigma_px", values="coverage").reindex(index=points, columns=sigmas)
@@ -161,7 +161,7 @@ def draw_map(path, rows):
             header = f"{condition}, parallax {part.median_parallax_deg.iloc[0]:.2g}\u00b0"
             panels[r, c].text(0.5, 1.2, "\n".join(wrap(header, width, 9)),
                               transform=panels[r, c].transAxes, ha="center", va="bottom")
-        if c == 0:
+        if panels[r, c].get_subplotspec().is_first_col():
             panels[r, c].set_ylabel("Points m")
         panels[-1, c].set_xlabel("Noise sigma (px)")
     lettered_titles(panels.flat,
@@ -213,7 +213,8 @@ def draw_conditioning(path, rows):
     groups, quantities = present(path, THIRDS, rows.conditioning), present(path, QUANTITIES, rows.quantity)
     rows = rows[rows.conditioning.isin(groups)]
     figure, panels = style.new_figure(1, len(quantities))
-    figure.set_size_inches(max(4.6, 2.2 * len(quantities)), 3.0)
+    if sheet.current().width is None:
+        figure.set_size_inches(max(4.6, 2.2 * len(quantities)), 3.0)
     for axes, quantity in zip(panels.flat, quantities):
         for group in groups:
             part = rows[(rows.quantity == quantity) & (rows.conditioning == group)].sort_values("sigma_px")
@@ -224,7 +225,8 @@ def draw_conditioning(path, rows):
         axes.set_xlabel("Noise sigma (px)")
         axes.xaxis.set_major_formatter(FuncFormatter(lambda sigma, _: f"{sigma:g}"))
         axes.set_ylim(min(0.9, rows.lower.min() - 0.02), 1)
-    panels[0, 0].set_ylabel("Coverage (%)")
+    for axes in style.left_panels(panels):
+        axes.set_ylabel("Coverage (%)")
     lettered_titles(panels.flat, [QUANTITIES[quantity] for quantity in quantities])
     style.add_legend_and_caption(
         figure, panels[0, 0].get_legend_handles_labels()[0],
@@ -255,7 +257,8 @@ def draw_reference(path, rows):
         axes.tick_params(axis="x", labelsize=7, length=0)
         axes.set_xlim(-0.5, len(cells) - 0.5)
         axes.set_ylim(min(0.9, rows.lower.min() - 0.03), 1)
-    panels[0, 0].set_ylabel("Coverage (%)")
+    for axes in style.left_panels(panels):
+        axes.set_ylabel("Coverage (%)")
     lettered_titles(panels.flat, [title_of(quantity) for quantity in quantities])
     style.add_legend_and_caption(
         figure, panels[0, 0].get_legend_handles_labels()[0],
@@ -266,40 +269,32 @@ def draw_reference(path, rows):
 
 
 def parse(arguments):
-    parser = Parser(prog="rcme plot validity_map", description=__doc__, epilog=EXAMPLE,
-                    formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = FigureParser(prog="rcme plot validity_map", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("tables", metavar="DIR", help="folder that 'rcme map --out DIR' wrote")
     parser.add_argument("--out", metavar="DIR", help="folder for the figures (default: where the tables are)")
     options = parser.parse_args(arguments)
-    options.out = options.out or options.tables
+    options.out = os.path.join(options.out or options.tables, "")
     for folder in (options.tables, options.out):
         if not os.path.isdir(folder):
             raise PlotError(f"there is no folder {folder}.")
     return options
 
 
+def draw_for(options):
+    map_path, reference_path = (os.path.join(options.tables, name)
+                                for name in ("validity_map.csv", "validity_reference.csv"))
+    coverages = read_coverages(map_path, MAP_KEYS, ["median_parallax_deg"])
+    figures = {"validity_map" + (f"_{number}" if number > 1 else ""): draw_map(map_path, page)
+               for number, page in enumerate(pages_of(coverages), 1)}
+    figures["validity_conditioning"] = draw_conditioning(map_path, coverages)
+    if "baseline_m" in coverages:
+        reference = read_coverages(reference_path, REFERENCE_KEYS, ["num_samples"])
+        figures["validity_reference"] = draw_reference(reference_path, reference)
+    return figures
+
+
 def main(arguments=None):
-    try:
-        options = parse(arguments)
-        map_path, reference_path = (os.path.join(options.tables, name)
-                                    for name in ("validity_map.csv", "validity_reference.csv"))
-        coverages = read_coverages(map_path, MAP_KEYS, ["median_parallax_deg"])
-        figures = {"validity_map" + (f"_{number}" if number > 1 else ""): draw_map(map_path, page)
-                   for number, page in enumerate(pages_of(coverages), 1)}
-        figures["validity_conditioning"] = draw_conditioning(map_path, coverages)
-        if "baseline_m" in coverages:
-            reference = read_coverages(reference_path, REFERENCE_KEYS, ["num_samples"])
-            figures["validity_reference"] = draw_reference(reference_path, reference)
-        written = [path for name, figure in figures.items()
-                   for path in style.save(figure, os.path.join(options.out, name), dpi=170)]
-    except PlotError as error:
-        print(f"validity_map.py: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"validity_map.py: cannot write {options.out}: {error.strerror}.", file=sys.stderr)
-        return 2
-    print("\n".join(written))
-    return 0
+    return draw_figures("validity_map.py", parse, draw_for, arguments, dpi=170)
 
 
 if __name__ == "__main__":

@@ -53,16 +53,22 @@ void RunPlot(const std::vector<std::string>& words) {
 
 void AddPlotCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "plot", "Draw a figure of a table, PNG and PDF: rcme plot KIND FILE [OPTIONS of that kind]");
+      "plot", "Draw a figure of a table, PNG, PDF, SVG or TikZ: rcme plot KIND FILE [OPTIONS of that kind]");
   std::string kinds;
   for (const Kind& kind : Kinds())
     kinds += fmt::format("  {:<18} {:<16} {}\n", kind.name, kind.input, kind.doc);
-  command->footer("Kinds, what they draw from, and what it is:\n" + kinds +
-                  "\n"
-                  "Examples:\n"
-                  "  rcme plot failure_rate --help                      the options of that kind\n"
-                  "  rcme summarize run.sqlite --format csv --out summary.csv\n"
-                  "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure");
+  command->footer(
+      "Kinds, what they draw from, and what it is:\n" + kinds +
+      "\n"
+      "Every kind takes --width INCHES (3.3: a column; texts of 7 to 9 points), --labels NAME=TEXT, "
+      "--no-caption\n"
+      "and --format png,pdf,svg,tikz.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme plot failure_rate --help                      the options of that kind\n"
+      "  rcme summarize run.sqlite --format csv --out summary.csv\n"
+      "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure\n"
+      "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure --width 3.3 --format tikz");
   command->prefix_command();
   command->callback([command] { RunPlot(command->remaining()); });
 }

@@ -11,10 +11,13 @@ from audit_figures import groups, look
 from audit_figures.panel import Panel
 from audit_figures.scale import scale_of
 from common.paper import add_axes, add_rule, add_text
+from common import sheet
+from common.style import font_size
 from common.text_size import height_of, width_of, wrap
 
-LABEL_SIZE, VALUE_SIZE = 7.2, 6.8
+LABEL_SIZE, VALUE_SIZE = 7.2, 6.8  # points; of a sheet with a width at least 7
 MAX_LABEL_SHARE = 0.5  # of the width
+LEAST_AXIS = 0.75  # inches, of an axis on a sheet with a width
 INDENT, GAP, ROW_GAP = 0.1, 0.1, 0.055  # inches
 TICKS_HEIGHT, NAME_HEIGHT, GROUP_GAP = 0.22, 0.16, 0.12  # inches
 
@@ -68,10 +71,11 @@ class ForestPanel(Panel):
         self.lines = [lines_of(group, names) for group in self.groups]
         labels = [line for lines in self.lines for line in lines if not line.is_heading]
         self.widest_label = max(width_of(line.text, LABEL_SIZE) + line.indent for line in labels) + 0.02
-        self.value_width = max(width_of(look.measured_text(row.target), VALUE_SIZE) for row in rows) + 0.22
+        self.value_width = max(width_of(look.measured_text(row.target), font_size(VALUE_SIZE)) for row in rows) + 0.22
 
     def label_width(self, width):
-        return min(self.widest_label, MAX_LABEL_SHARE * width)
+        share = MAX_LABEL_SHARE if sheet.current().width is None else min(MAX_LABEL_SHARE, 0.9 - (self.value_width + LEAST_AXIS) / width)
+        return min(self.widest_label, share * width)
 
     def line_width(self, line, width):
         """A heading may run across the axes, where it has no data to hide."""
@@ -125,7 +129,8 @@ class ForestPanel(Panel):
 
     def write_values(self, figure, right, middle, target):
         verdict = look.LOOKS[target.verdict]
-        add_text(figure, right - 0.2, middle, look.measured_text(target), ha="right", va="center", fontsize=VALUE_SIZE)
+        add_text(figure, right - 0.2, middle, look.measured_text(target), ha="right", va="center",
+                 fontsize=font_size(VALUE_SIZE))
         add_text(figure, right, middle, verdict.glyph, ha="right", va="center", fontsize=8.5, color=verdict.color)
 
 
@@ -143,7 +148,7 @@ def draw_row(axes, y, target, scale):
         axes.vlines([target.nominal], y - half, y + half, color=look.ALLOWED, linewidth=1.5, zorder=1.4, label="_nominal")
     draw_interval(axes, y, target, scale, verdict.color)
     if math.isnan(target.measured):
-        axes.text(0.5, y, "no value", transform=axes.get_yaxis_transform(), fontsize=6.5, color=look.GREY, ha="center",
+        axes.text(0.5, y, "no value", transform=axes.get_yaxis_transform(), fontsize=font_size(6.5), color=look.GREY, ha="center",
                   va="center", style="italic")
     else:
         axes.plot([scale.clip(target.measured)], [y], **verdict.marks(verdict.color), zorder=4, clip_on=False,

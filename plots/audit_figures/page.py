@@ -11,10 +11,13 @@ from matplotlib.figure import Figure
 
 from audit_figures import look
 from audit_figures.panel import Panel
+from common import sheet
 from common.paper import HEAD_SIZE, SMALL_SIZE, add_text
-from common.text_size import height_of, wrap
+from common.style import font_size
+from common.text_size import height_of, width_of, wrap
 
 COLUMN, COLUMN_GAP, MARGIN, ROW_GAP = 3.4, 0.3, 0.1, 0.26  # inches
+NARROWEST_COLUMN = 3.0  # inches, of two on a sheet with a width
 TALLEST = 11  # inches; beyond, the page becomes wider as long as it is taller than wide
 MAX_COLUMNS = 8
 
@@ -34,10 +37,11 @@ class Titled:
         """[(text of one or more lines, look)] from top to bottom."""
         title = wrap(f"{letter} {self.title()}".lstrip(), width, HEAD_SIZE)
         verdict = wrap(look.verdict_text(self.claim), width, 8, bold=True)
-        note = wrap(self.note, width, SMALL_SIZE) if self.note else []
+        small = font_size(SMALL_SIZE)
+        note = wrap(self.note, width, small) if self.note else []
         return [("\n".join(title), dict(fontsize=HEAD_SIZE)),
                 ("\n".join(verdict), dict(fontsize=8, fontweight="bold", color=look.LOOKS[self.claim.verdict].color)),
-                ("\n".join(note), dict(fontsize=SMALL_SIZE, color=look.GREY))]
+                ("\n".join(note), dict(fontsize=small, color=look.GREY))]
 
     def head_height(self, width):
         return sum(height_of(text.count("\n") + 1, style["fontsize"]) for text, style in self.head("(mm)", width)
@@ -64,8 +68,14 @@ class Place:
     head_height: float
 
 
+def column_width(columns):
+    """Of one of so many."""
+    paper_width = sheet.current().width
+    return COLUMN if paper_width is None else (paper_width - 2 * MARGIN - (columns - 1) * COLUMN_GAP) / columns
+
+
 def width_of_columns(columns):
-    return columns * COLUMN + (columns - 1) * COLUMN_GAP
+    return columns * column_width(columns) + (columns - 1) * COLUMN_GAP
 
 
 def arrange(panels, columns):
@@ -82,9 +92,9 @@ def arrange_rows(panels, columns):
     for first in range(0, len(panels), columns):
         row = panels[first:first + columns]
         is_alone = len(panels) == 1 < columns  # among forests, so it is as wide as they
-        width = width_of_columns(2) if is_alone else COLUMN
+        width = width_of_columns(columns if sheet.current().width else 2) if is_alone else column_width(columns)
         head = max(panel.head_height(width) for panel in row)
-        places += [Place(panel, column * (COLUMN + COLUMN_GAP), top, width, head) for column, panel in enumerate(row)]
+        places += [Place(panel, column * (column_width(columns) + COLUMN_GAP), top, width, head) for column, panel in enumerate(row)]
         top += head + max(panel.body.height(width) for panel in row) + ROW_GAP
     return places, top
 
@@ -102,7 +112,12 @@ def arrange_columns(panels, columns, top):
 
 
 def grid(panels):
-    """(columns, places, height): one column for one curve, else two, more if the page became too tall."""
+    """(columns, places, height): one column for one curve, else two, more if the page became too tall; of a stated width as
+    many as fit."""
+    paper_width = sheet.current().width
+    if paper_width is not None:
+        columns = 1 if paper_width < 2 * NARROWEST_COLUMN else 2
+        return columns, *arrange(panels, columns)
     columns = 1 if len(panels) == 1 and panels[0].body.span == 1 else 2
     places, height = arrange(panels, columns)
     while height > max(TALLEST, 1.3 * width_of_columns(columns)) and 2 <= columns < MAX_COLUMNS:
@@ -119,13 +134,20 @@ def letter_of(position):
     return f"({letters[position // 26 - 1] if position >= 26 else ''}{letters[position % 26]})"
 
 
+def legend_columns_within(handles, width):
+    """At most three."""
+    widest = max((width_of(handle.get_label(), 8) for handle in handles), default=0)
+    return max(1, min(3, int((width - 2 * MARGIN + 0.13) / (widest + 0.4))))
+
+
 def draw_page(panels, handles, caption):
     columns, places, grid_height = grid(panels)
     width = width_of_columns(columns) + 2 * MARGIN
-    caption = wrap(caption, width - 2 * MARGIN, SMALL_SIZE)
-    legend_columns = len(handles) if columns > 1 else min(3, len(handles))
+    small = font_size(SMALL_SIZE)
+    caption = wrap(caption, width - 2 * MARGIN, small) if sheet.current().has_caption else []
+    legend_columns = len(handles) if columns > 1 else min(legend_columns_within(handles, width), len(handles))
     legend_height = 0.2 * math.ceil(len(handles) / max(1, legend_columns)) + 0.1 if handles else 0
-    height = MARGIN + legend_height + grid_height - ROW_GAP / 2 + height_of(len(caption), SMALL_SIZE) + MARGIN
+    height = MARGIN + legend_height + grid_height - ROW_GAP / 2 + height_of(len(caption), small) + MARGIN
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     if handles:
@@ -134,5 +156,6 @@ def draw_page(panels, handles, caption):
     for position, place in enumerate(places):
         place.panel.draw(figure, letter_of(position) if len(places) > 1 else "", MARGIN + place.left,
                          MARGIN + legend_height + place.top, place.width, place.head_height)
-    add_text(figure, MARGIN, height - MARGIN, "\n".join(caption), fontsize=SMALL_SIZE, color="0.3", va="bottom")
+    if caption:
+        add_text(figure, MARGIN, height - MARGIN, "\n".join(caption), fontsize=small, color="0.3", va="bottom")
     return figure

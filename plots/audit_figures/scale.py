@@ -10,9 +10,11 @@ from statistics import median
 
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 
+from common import sheet
 from common.number_text import number_text
 from common.text_size import width_of
 
+TICK_ROOM = 0.42  # inches
 WIDE_RATIO = 30  # a linear axis would hide the small values
 LOGIT_TICKS = (1e-6, 1e-5, 1e-4, 0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 0.9, 0.95, 0.99, 0.999, 0.9999, 1 - 1e-5, 1 - 1e-6)
 
@@ -53,7 +55,7 @@ class Scale:
         getattr(axes, f"set_{direction}scale")(self.name)
         getattr(axes, f"set_{direction}lim")(self.low, self.high)
         axis.set_major_locator(FixedLocator(self.ticks_that_fit(axes, direction)) if self.ticks else
-                               MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+                               MaxNLocator(num_steps(axes, direction), steps=[1, 2, 2.5, 5, 10]))
         axis.set_major_formatter(FuncFormatter(lambda value, _: self.tick_text(value)))
         axis.set_minor_locator(NullLocator())
 
@@ -72,6 +74,14 @@ class Scale:
             if all(inch * abs(place(self.name, tick) - place(self.name, other)) > room(other) for other in kept):
                 kept.append(tick)
         return sorted(kept)
+
+
+def num_steps(axes, direction):
+    """Between the ticks of a linear axis: five, on a sheet with a width as many as have room for their numbers."""
+    if sheet.current().width is None or direction == "y":
+        return 5
+    length = axes.get_position().width * axes.figure.get_figwidth()
+    return max(1, min(5, int(length / TICK_ROOM)))
 
 
 def place(name, value):

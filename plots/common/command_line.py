@@ -5,7 +5,7 @@ import argparse
 import os
 import sys
 
-from common import style
+from common import sheet, style
 
 
 class PlotError(Exception):
@@ -19,6 +19,56 @@ class Parser(argparse.ArgumentParser):
         raise PlotError(f"{message}; see --help.")
 
 
+class FigureParser(Parser):
+    """With the options that every figure has. `least_width`: inches below which this kind of figure cannot be drawn."""
+
+    def __init__(self, least_width=sheet.NARROWEST, **arguments):
+        super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, **arguments)
+        self.least_width = least_width
+        group = self.add_argument_group("for a paper")
+        group.add_argument("--width", type=float, metavar="INCHES",
+                           help="as wide as it is printed (a column: 3.3); texts then have 7 to 9 points")
+        group.add_argument("--labels", action="append", default=[], metavar="NAME=TEXT",
+                           help="what to print for an estimator, a factor, a level or a quantity; repeatable")
+        group.add_argument("--no-caption", action="store_true", help="leave out the small print below the figure")
+        group.add_argument("--format", default="png,pdf", metavar="A,B",
+                           help=f"what to write, of {', '.join(sheet.FORMATS)} (default: %(default)s)")
+
+    def parse_args(self, arguments=None, namespace=None):
+        options = super().parse_args(arguments, namespace)
+        options.sheet = sheet.Sheet(self.checked_width(options.width), dict(map(label_of, options.labels)),
+                                    not options.no_caption, checked_formats(options.format))
+        return options
+
+    def checked_width(self, width):
+        if width is not None and not self.least_width <= width <= sheet.WIDEST:
+            raise PlotError(f"--width {width:g}: give inches between {self.least_width:g} and {sheet.WIDEST:g}.")
+        return width
+
+
+def label_of(text):
+    name, equals, label = text.partition("=")
+    if not name or not equals:
+        raise PlotError(f"--labels {text}: expected name=text.")
+    return name, label
+
+
+def checked_formats(text):
+    formats = tuple(names_of("--format", text, "pdf"))
+    for name in formats:
+        if name not in sheet.FORMATS:
+            raise PlotError(f"--format {name}: is not known; allowed: {', '.join(sheet.FORMATS)}.")
+    return formats
+
+
+def check_labels_were_met():
+    """A label for what the figure does not show is a mistake."""
+    in_use = sheet.current()
+    for name in in_use.labels:
+        if name not in in_use.met:
+            raise PlotError(f"--labels {name}: the figure shows nothing of that name; it shows {', '.join(in_use.met)}.")
+
+
 def names_of(option, text, example):
     """The names in 'A,B', each once; none is an error."""
     names = list(dict.fromkeys(filter(None, text.split(","))))
@@ -30,8 +80,8 @@ def names_of(option, text, example):
 def check_figure_path(out):
     """--out of a script that writes PATH.png and PATH.pdf."""
     folder, name = os.path.split(out)
-    if not name or name.endswith((".png", ".pdf")):
-        raise PlotError(f"--out {out}: give a file path without .png or .pdf; both are written.")
+    if not name or name.endswith((".png", ".pdf", ".svg", ".tikz")):
+        raise PlotError(f"--out {out}: give a file path without .png or .pdf; the formats add theirs.")
     check_folder(out)
 
 
@@ -61,10 +111,13 @@ def draw_figure(name, parse, draw, arguments):
     return draw_figures(name, parse, lambda options: {"": draw(options)}, arguments)
 
 
-def draw_figures(name, parse, draw, arguments):
+def draw_figures(name, parse, draw, arguments, dpi=style.RC["savefig.dpi"]):
     """The same of a script that draws several: draw(options) is {what its name adds to --out: figure}, all of them
     before the first is written."""
     def make(arguments):
         options = parse(arguments)
-        return [path for more, figure in draw(options).items() for path in style.save(figure, options.out + more)]
+        with sheet.use(getattr(options, "sheet", sheet.Sheet())):
+            figures = draw(options)
+            check_labels_were_met()
+            return [path for more, figure in figures.items() for path in style.save(figure, options.out + more, dpi)]
     return run(name, make, arguments)

@@ -5,11 +5,12 @@ import math
 
 from matplotlib.transforms import ScaledTranslation
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
+from common.text_size import width_of
 
 MAX_PANEL_ROWS = 6
-ROOM_FOR_NAMES = 76  # characters below an axis of one panel; more stand upright
+TICK_SIZE, NAME_GAP = 8, 0.08  # points; inches between names below an axis, or they stand upright
 
 
 def is_number(text):
@@ -42,16 +43,32 @@ class FactorAxis:
         left, right = self.limits()
         places = sorted(set(self.place.values()))
         gap = min((b - a for a, b in zip(places, places[1:])), default=right - left)
-        panel_width = 72 * {1: 4.0, 2: 3.0}.get(panels_abreast, 2.1)
-        return min(26, 0.7 * panel_width * gap / (right - left))
+        return min(26, 0.7 * 72 * self.width(panels_abreast) * gap / (right - left))
+
+    def width(self, panels_abreast):
+        """Inches of the axis, about."""
+        if sheet.current().width is None:
+            return {1: 4.0, 2: 3.0}.get(panels_abreast, 2.1)
+        return style.room_of_panel(panels_abreast) - 0.6
+
+    def height_of_names(self, panels_abreast):
+        """Inches below a panel that upright names take on a sheet with a width, whose panels have a height of their own."""
+        names = [] if self.is_numeric or sheet.current().width is None else list(map(style.level_text, self.levels))
+        return max(width_of(name, TICK_SIZE) for name in names) if names and self.is_crowded(names, panels_abreast) else 0
+
+    def is_crowded(self, names, panels_abreast):
+        """Whether names of words, one beside the other, would touch."""
+        widths = [width_of(name, TICK_SIZE) for name in names]
+        step = self.width(panels_abreast) / len(names)
+        return any((a + b) / 2 + NAME_GAP > step for a, b in zip(widths, widths[1:])) or max(widths) > 1.6 * step
 
     def prepare(self, axes, panels_abreast):
         """Limits with a margin and, for words, ticks; conditions without a value keep their place."""
         axes.set_xlim(*self.limits())
         axes.set_xlabel(style.in_words(self.name))
         if not self.is_numeric:
-            is_crowded = sum(map(len, self.levels)) > ROOM_FOR_NAMES / panels_abreast
-            axes.set_xticks(range(len(self.levels)), self.levels, rotation=90 if is_crowded else 0)
+            names = list(map(style.level_text, self.levels))
+            axes.set_xticks(range(len(names)), names, rotation=90 if self.is_crowded(names, panels_abreast) else 0)
             axes.tick_params(axis="x", length=0)
             axes.grid(axis="x", visible=False)
 

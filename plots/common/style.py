@@ -11,17 +11,22 @@ carrier: each estimator also has its own marker and dash pattern, so a grey prin
 """
 
 import contextlib
+import itertools
 import math
 import os
 import textwrap
 from dataclasses import dataclass, replace
 
 import matplotlib
+import numpy
 
 matplotlib.use("Agg")
 from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402  (after the choice of backend)
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.path import Path  # noqa: E402
+
+from common import sheet  # noqa: E402
+from common.text_size import fill  # noqa: E402
 
 BLACK, ORANGE, SKY_BLUE, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"  # Okabe-Ito's yellow is too pale for a line on white
@@ -75,8 +80,9 @@ class Look:
 
 
 def size_of(marker):
-    """Squares and diamonds look larger than a circle of the same nominal size."""
-    return {"s": 0.86, "D": 0.8}.get(marker, 1)
+    """Squares and diamonds look larger than a circle of the same nominal size; in print, stars are lost."""
+    in_print = {} if sheet.current().width is None else {"*": 1.5, "d": 1.15, "p": 1.1}
+    return {"s": 0.86, "D": 0.8, **in_print}.get(marker, 1)
 
 
 # Keys are the estimators' labels in a study. One hue per family; a darker or lighter neighbour, with dashes, for its
@@ -109,6 +115,7 @@ def looks_of(estimators):
         if look is None:  # 7, 6 and 5 have no common divisor: 210 different looks
             look = Look(name, OTHER_COLORS[others % 7], OTHER_MARKERS[others % 6], OTHER_DASHES[others % 5])
             others += 1
+        look = replace(look, label=sheet.current().text_of(name, look.label))
         rim = 0.5 + (last / 2 - position) / max(last, 4)  # from 1 to 0; two estimators differ only a little
         looks[name] = replace(look, line_width=1.1 + 1.0 * rim,
                               marker_size=(3.6 + 4.0 * rim) * size_of(look.marker))
@@ -122,7 +129,7 @@ def equal_looks_of(estimators):
 
 def label_of(estimator):
     """An estimator's label in words, as every legend has it."""
-    return KNOWN_LOOKS[estimator].label if estimator in KNOWN_LOOKS else estimator
+    return sheet.current().text_of(estimator, KNOWN_LOOKS[estimator].label if estimator in KNOWN_LOOKS else estimator)
 
 
 def split_unit(name):
@@ -135,13 +142,23 @@ def split_unit(name):
 def in_words(name):
     """For an axis or a title: 'outlier_ratio' -> 'Outlier ratio', 'sigma_px' -> 'Sigma (px)'."""
     words, unit = split_unit(name)
-    return words[:1].upper() + words[1:] + (f" ({unit})" if unit else "")
+    return sheet.current().text_of(name, words[:1].upper() + words[1:] + (f" ({unit})" if unit else ""))
+
+
+def level_text(level):
+    """A level of a factor as the figure prints it."""
+    return sheet.current().text_of(level, level)
 
 
 def level_in_words(name, level):
-    """One level of a factor: ('sigma_px', '1') -> 'sigma = 1 px'."""
+    """One level of a factor: ('sigma_px', '1') -> 'sigma = 1 px'; of a factor with a label 'the label: 1'."""
     words, unit = split_unit(name)
-    return f"{words} = {level} {unit}".rstrip()
+    label = sheet.current().text_of(name, "")
+    return f"{label}: {level_text(level)}" if label else f"{words} = {level_text(level)} {unit}".rstrip()
+
+
+def font_size(points):
+    return sheet.current().font_size(points)
 
 
 def letters(count):
@@ -149,32 +166,80 @@ def letters(count):
     return (f"({letter}) " if count > 1 else "" for letter in "abcdefghijklmnopqrstuvwxyz" * 9)
 
 
-def new_figure(rows, columns):
-    """A figure of paper size (two panels: 7 x 3.2 inches) and its axes as a rows x columns array."""
-    width = {1: 4.6, 2: 7.0}.get(columns, 2.6 * columns)
-    figure = Figure(figsize=(width, 1.0 + 2.2 * rows), layout="constrained")
+PANEL_WIDTH, PANEL_HEIGHT = 2.2, 1.9  # inches: of the narrowest panel on a sheet with a width, and of all there
+
+
+def panels_abreast(columns):
+    """How many of so many panels stand beside each other."""
+    width = sheet.current().width
+    return columns if width is None else max(1, min(columns, int(width / PANEL_WIDTH)))
+
+
+def room_of_panel(columns):
+    """Inches of paper for one of so many panels, its labels included."""
+    width = sheet.current().width
+    return {1: 4.6, 2: 3.5}.get(columns, 2.6) if width is None else width / panels_abreast(columns)
+
+
+def new_figure(rows, columns, names_height=0):
+    """A figure of paper size (two panels: 7 x 3.2 inches) and its axes as a rows x columns array. On a sheet of a stated
+    width the panels of a row stand below each other where they do not fit; legend and caption add to its height, and
+    so does what the names below the last row take, `names_height` inches."""
+    width = sheet.current().width
+    if width is None:
+        width = {1: 4.6, 2: 7.0}.get(columns, 2.6 * columns)
+        figure = Figure(figsize=(width, 1.0 + 2.2 * rows), layout="constrained")
+        FigureCanvasAgg(figure)
+        return figure, figure.subplots(rows, columns, squeeze=False, sharex=True, sharey="col")
+    abreast = panels_abreast(columns)
+    lines = math.ceil(columns / abreast)  # of paper, per row
+    figure = Figure(figsize=(width, (PANEL_HEIGHT * rows + names_height) * lines), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey="col")
+    grid, axes = figure.add_gridspec(rows * lines, abreast), numpy.empty((rows, columns), dtype=object)
+    for r, c in itertools.product(range(rows), range(columns)):
+        place = grid[r * lines + c // abreast, c % abreast]
+        axes[r, c] = figure.add_subplot(place, sharex=axes[0, 0], sharey=axes[0, c])
+        axes[r, c].tick_params(labelbottom=r == rows - 1)
     return figure, axes
+
+
+def left_panels(panels):
+    """Those with nothing at their left."""
+    return [axes for axes in panels.flat if axes.get_subplotspec().is_first_col()]
+
+
+def title_lines(text, columns, size=RC["axes.titlesize"]):
+    """The title of one of so many panels, in lines that fit above it."""
+    return "\n".join(fill(text, room_of_panel(columns) - 0.5, size))
 
 
 def add_legend_and_caption(figure, handles, caption):
     """Legend, if there are handles, above the panels, caption below them in small print; a long legend makes the figure
     taller."""
     width, height = figure.get_size_inches()
-    caption = "\n".join(textwrap.wrap(caption, int(20 * width)))
-    below = figure.text(0.006, 0.012, caption, fontsize=6.5, color="0.3", ha="left", va="bottom", linespacing=1.3)
+    has_width, small = sheet.current().width is not None, font_size(6.5)
+    if has_width:
+        figure.set_dpi(RC["savefig.dpi"])  # measured as it is saved
+    lines = fill(caption, width - 0.12, small) if has_width else textwrap.wrap(caption, int(20 * width))
+    below = figure.text(0.006, 0.012, "\n".join(lines), fontsize=small, color="0.3", ha="left", va="bottom",
+                        linespacing=1.3) if sheet.current().has_caption else None
     above = add_legend(figure, handles) if handles else None
-    if above:
-        height += max(0, above.get_window_extent().height / figure.dpi - 0.3)  # more than one row
-        figure.set_size_inches(width, height)
+    heights = [text.get_window_extent().height / figure.dpi if text else 0.0 for text in (above, below)]
+    height += sum(heights) + 0.06 if has_width else max(0, heights[0] - 0.3)  # a legend of more than one row
+    figure.set_size_inches(width, height)
+    if below and has_width:
+        below.set_position((0.05 / width, 0.03 / height))
     top = above.get_window_extent().y0 / figure.bbox.height if above else 1
-    bottom = below.get_window_extent().y1 / figure.bbox.height + 0.03 / height
+    bottom = below.get_window_extent().y1 / figure.bbox.height + 0.03 / height if below else 0
     figure.get_layout_engine().set(rect=(0, bottom, 1, top - bottom), w_pad=0.05, h_pad=0.04, wspace=0.03)
 
 
 def add_legend(figure, handles):
     """At the upper edge, in as few rows as fit the width."""
+    if sheet.current().width is not None:
+        for handle in handles:  # room for the mark and the margins
+            handle.set_label("\n".join(line for part in handle.get_label().split("\n") for line in
+                                       fill(part, figure.get_figwidth() - 0.6, RC["legend.fontsize"])))
     for legend_rows in range(1, len(handles) + 1):
         columns = math.ceil(len(handles) / legend_rows)
         legend = figure.legend(handles=handles, loc="upper center", ncols=columns, borderaxespad=0.2)
@@ -183,18 +248,30 @@ def add_legend(figure, handles):
         legend.remove()
 
 
-def save(figure, path_without_suffix, dpi=RC["savefig.dpi"]):
-    """Writes PATH.png and PATH.pdf and returns the two paths.
+def written_as(figure, kind, path, dpi):
+    """Writes one format; no dates or versions go in: the same input gives the same bytes."""
+    if kind == "tikz":
+        from common.tikz import tikz_of  # which needs the command line, and that this file
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(tikz_of(figure))
+        return
+    no_stamp = {"png": {"Software": None}, "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
+                "svg": {"Date": None, "Creator": None}}
+    with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
+        figure.savefig(path, format=kind, dpi=dpi, metadata=no_stamp[kind])
 
-    Both are written beside their place under a temporary name and then moved, so a reader never meets half a file and
-    a failure leaves what was there. No dates or versions go in: the same input gives the same bytes.
+
+def save(figure, path_without_suffix, dpi=RC["savefig.dpi"]):
+    """Writes PATH.png, PATH.pdf or what else the sheet asks for, and returns the paths.
+
+    All are written beside their place under a temporary name and then moved, so a reader never meets half a file and
+    a failure leaves what was there.
     """
-    no_stamp = {"png": {"Software": None}, "pdf": {"Creator": None, "Producer": None, "CreationDate": None}}
     folder, name = os.path.split(path_without_suffix)
-    temporary = {kind: os.path.join(folder, f".{name}.{os.getpid()}.{kind}.tmp") for kind in no_stamp}
+    temporary = {kind: os.path.join(folder, f".{name}.{os.getpid()}.{kind}.tmp") for kind in sheet.current().formats}
     try:
         for kind, path in temporary.items():
-            figure.savefig(path, format=kind, dpi=dpi, metadata=no_stamp[kind])
+            written_as(figure, kind, path, dpi)
         written = []
         for kind, path in temporary.items():
             written.append(f"{path_without_suffix}.{kind}")

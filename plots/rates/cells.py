@@ -9,9 +9,10 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
 from common.factor_axis import FactorAxis
+from common.text_size import wrap, width_of
 from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
                              n_in_words, select_rates, title_of)
 
@@ -20,6 +21,9 @@ LEAST_TOP = 0.05  # a scale that ended lower would paint rates that hardly diffe
 CELL_WIDTH, CELL_HEIGHT = 0.62, 0.36  # inches: room for "[10.1, 14.8]"
 LONGEST_LEVEL_NAME = 11  # letters that fit below a cell
 WIDEST = 9.5  # inches; more panels go into a further row
+LABELS_WIDTH, BAR_WIDTH = 0.85, 0.65  # inches beside the panels: names of levels and of the factor; the colour bar
+STACKED_HEIGHT, SMALLEST_CELL = 0.47, 0.34  # inches, on a sheet with a width: of three lines of text, and of "100.0"
+LARGE, SMALL = 7.5, 5.2  # points: the rate in a cell, its interval
 MAX_PANELS = 60
 
 
@@ -51,17 +55,38 @@ def chosen_estimators(summary, rows, wanted):
 def grid_of(num_estimators, num_quantities, x_levels, y_levels):
     """(figure, panels, colour bars): a row of panels per quantity, or several where one would be too wide. `panels` has
     one list per quantity, estimators in order; `colour bars` the axes at the right of each of its rows."""
+    paper_width = sheet.current().width
     width, height = max(1.5, CELL_WIDTH * x_levels), CELL_HEIGHT * y_levels
     columns = max(1, min(num_estimators, int((WIDEST - 1.6) // (width + 0.1))))
+    if paper_width is not None:
+        width, columns = fitted(paper_width, num_estimators, x_levels)
+        height = (CELL_HEIGHT if has_room_for_interval(width / x_levels) else STACKED_HEIGHT) * y_levels
     lines = -(-num_estimators // columns)
     rows = num_quantities * lines
-    figure = Figure(figsize=(1.4 + columns * (width + 0.1), 0.9 + rows * (height + 0.6)), layout="constrained")
+    figure = Figure(figsize=(paper_width or 1.4 + columns * (width + 0.1),
+                             (0.9 if paper_width is None else 0.25) + rows * (height + 0.6)), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns + 1, squeeze=False, gridspec_kw={"width_ratios": [width] * columns + [0.13]})
     panels = [list(axes[q * lines:(q + 1) * lines, :-1].flat) for q in range(num_quantities)]
     for unused in itertools.chain(*(of_quantity[num_estimators:] for of_quantity in panels)):
         unused.set_visible(False)
     return figure, panels, [list(axes[q * lines:(q + 1) * lines, -1]) for q in range(num_quantities)]
+
+
+def has_room_for_interval(cell_width):
+    """Whether "[10.1, 14.8]" fits on one line of a cell."""
+    return cell_width > width_of("[10.1, 14.8]", style.font_size(SMALL))
+
+
+def fitted(paper_width, num_panels, x_levels):
+    """(width of a panel, how many stand side by side) on a sheet of that width."""
+    room = paper_width - LABELS_WIDTH - BAR_WIDTH
+    if room < SMALLEST_CELL * x_levels:
+        raise PlotError(f"--width {paper_width:g}: {x_levels} levels side by side need "
+                        f"{LABELS_WIDTH + BAR_WIDTH + SMALLEST_CELL * x_levels:.1f} inches; put the factor with fewer levels "
+                        "on --x, or draw some levels with --where.")
+    columns = max(1, min(num_panels, int(room // max(1.5, CELL_WIDTH * x_levels))))
+    return room / columns, columns
 
 
 def luminance(color):
@@ -77,29 +102,40 @@ def in_per_cent(fraction):
     return f"{100 * fraction:.1f}"
 
 
-def draw_cell(axes, left, bottom, row, scale):
+def draw_cell(axes, left, bottom, row, scale, has_room_for_interval=True):
     """A coloured cell with its rate (%) and, in small print, its interval; hatched where there are no trials."""
     box = dict(linewidth=0.8, edgecolor="white")
     if row.value != row.value:
         axes.fill_between([left, left + 1], bottom, bottom + 1, facecolor="0.93", hatch="///", **{**box, "edgecolor": "0.7"})
-        axes.text(left + 0.5, bottom + 0.5, "n = 0", ha="center", va="center", fontsize=5.6, color="0.3")
+        axes.text(left + 0.5, bottom + 0.5, "n = 0", ha="center", va="center", fontsize=style.font_size(5.6), color="0.3")
         return
     color = COLORS(scale(row.value))
     text = dict(ha="center", va="center", color=text_color(color))
     axes.fill_between([left, left + 1], bottom, bottom + 1, facecolor=color, **box)
-    axes.text(left + 0.5, bottom + 0.64, in_per_cent(row.value), fontsize=7.5, **text)
-    axes.text(left + 0.5, bottom + 0.25, f"[{in_per_cent(row.lower)}, {in_per_cent(row.upper)}]", fontsize=5.2, **text)
+    value, lower, upper = map(in_per_cent, (row.value, row.lower, row.upper))
+    large, small = style.font_size(LARGE), style.font_size(SMALL)
+    if has_room_for_interval:
+        axes.text(left + 0.5, bottom + 0.64, value, fontsize=large, **text)
+        axes.text(left + 0.5, bottom + 0.25, f"[{lower}, {upper}]", fontsize=small, **text)
+    else:  # its ends above and below the rate
+        axes.text(left + 0.5, bottom + 0.5, value, fontsize=large, fontweight="bold", **text)
+        axes.text(left + 0.5, bottom + 0.82, upper, fontsize=small, **text)
+        axes.text(left + 0.5, bottom + 0.18, lower, fontsize=small, **text)
 
 
-def draw_panel(axes, rows, x_axis, y_axis, scale):
-    """One estimator's cells; both factors in the order of the study, from the lower left."""
+def draw_panel(axes, rows, x_axis, y_axis, scale, cell_width=None):
+    """One estimator's cells; both factors in the order of the study, from the lower left. `cell_width`: inches, on a sheet
+    with a width."""
+    is_roomy = cell_width is None or has_room_for_interval(cell_width)
     for row in rows.itertuples():
-        draw_cell(axes, x_axis.levels.index(row.x), y_axis.levels.index(row.y), row, scale)
+        draw_cell(axes, x_axis.levels.index(row.x), y_axis.levels.index(row.y), row, scale, is_roomy)
     axes.set(xlim=(0, len(x_axis.levels)), ylim=(0, len(y_axis.levels)))
-    is_long = max(len(level) for level in x_axis.levels) > LONGEST_LEVEL_NAME
-    axes.set_xticks([0.5 + i for i in range(len(x_axis.levels))], x_axis.levels, rotation=25 if is_long else 0,
+    x_names, y_names = (list(map(style.level_text, each.levels)) for each in (x_axis, y_axis))
+    is_long = (max(map(len, x_names)) > LONGEST_LEVEL_NAME if cell_width is None else
+               max(width_of(name, 7) for name in x_names) > cell_width - 0.04)
+    axes.set_xticks([0.5 + i for i in range(len(x_names))], x_names, rotation=25 if is_long else 0,
                     ha="right" if is_long else "center")
-    axes.set_yticks([0.5 + i for i in range(len(y_axis.levels))], y_axis.levels)
+    axes.set_yticks([0.5 + i for i in range(len(y_names))], y_names)
     axes.tick_params(length=0, labelsize=7)
     axes.grid(False)
     for spine in axes.spines.values():
@@ -130,18 +166,24 @@ def draw(summary, x, y, quantities, estimators=()):
                         "choose some with --estimators or --quantities.")
     looks, letters = style.looks_of(names), style.letters(len(names) * len(quantities))
     figure, panels, bars = grid_of(len(names), len(quantities), len(x_axis.levels), len(y_axis.levels))
+    width = sheet.current().width
+    panel_width = None if width is None else fitted(width, len(names), len(x_axis.levels))[0]
+    cell_width = panel_width and panel_width / len(x_axis.levels)
     for quantity, of_quantity, bars_of_quantity in zip(quantities, panels, bars):
         drawn = rows[rows.quantity == quantity]
         scale = scale_of(drawn)
         for axes, name in zip(of_quantity, names):
-            draw_panel(axes, drawn[drawn.estimator == name], x_axis, y_axis, scale)
-            axes.set_title(f"{next(letters)}{title_of(quantity)}, {looks[name].label}", fontsize=7.5)
+            draw_panel(axes, drawn[drawn.estimator == name], x_axis, y_axis, scale, cell_width)
+            title = f"{next(letters)}{title_of(quantity)}, {looks[name].label}"
+            axes.set_title("\n".join(wrap(title, panel_width, 7.5)) if panel_width else title, fontsize=7.5)
         draw_color_bars(figure, bars_of_quantity, scale, f"{kind_in_words(drawn)} (%)")
         name_axes(of_quantity, len(of_quantity) // len(bars_of_quantity), x, y)
     others = [factor for factor in summary.factors if factor not in (x, y)]
     style.add_legend_and_caption(figure, [], "; ".join(
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, others), n_in_words(rows, "cell"),
-         f"in each cell the {kind_in_words(rows).lower()} in %, below it its {interval_in_words(rows)} interval"]) + ".")
+         f"in each cell the {kind_in_words(rows).lower()} in %, " + (
+             "below it" if cell_width is None or has_room_for_interval(cell_width) else "above and below it the ends of") +
+         f" its {interval_in_words(rows)} interval"]) + ".")
     return figure
 
 

@@ -6,7 +6,7 @@ import math
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
 from common.summary_csv import numbers
@@ -17,6 +17,10 @@ SIGNIFICANCE_LEVEL = 0.05
 TITLES = {  # other events: their name in words
     "failure": "Failures", "refusal": "Refusals", "failure_or_refusal": "Failures and refusals",
 }
+
+
+def name_of(event):
+    return sheet.current().text_of(event, TITLES[event]) if event in TITLES else title_of(event)
 
 
 def compared_in_words(rows):
@@ -96,15 +100,16 @@ def draw(comparison, x, events):
     for _, part in parts:
         check_no_repetition(comparison.path, part, ["x", "estimator", "event"], lambda row: f"x = {row[x]}")
     reference = style.label_of(rows.reference.iloc[0])
-    figure, panels = style.new_figure(len(parts), len(events))
+    figure, panels = style.new_figure(len(parts), len(events), axis.height_of_names(len(events)))
     letters = style.letters(panels.size)
     for (r, (levels, part)), (c, event) in itertools.product(enumerate(parts), enumerate(events)):
         draw_panel(panels[r, c], part[part.event == event], looks, axis.is_numeric,
                    axis.room(len(events)))
-        panels[r, c].set_title(next(letters) + TITLES.get(event, title_of(event)) + (f", {levels}" if levels else ""))
+        title = next(letters) + name_of(event) + (f", {levels}" if levels else "")
+        panels[r, c].set_title(style.title_lines(title, len(events)))
         axis.prepare(panels[r, c], len(events))
         panels[r, c].set_xlabel(style.in_words(x) if r == len(parts) - 1 else "")
-    for axes in panels[:, 0]:
+    for axes in style.left_panels(panels):
         axes.set_ylabel("Difference (% points)")
     style.add_legend_and_caption(figure, legend_of(looks, test_in_words(rows)), "; ".join(
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors),

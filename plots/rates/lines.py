@@ -7,17 +7,15 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from common import style
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
-from common.text_size import wrap
 from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
                              n_in_words, select_rates, title_of)
-
-TITLE_SIZE, TITLE_MARGIN = 8.5, 0.5  # the titles of style.py; inches beside a panel
 
 
 def draw_line(axes, points, look):
     """One estimator's line with its interval band; both break where a value is missing."""
     axes.fill_between(points.x, points.lower, points.upper, color=look.color, alpha=0.13, linewidth=0)
-    axes.plot(points.x, points.value, **look.line(), clip_on=False, zorder=3)
+    line, = axes.plot(points.x, points.value, **look.line(), clip_on=False, zorder=3)
+    line.set_in_layout(points.value.notna().any())  # an empty one would confuse the layout
     gap = points.value.isna()
     alone = points[~gap & gap.shift(1, fill_value=True) & gap.shift(-1, fill_value=True)]  # too narrow for a band
     axes.vlines(alone.x, alone.lower, alone.upper, color=look.color, alpha=0.5, linewidth=1, zorder=2)
@@ -28,8 +26,9 @@ def draw_abreast(axes, points, look, aside):
     points = points[points.value.notna()]
     axes.vlines(points.x, points.lower, points.upper, color=look.color, linewidth=1, zorder=2,
                 transform=axes.transData + aside)
-    axes.plot(points.x, points.value, **{**look.line(), "linestyle": "none"}, transform=axes.transData + aside,
-              clip_on=False, zorder=3)
+    line, = axes.plot(points.x, points.value, **{**look.line(), "linestyle": "none"}, transform=axes.transData + aside,
+                      clip_on=False, zorder=3)
+    line.set_in_layout(len(points) > 0)
 
 
 def draw_upper_limits(axes, zeros, looks):
@@ -90,17 +89,16 @@ def draw(summary, x, quantities, log_y=False):
     for _, part in parts:
         check_no_repetition(summary.path, part, ["x", "estimator", "quantity"], lambda row: f"x = {row[x]}")
     looks = (style.looks_of if axis.is_numeric else style.equal_looks_of)(list(dict.fromkeys(rows.estimator)))
-    figure, panels = style.new_figure(len(parts), len(quantities))
+    figure, panels = style.new_figure(len(parts), len(quantities), axis.height_of_names(len(quantities)))
     letters = style.letters(panels.size)
     for (r, (levels, part)), (c, quantity) in itertools.product(enumerate(parts), enumerate(quantities)):
         draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), log_y)
         title = next(letters) + title_of(quantity) + (f", {levels}" if levels else "")
-        room = figure.get_figwidth() / len(quantities) - TITLE_MARGIN
-        panels[r, c].set_title("\n".join(wrap(title, room, TITLE_SIZE)))
+        panels[r, c].set_title(style.title_lines(title, len(quantities)))
     for c, quantity in enumerate(quantities):
         set_y_limits(panels[:, c], rows[rows.quantity == quantity], log_y)
         axis.prepare(panels[-1, c], len(quantities))  # the x axis is shared by all panels
-    for axes in panels[:, 0]:
+    for axes in style.left_panels(panels):
         axes.set_ylabel(f"{kind_in_words(rows)} (%)")
     style.add_legend_and_caption(figure, panels[0, 0].get_legend_handles_labels()[0],
                                  caption_of(rows, other_factors, axis.is_numeric, log_y))

@@ -2,12 +2,12 @@
 
 import math
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
 from common.summary_csv import numbers
 
 TITLES = {  # other quantities: their name in words
-    "failure": "Failure rate", "success": "Success rate",
+    "failure": "Failure rate", "success": "Success rate", "failure_or_refusal": "Failure or refusal rate",
     "no_candidate": "Detect-fail rate",  # the paper's word
     "other_refusal": "Other refusals",
     "kappa_flag": "Kappa-flag rate", "nees_coverage": "NEES coverage",
@@ -18,9 +18,10 @@ DRAWN_KINDS = ("rate", "score", "share")  # numbers between 0 and 1 with an inte
 
 
 def title_of(quantity):
-    if quantity.removesuffix(ANSWERED) in TITLES and quantity.endswith(ANSWERED):
-        return TITLES[quantity.removesuffix(ANSWERED)] + ", refusals left out"
-    return TITLES.get(quantity, style.in_words(quantity))
+    measure = quantity.removesuffix(ANSWERED)
+    if measure in TITLES and quantity.endswith(ANSWERED):
+        return sheet.current().text_of(quantity, TITLES[measure] + ", refusals left out")
+    return sheet.current().text_of(quantity, TITLES[quantity]) if quantity in TITLES else style.in_words(quantity)
 
 
 def kind_in_words(rows):

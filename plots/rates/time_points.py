@@ -2,9 +2,9 @@
 
 import math
 
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
 from common.summary_csv import numbers
 
@@ -61,16 +61,19 @@ def draw_panel(axes, looks, by_estimator):
     axes.step(*zip(*front), where="post", color="0.75", linewidth=4, alpha=0.5, zorder=0)
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda ms, _: f"{ms:g}"))
+    if sheet.current().width is not None:  # a narrow panel may hold no power of ten
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=7))
+        axes.xaxis.set_minor_formatter(NullFormatter())
     axes.yaxis.set_major_formatter(FuncFormatter(lambda share, _: f"{100 * share:g}"))
 
 
 def panels_for(count):
     """A figure and as many panels of it, row by row, two beside each other."""
-    columns = min(count, 2)
+    columns = min(count, style.panels_abreast(2))
     figure, axes = style.new_figure(math.ceil(count / columns), columns)
     for blank in axes.flat[count:]:
         blank.set_axis_off()
-    if count == 1:
+    if count == 1 and sheet.current().width is None:
         figure.set_size_inches(5.2, 3.9)
     for bottom in axes[-1]:
         bottom.set_xlabel("Time of a call (ms)")
@@ -90,7 +93,7 @@ def draw(summaries):
     for panel, letter, (study, by_estimator) in zip(axes, style.letters(len(panels)), panels.items()):
         draw_panel(panel, looks, by_estimator)
         if len(panels) > 1:
-            panel.set_title(letter + style.in_words(study))
+            panel.set_title(style.title_lines(letter + style.in_words(study), min(len(panels), 2)))
     handles = [axes[0].plot([], [], **look.line())[0] for look in looks.values()]
     which = "A panel per study" if len(panels) > 1 else f"Study {next(iter(panels))}"
     style.add_legend_and_caption(figure, handles, f"{which}; success: neither failed nor refused, over all conditions, "

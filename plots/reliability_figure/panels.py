@@ -8,14 +8,14 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
 from rates.rate_bands import per_cent
 from reliability_figure.reliability_file import STATED
 
 MAX_DIAGRAMS = 3
 TICKS = (0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1)
-SCORES_HEIGHT = 46  # points between a diagram and its title
+SCORES_SIZE, SCORES_HEIGHT = 6.2, 7.4  # points of the scores' text; times that, between a diagram and its title
 BAND = dict(color=style.SKY_BLUE, alpha=0.35, linewidth=0)
 RIGHT = dict(color="0.5", linewidth=0.8, linestyle=style.DOTTED)
 BARS = dict(color="0.6", linewidth=0)
@@ -93,7 +93,8 @@ def draw_diagram(axes, entry, look):
                       elinewidth=0.8, clip_on=False, label="_bin")
     axes.set_ylabel("Failed (%)")
     axes.tick_params(labelbottom=False)
-    axes.text(0, 1.03, scores_in_words(entry), transform=axes.transAxes, fontsize=6.2, va="bottom", linespacing=1.35)
+    axes.text(0, 1.03, scores_in_words(entry), transform=axes.transAxes, fontsize=style.font_size(SCORES_SIZE), va="bottom",
+              linespacing=1.35)
 
 
 def draw_histogram(axes, entry, edges):
@@ -142,16 +143,22 @@ def draw(file, names=None, group=None):
     entries = of_group(file, group)
     diagrams = with_diagram(file, entries, names)
     looks = style.looks_of(list(dict.fromkeys(entry.estimator for entry in entries)))
-    figure = Figure(figsize=(2.7 * (len(diagrams) + 1), 4.6), layout="constrained")
+    count, width = len(diagrams) + 1, sheet.current().width
+    abreast = style.panels_abreast(count)
+    lines = math.ceil(count / abreast)
+    figure = Figure(figsize=(2.7 * count, 4.6) if width is None else (width, 3.7 * lines), layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.add_gridspec(2, len(diagrams) + 1, height_ratios=(3.2, 1))
-    letters = style.letters(len(diagrams) + 1)
-    for column, entry in enumerate(diagrams):
-        axes = figure.add_subplot(grid[0, column])
+    grid = figure.add_gridspec(2 * lines, abreast, height_ratios=(3.2, 1) * lines)
+    letters = style.letters(count)
+    for position, entry in enumerate(diagrams):
+        line, column = divmod(position, abreast)
+        axes = figure.add_subplot(grid[2 * line, column])
         draw_diagram(axes, entry, looks[entry.estimator])
-        axes.set_title(next(letters) + title_of(entry), pad=SCORES_HEIGHT)
-        draw_histogram(figure.add_subplot(grid[1, column]), entry, file.edges)
-    axes = figure.add_subplot(grid[:, len(diagrams)])
+        axes.set_title(style.title_lines(next(letters) + title_of(entry), count),
+                       pad=SCORES_HEIGHT * style.font_size(SCORES_SIZE))
+        draw_histogram(figure.add_subplot(grid[2 * line + 1, column]), entry, file.edges)
+    line, column = divmod(count - 1, abreast)
+    axes = figure.add_subplot(grid[2 * line:2 * line + 2, column])
     draw_risk_coverage(axes, entries, looks)
     axes.set_title(next(letters) + "Risk and coverage")
     style.add_legend_and_caption(figure, handles_of(entries, looks), caption_of(file, entries[0].group))

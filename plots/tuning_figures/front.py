@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pandas
 
-from common import style
+from common import sheet, style
 from rates.rate_bands import BORDERS, per_cent
 from rates.selection import n_in_words
 from tuning_figures.marks import (CERTIFIED, EXACT, TARGET_LINE, TUNED, add_legend_and_caption, figure_with_legend_beside, handle,
@@ -67,7 +67,7 @@ def draw_sums(axes, right, top):
         x = np.linspace(max(0, total - top), min(total, right), 100)
         axes.plot(x, total - x, **SUM_LINE, zorder=0, label="_sum")
         middle = ((math.sqrt(x[0]) + math.sqrt(x[-1])) / 2) ** 2
-        axes.text(middle, total - middle, per_cent(total), fontsize=5.5, color="0.6", ha="center", va="center",
+        axes.text(middle, total - middle, per_cent(total), fontsize=style.font_size(5.5), color="0.6", ha="center", va="center",
                   zorder=0.5, bbox=dict(facecolor="white", edgecolor="none", pad=0.6))
 
 
@@ -86,10 +86,22 @@ def prepare(axes, tops):
         getattr(axes, f"set_{direction}scale")("function", functions=(root, square))
         getattr(axes, f"set_{direction}lim")(square(-MARGIN) * top, top)
         axis = getattr(axes, f"{direction}axis")
-        axis.set_ticks([border for border in BORDERS if border <= top])
+        axis.set_ticks(ticks_apart(top))
         axis.set_major_formatter(per_cent)
         axis.set_label_text(name)
     axes.grid(False)
+
+
+def ticks_apart(top):
+    """The borders of the colours, on a sheet with a width those whose numbers do not touch, the greatest first."""
+    borders, width = [border for border in BORDERS if border <= top], sheet.current().width
+    if width is None:
+        return borders
+    kept = borders[-1:]
+    for border in reversed(borders[:-1]):
+        if (root(kept[-1]) - root(border)) / root(top) * (min(width, 4.5) - 0.9) > 0.3:
+            kept.append(border)
+    return kept
 
 
 def tops_of(marks, target):
@@ -115,7 +127,7 @@ def draw_front(tune):
     settings = known(tune.settings)
     others = [pair for pair in zip(tune.others, looks_of(tune.others)) if known([pair[0]])]
     tuned = known([tune.tuned]) if tune.tuned else []
-    figure, axes = figure_with_legend_beside(legend_of(tune, settings, others), width=1.8, height=4.2)
+    figure, axes, handles = figure_with_legend_beside(legend_of(tune, settings, others), width=1.8, height=4.2)
     tops = tops_of([*settings, *tuned, *(other for other, _ in others)], tune.target)
     prepare(axes, tops)
     draw_sums(axes, *tops)
@@ -128,7 +140,7 @@ def draw_front(tune):
     for one in tuned:
         draw_mark(axes, one, {**TUNED, "label": "_tuned"})
     counts = pandas.DataFrame({"n": [one.rates[quantity].n for one in tune.settings for quantity in QUANTITIES]})
-    add_legend_and_caption(figure, [], "; ".join(
+    add_legend_and_caption(figure, handles, "; ".join(
         [head_in_words(tune), *tuned_in_words(tune), "rates on fresh trials", n_in_words(counts, "setting"),
          f"bars: {EXACT}", "axes in proportion to the square root of the rate"]) + ".")
     return figure

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.lines import Line2D
 
-from common import style
+from common import sheet, style
 from common.factor_axis import FactorAxis
 from common.number_text import number_text
 from common.text_size import fill, height_of
@@ -83,20 +83,26 @@ EXACT = f"{INTERVALS['exact']} intervals"
 
 
 def figure_with_legend_beside(handles, width, height):
-    """(figure, axes): one panel, and at its right the legend with texts of at most `width` inches; the figure is at
-    least `height` inches high."""
+    """(figure, axes, handles): one panel, and at its right the legend with texts of at most `width` inches; the figure is
+    at least `height` inches high. On a sheet too narrow for both the handles are left, for a legend above."""
+    paper_width = sheet.current().width
+    if paper_width is not None and paper_width < 5.2:
+        figure, ((axes,),) = style.new_figure(1, 1)
+        figure.set_size_inches(paper_width, 0.85 * paper_width)
+        return figure, axes, handles
     lines = 0
     for one in handles:
         label = [part for line in one.get_label().split("\n") for part in fill(line, width, LEGEND_SIZE)]
         one.set_label("\n".join(label))
         lines += len(label)
     figure, ((axes, beside),) = style.new_figure(1, 2)
-    figure.set_size_inches(7.0, max(height, 0.8 + height_of(lines + 0.6 * len(handles), LEGEND_SIZE)))
-    axes.get_gridspec().set_width_ratios([6.1 - width, width + 0.5])
+    whole = paper_width or 7.0
+    figure.set_size_inches(whole, max(height, 0.8 + height_of(lines + 0.6 * len(handles), LEGEND_SIZE)))
+    axes.get_gridspec().set_width_ratios([whole - 0.9 - width, width + 0.5])
     beside.set_axis_off()
     beside.legend(handles=handles, loc="upper left", bbox_to_anchor=(0, 1), borderaxespad=0, fontsize=LEGEND_SIZE,
                   labelspacing=0.6)
-    return figure, axes
+    return figure, axes, []
 
 
 def add_legend_and_caption(figure, handles, caption):

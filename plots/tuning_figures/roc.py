@@ -61,7 +61,7 @@ def draw_marks(axes, marks, looks):
         axes.plot(*[[rate] for rate in place], **{**RING, "markeredgecolor": color}, zorder=5, clip_on=False,
                   label="_mark")
         ring = dict(boxstyle="circle,pad=0.18", facecolor="white", edgecolor=color, linewidth=0.8)
-        axes.annotate(str(number), place, xytext=shift, textcoords="offset points", fontsize=6.5, ha="center",
+        axes.annotate(str(number), place, xytext=shift, textcoords="offset points", fontsize=style.font_size(6.5), ha="center",
                       va="center", zorder=6, bbox=ring,
                       arrowprops=dict(arrowstyle="-", color=color, linewidth=0.6, shrinkA=0, shrinkB=2))
 
@@ -84,7 +84,7 @@ def prepare(axes):
 
 def draw_roc(tune):
     looks, marks = looks_of(tune.rocs), marks_of(tune.rocs)
-    figure, axes = figure_with_legend_beside(legend_of(tune.rocs, looks, marks), width=2.35, height=4.2)
+    figure, axes, handles = figure_with_legend_beside(legend_of(tune.rocs, looks, marks), width=2.35, height=4.2)
     axes.plot([0, 1], [0, 1], **CHANCE, zorder=1, label="_chance")
     for roc in tune.rocs:
         if roc.curve:
@@ -92,7 +92,7 @@ def draw_roc(tune):
             plot_points(axes, *zip(*roc.curve), **look, markevery=MARK_EVERY, zorder=3)
     draw_marks(axes, marks, looks)
     prepare(axes)
-    add_legend_and_caption(figure, [], "; ".join(
+    add_legend_and_caption(figure, handles, "; ".join(
         [study_in_words(tune), "AUC: area under the curve with its 95 % interval"] +
         (["rings: thresholds with the numbers beside them"] if marks else [])) + ".")
     return figure

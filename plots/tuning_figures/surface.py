@@ -10,7 +10,7 @@ from matplotlib.markers import CARETDOWN, CARETLEFT, CARETRIGHT, CARETUP
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import ScaledTranslation
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
 from common.factor_axis import abreast, split_into_panel_rows
 from common.summary_csv import rows_where, same_level
@@ -134,7 +134,7 @@ def label_lines(axes, lines, taken, bold):
         taken.append(place)
         labels.append(tuple(axes.transLimits.inverted().transform(place)))
     if labels:
-        return axes.clabel(lines, fmt=lambda level: per_cent(level) + " %" * bold, fontsize=7 if bold else 6.5,
+        return axes.clabel(lines, fmt=lambda level: per_cent(level) + " %" * bold, fontsize=style.font_size(7 if bold else 6.5),
                            inline_spacing=2, manual=labels)
     return []
 
@@ -273,17 +273,16 @@ def draw_panel(axes, surface, part, quantity, spots):
 def name_axes(panels, surface):
     for axes in panels[-1]:
         surface.axes[0].prepare(axes, "x", len(panels[0]), margin=0 if surface.is_map() else 0.04)
-    for row in panels:
+    left = style.left_panels(panels)
+    for axes in panels.flat:
         if surface.is_map():
-            for axes in row:
-                surface.axes[1].prepare(axes, "y", len(row))
-            for axes in row[1:]:
-                axes.set_ylabel("")
+            surface.axes[1].prepare(axes, "y", len(panels[0]))
         else:
-            row[0].set_ylabel("Rate (%)")
-            for axes in row:
-                axes.set_ylim(bottom=0)
-                axes.yaxis.set_major_formatter(per_cent)
+            axes.set_ylim(bottom=0)
+            axes.yaxis.set_major_formatter(per_cent)
+            axes.set_ylabel("Rate (%)")
+        if axes not in left:
+            axes.set_ylabel("")
 
 
 def title_of(rate, levels, width):
@@ -306,7 +305,8 @@ def draw_surface(tune, conditions=()):
     for row, (levels, part) in zip(panels, parts):
         for axes, quantity in zip(row, surface.quantities):
             draw_panel(axes, surface, part, quantity, spots)
-            axes.set_title(title_of(next(letters) + QUANTITIES[quantity], levels, PANEL_WIDTH[len(row)]), pad=9)
+            axes.set_title(title_of(next(letters) + QUANTITIES[quantity], levels, PANEL_WIDTH[len(row)] if sheet.current().width is None else
+                                    style.room_of_panel(len(row)) - 0.6), pad=9)
     name_axes(panels, surface)
     if surface.is_map():
         add_color_bar(figure, math.nan, ax=list(panels.flat), fraction=0.05, pad=0.015, aspect=25 * len(parts))
