@@ -38,7 +38,7 @@ double FinestSize(Detector detector) {
 }
 
 // The descriptors as a matrix with a row each, which shares their memory.
-cv::Mat Rows(const Features& features) {
+cv::Mat MatrixOf(const Features& features) {
   const int num_rows = static_cast<int>(features.key_points.size());
   const int num_bytes = static_cast<int>(features.descriptors.size()) / num_rows;
   auto* bytes = const_cast<std::uint8_t*>(features.descriptors.data());
@@ -119,7 +119,7 @@ Features DetectFeatures(const GreyImage& image, const DetectorOptions& options) 
 std::vector<FeatureMatch> MatchFeatures(const Features& features1, const Features& features2,
                                         const MatcherOptions& options) {
   if (features1.key_points.empty() || features2.key_points.size() < 2) return {};
-  const cv::Mat rows1 = Rows(features1), rows2 = Rows(features2);
+  const cv::Mat rows1 = MatrixOf(features1), rows2 = MatrixOf(features2);
   std::vector<FeatureMatch> matches = NearestOf(rows1, rows2, features1.is_binary, options.max_ratio);
   if (options.is_mutual) {
     KeepMutual(rows1, rows2, features1.is_binary, &matches);
