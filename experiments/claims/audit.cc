@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <utility>
 
 #include "experiments/base/for_each_index.h"
 #include "experiments/base/message.h"
 #include "experiments/base/progress.h"
-#include "experiments/base/thread_time.h"
-#include "experiments/claims/decide_check.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -57,16 +54,6 @@ double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
   return elapsed.count() / num_timed * static_cast<double>(check.limits.Max(run.budget)) / threads;
 }
 
-CheckRun RunOf(const Audit& plan, const CheckPlace& place) {
-  const AuditOptions& options = plan.options;
-  return {options.seed, StreamCondition(plan.claims[place.claim].id, place.check), options.budget,
-          plan.confidence, options.num_threads};
-}
-
-const Check& CheckAt(const Audit& plan, const CheckPlace& place) {
-  return plan.claims[place.claim].checks[place.check];
-}
-
 }  // namespace
 
 std::vector<Claim> SelectClaims(const std::vector<Claim>& all, const std::vector<std::string>& only) {
@@ -101,27 +88,14 @@ std::vector<CheckPlace> PlacesOf(const Audit& plan) {
   return places;
 }
 
-void DecideChecks(const Audit& plan, const std::vector<CheckPlace>& places,
-                  const std::function<void(const CheckPlace&, CheckResult, double)>& keep) {
-  const int num_threads = NumThreads(plan.options.num_threads);
-  std::vector<double> work;
-  double total_work = 0.0;
-  for (const CheckPlace& place : places) {
-    work.push_back(WorkOf(CheckAt(plan, place), RunOf(plan, place), num_threads));
-    total_work += work.back();
-  }
-  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
-               plan.claims.size(), places.size(), DurationInWords(total_work), num_threads);
-  Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
-  double done_work = 0.0;
-  for (size_t i = 0; i < places.size(); ++i) {
-    const double before = ProcessSeconds();
-    CheckResult result = DecideCheck(CheckAt(plan, places[i]), RunOf(plan, places[i]));
-    keep(places[i], std::move(result), ProcessSeconds() - before);
-    const auto seconds_before = static_cast<std::int64_t>(done_work);
-    done_work += work[i];
-    progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
-  }
+CheckRun RunOf(const Audit& plan, const CheckPlace& place) {
+  const AuditOptions& options = plan.options;
+  return {options.seed, StreamCondition(plan.claims[place.claim].id, place.check), options.budget,
+          plan.confidence, options.num_threads};
+}
+
+const Check& CheckAt(const Audit& plan, const CheckPlace& place) {
+  return plan.claims[place.claim].checks[place.check];
 }
 
 void JudgeClaims(Audit* audit) {
@@ -130,9 +104,25 @@ void JudgeClaims(Audit* audit) {
 
 Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   Audit audit = PlanAudit(all, options);
-  DecideChecks(audit, PlacesOf(audit), [&](const CheckPlace& place, CheckResult result, double) {
-    audit.results[place.claim].checks[place.check] = std::move(result);
-  });
+  const std::vector<CheckPlace> places = PlacesOf(audit);
+  const int num_threads = NumThreads(options.num_threads);
+  std::vector<double> work;
+  double total_work = 0.0;
+  for (const CheckPlace& place : places) {
+    work.push_back(WorkOf(CheckAt(audit, place), RunOf(audit, place), num_threads));
+    total_work += work.back();
+  }
+  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
+               audit.claims.size(), places.size(), DurationInWords(total_work), num_threads);
+  Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
+  double done_work = 0.0;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const CheckPlace& place = places[i];
+    audit.results[place.claim].checks[place.check] = DecideCheck(CheckAt(audit, place), RunOf(audit, place));
+    const auto seconds_before = static_cast<std::int64_t>(done_work);
+    done_work += work[i];
+    progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
+  }
   JudgeClaims(&audit);
   return audit;
 }

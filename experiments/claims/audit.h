@@ -2,11 +2,10 @@
 #pragma once
 
 #include <compare>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "experiments/claims/claim_verdict.h"
+#include "experiments/claims/decide_check.h"
 
 namespace rcme {
 
@@ -47,10 +46,8 @@ struct CheckPlace {
 // All of them in their order.
 std::vector<CheckPlace> PlacesOf(const Audit& plan);
 
-// Decides these checks, one after the other, hands over each result with the processor time that it took, and
-// shows progress.
-void DecideChecks(const Audit& plan, const std::vector<CheckPlace>& places,
-                  const std::function<void(const CheckPlace&, CheckResult, double seconds)>& keep);
+const Check& CheckAt(const Audit& plan, const CheckPlace& place);
+CheckRun RunOf(const Audit& plan, const CheckPlace& place);
 
 // The verdicts of the claims from those of their checks, of which there is one in audit->results for each.
 void JudgeClaims(Audit* audit);

@@ -6,8 +6,6 @@
 #include "experiments/base/for_each_index.h"
 #include "stats/confidence_sequence.h"
 #include "stats/distributions.h"
-#include "stats/moments.h"
-#include "stats/score_mean.h"
 
 namespace rcme {
 namespace {
@@ -25,30 +23,8 @@ double BoundedNumber(const Target& target, double value) {
   return value >= 0.0 && std::isfinite(value) ? ChiSquareCdf(target.degrees_of_freedom, value) : 1.0;
 }
 
-// The trials of one target, counted.
-struct Tally {
-  explicit Tally(const Target& target) : bounded(target.range) {}
-
-  Moments moments;    // of the statistic; of an indicator for rates
-  ScoreMean bounded;  // where its sequence is asked for
-  std::int64_t num_successes = 0;
-
-  void Add(const Target& target, double value) {
-    if (std::isnan(value)) return;
-    if (HasSequenceOfMean(target)) {
-      bounded.Add(BoundedNumber(target, value));
-      return;
-    }
-    if (target.kind == Target::Kind::kCoverage) value = value >= 0.0 && value <= target.threshold;
-    if (target.kind == Target::Kind::kAtMost) value = value <= target.threshold;
-    if (target.kind == Target::Kind::kRate) value = value != 0.0;
-    if (target.kind != Target::Kind::kMean) num_successes += value != 0.0;
-    moments.Add(value);
-  }
-};
-
 // n, the measured number and its interval.
-TargetResult Measure(const Target& target, const Tally& tally, double confidence) {
+TargetResult Measure(const Target& target, const TargetTally& tally, double confidence) {
   TargetResult result;
   if (HasSequenceOfMean(target)) {
     result.n = tally.bounded.n();
@@ -73,8 +49,8 @@ double TrialsToDecideMean(const TargetResult& result, const Interval& allowed) {
   return static_cast<double>(result.n) * half_width * half_width / (gap * gap);
 }
 
-TargetResult Look(const Target& target, const Tally& tally, std::int64_t num_trials, double confidence,
-                  bool is_last) {
+TargetResult LookAt(const Target& target, const TargetTally& tally, std::int64_t num_trials,
+                    double confidence, bool is_last) {
   TargetResult result = Measure(target, tally, confidence);
   if (!target.IsClaimed()) return result;
   const bool must_wait = target.kind == Target::Kind::kMean && !is_last;
@@ -88,27 +64,34 @@ TargetResult Look(const Target& target, const Tally& tally, std::int64_t num_tri
   return result;
 }
 
-// How hard a trial's problem was, and whether the first target's statistic covered.
-struct RatedTrial {
-  double difficulty;
-  bool is_covered;
-};
+}  // namespace
 
-std::vector<DifficultyFifth> Fifths(std::vector<RatedTrial> trials, double confidence) {
-  constexpr size_t kParts = 5;
-  std::ranges::stable_sort(trials, {}, &RatedTrial::difficulty);
-  std::vector<DifficultyFifth> fifths;
-  for (size_t part = 0; part < kParts && trials.size() >= kParts; ++part) {
-    const auto begin = trials.begin() + static_cast<std::ptrdiff_t>(part * trials.size() / kParts);
-    const auto end = trials.begin() + static_cast<std::ptrdiff_t>((part + 1) * trials.size() / kParts);
-    const std::int64_t num_covered =
-        std::count_if(begin, end, [](const RatedTrial& t) { return t.is_covered; });
-    const std::int64_t n = end - begin;
-    fifths.push_back({begin->difficulty, (end - 1)->difficulty,
-                      static_cast<double>(num_covered) / static_cast<double>(n),
-                      ConfidenceSequence(num_covered, n, confidence), n});
+void TargetTally::Add(const Target& target, double value) {
+  if (std::isnan(value)) return;
+  if (HasSequenceOfMean(target)) {
+    bounded.Add(BoundedNumber(target, value));
+    return;
   }
-  return fifths;
+  if (target.kind == Target::Kind::kCoverage) value = value >= 0.0 && value <= target.threshold;
+  if (target.kind == Target::Kind::kAtMost) value = value <= target.threshold;
+  if (target.kind == Target::Kind::kRate) value = value != 0.0;
+  if (target.kind != Target::Kind::kMean) num_successes += value != 0.0;
+  moments.Add(value);
+}
+
+bool CanEndEarly(const Check& check) {
+  bool is_claimed = false;
+  for (const Target& target : check.targets) {
+    if (!target.IsClaimed()) continue;
+    if (target.kind == Target::Kind::kMean) return false;
+    is_claimed = true;
+  }
+  return is_claimed;
+}
+
+std::int64_t NextLook(const Check& check, Budget budget, std::int64_t num_trials) {
+  constexpr std::int64_t kFirstLook = 64, kMaxBatch = 100'000;
+  return std::min(num_trials + std::clamp(num_trials / 4, kFirstLook, kMaxBatch), check.limits.Max(budget));
 }
 
 std::vector<Outcome> RunTrials(const Check& check, const CheckRun& run, std::int64_t begin,
@@ -122,45 +105,77 @@ std::vector<Outcome> RunTrials(const Check& check, const CheckRun& run, std::int
   return outcomes;
 }
 
-}  // namespace
+CheckDecision::CheckDecision(const Check& check, const CheckRun& run) : check_(check), run_(run) {
+  is_done_ = !check.not_possible.empty();
+  if (is_done_) return;
+  for (const Target& target : check.targets) tallies_.emplace_back(target);
+  next_look_ = NextLook(check, run.budget, 0);
+}
+
+void CheckDecision::Add(const Outcome& outcome) {
+  if (is_done_) return;
+  for (size_t t = 0; t < tallies_.size(); ++t) {
+    tallies_[t].Add(check_.targets[t], outcome.at(check_.targets[t].statistic));
+  }
+  Rate(outcome);
+  if (++num_trials_ == next_look_) Look();
+}
+
+void CheckDecision::Rate(const Outcome& outcome) {
+  if (!check_.difficulty_statistic) return;
+  const Target& first = check_.targets.front();
+  const double difficulty = outcome.at(*check_.difficulty_statistic), value = outcome.at(first.statistic);
+  if (std::isnan(value) || std::isnan(difficulty)) return;
+  rated_.push_back({difficulty, value >= 0.0 && value <= first.threshold});
+}
+
+void CheckDecision::Look() {
+  const bool is_last = num_trials_ == check_.limits.Max(run_.budget);
+  result_.num_trials = num_trials_;
+  result_.targets.clear();
+  std::vector<std::optional<Verdict>> verdicts;
+  for (size_t t = 0; t < tallies_.size(); ++t) {
+    result_.targets.push_back(LookAt(check_.targets[t], tallies_[t], num_trials_, run_.confidence, is_last));
+    verdicts.push_back(result_.targets.back().verdict);
+  }
+  result_.verdict = Together(verdicts);
+  const bool is_decided = CanEndEarly(check_) && result_.verdict && *result_.verdict != Verdict::kUndecided;
+  is_done_ = is_last || (is_decided && num_trials_ >= check_.limits.min);
+  next_look_ = NextLook(check_, run_.budget, num_trials_);
+}
+
+std::vector<DifficultyFifth> CheckDecision::Fifths() const {
+  constexpr size_t kParts = 5;
+  std::vector<RatedTrial> trials = rated_;
+  std::ranges::stable_sort(trials, {}, &RatedTrial::difficulty);
+  std::vector<DifficultyFifth> fifths;
+  for (size_t part = 0; part < kParts && trials.size() >= kParts; ++part) {
+    const auto begin = trials.begin() + static_cast<std::ptrdiff_t>(part * trials.size() / kParts);
+    const auto end = trials.begin() + static_cast<std::ptrdiff_t>((part + 1) * trials.size() / kParts);
+    const std::int64_t num_covered =
+        std::count_if(begin, end, [](const RatedTrial& t) { return t.is_covered; });
+    const std::int64_t n = end - begin;
+    fifths.push_back({begin->difficulty, (end - 1)->difficulty,
+                      static_cast<double>(num_covered) / static_cast<double>(n),
+                      ConfidenceSequence(num_covered, n, run_.confidence), n});
+  }
+  return fifths;
+}
+
+CheckResult CheckDecision::Result() const {
+  CheckResult result = result_;
+  result.fifths = Fifths();
+  return result;
+}
 
 CheckResult DecideCheck(const Check& check, const CheckRun& run) {
-  if (!check.not_possible.empty()) return {};
-  constexpr std::int64_t kFirstLook = 64, kMaxBatch = 100'000;
-  const std::int64_t max_trials = check.limits.Max(run.budget);
-  std::vector<Tally> tallies(check.targets.begin(), check.targets.end());
-  const bool claims_mean = std::any_of(check.targets.begin(), check.targets.end(), [](const Target& target) {
-    return target.kind == Target::Kind::kMean && target.IsClaimed();
-  });
-  CheckResult result;
-  std::vector<RatedTrial> rated;
-  bool is_decided = false;
-  do {
-    const std::int64_t begin = result.num_trials;
-    const std::int64_t batch = std::clamp(begin / 4, kFirstLook, kMaxBatch);
-    const std::int64_t end = std::min(begin + batch, max_trials);
-    for (const Outcome& outcome : RunTrials(check, run, begin, end)) {
-      for (size_t t = 0; t < tallies.size(); ++t) {
-        tallies[t].Add(check.targets[t], outcome.at(check.targets[t].statistic));
-      }
-      if (!check.difficulty_statistic) continue;
-      const Target& first = check.targets.front();
-      const double difficulty = outcome.at(*check.difficulty_statistic), value = outcome.at(first.statistic);
-      if (std::isnan(value) || std::isnan(difficulty)) continue;
-      rated.push_back({difficulty, value >= 0.0 && value <= first.threshold});
-    }
-    result.num_trials = end;
-    result.targets.clear();
-    std::vector<std::optional<Verdict>> verdicts;
-    for (size_t t = 0; t < tallies.size(); ++t) {
-      result.targets.push_back(Look(check.targets[t], tallies[t], end, run.confidence, end == max_trials));
-      verdicts.push_back(result.targets.back().verdict);
-    }
-    result.verdict = Together(verdicts);
-    is_decided = !claims_mean && result.verdict && *result.verdict != Verdict::kUndecided;
-  } while (result.num_trials < max_trials && !(is_decided && result.num_trials >= check.limits.min));
-  result.fifths = Fifths(std::move(rated), run.confidence);
-  return result;
+  CheckDecision decision(check, run);
+  while (!decision.IsDone()) {
+    const std::int64_t begin = decision.num_trials();
+    for (const Outcome& outcome : RunTrials(check, run, begin, NextLook(check, run.budget, begin)))
+      decision.Add(outcome);
+  }
+  return decision.Result();
 }
 
 }  // namespace rcme

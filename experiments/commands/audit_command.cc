@@ -27,7 +27,7 @@ struct AuditArguments {
   std::string study;  // empty: the built-in scenes
   StudyChanges changes;
   std::vector<std::string> only;
-  std::string budget = "quick", out;
+  std::string budget = "quick", out, round;
   ShardArguments shards;
   bool only_plan = false;
   int threads = 0;
@@ -48,12 +48,17 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
   return StudyClaims(plan);
 }
 
-Audit Merged(const std::vector<Claim>& all, const AuditOptions& options,
-             const std::vector<std::string>& parts) {
-  MergedAudit merged = MergeAuditParts(all, options, parts);
+// Of all shards. Where a round is missing, writes which.
+Audit Merged(const std::vector<Claim>& all, const AuditOptions& options, const AuditArguments& arguments) {
+  MergedAudit merged = MergeAuditParts(all, options, arguments.shards.parts);
   const PiecePlan pieces = PiecesOfAudit(merged.audit);
+  if (merged.missing.num_pieces > 0 && !arguments.round.empty()) {
+    WriteRound(merged.audit, merged.round, arguments.round);
+    PrintMessage("{}: the next round\n", arguments.round);
+  }
   RequireNoneMissing(pieces, merged.missing, merged.parts.num_shards);
   PrintCosts(pieces, merged.parts);
+  PrintMessage("{:.4g} s of it for trials after those that a check took\n", merged.unneeded_seconds);
   return std::move(merged.audit);
 }
 
@@ -79,14 +84,18 @@ void RunAuditCommand(const AuditArguments& arguments) {
   }
   if (arguments.out.empty())
     throw InputError("--out is missing: the folder for the results (or ask for --plan)");
+  if (!arguments.round.empty() && arguments.shards.shard.empty() && arguments.shards.parts.empty())
+    throw InputError("--round: only with --shard or --merge");
   SelectClaims(all, options.only);
   if (!arguments.shards.shard.empty()) {
     const Shard shard = arguments.shards.ThisShard();
-    RunAuditPart(all, options, shard, arguments.out);
+    const Audit plan = PlanAudit(all, options);
+    RunAuditPart(plan, arguments.round.empty() ? FirstRound(plan) : ReadRound(plan, arguments.round), shard,
+                 arguments.out);
     return PrintPartIsDone(shard, arguments.out);
   }
   if (!arguments.shards.parts.empty()) {
-    const Audit audit = Merged(all, options, arguments.shards.parts);
+    const Audit audit = Merged(all, options, arguments);
     MakeResultFolder(arguments.out);
     return WriteAudit(audit, arguments.out);
   }
@@ -124,12 +133,12 @@ void AddAuditCommand(CLI::App& app) {
       "  rcme audit study.yaml --set outlier_ratio=0.3 --out audit    one level of a factor\n"
       "  rcme audit study.yaml --only estimator --out audit       only what the study's estimators report\n"
       "\n"
-      "On many machines each decides a share of the checks; the parts give the same bytes as one run "
-      "(docs/many_machines.md):\n"
+      "On many machines each runs a share of every check's trials; the parts give the same bytes as one run. "
+      "It goes\n"
+      "in rounds, each of them 1 and 2, until 2 does not end with exit code 75 (docs/many_machines.md):\n"
       "\n"
-      "  rcme audit --budget full --shard 3/8 --out parts/3.json  the third of 8; the same command resumes "
-      "it\n"
-      "  rcme audit --budget full --merge parts/*.json --out audit    all of them");
+      "  1  rcme audit --shard 3/64 --out parts/3.json                    later rounds: --round round.json\n"
+      "  2  rcme audit --merge parts/*.json --out audit --round round.json");
   auto arguments = std::make_shared<AuditArguments>();
   command->add_option("study", arguments->study,
                       "study file (YAML): the claims about calibration on its scene, cameras, motion, noise, "
@@ -148,7 +157,11 @@ void AddAuditCommand(CLI::App& app) {
   CLI::Option* plan = command->add_flag(
       "--plan", arguments->only_plan,
       "only print the plan: margins, trials, and what each claim finds with probability 0.9");
-  const ShardOptions shards = AddShardOptions(command, "checks", &arguments->shards);
+  const ShardOptions shards = AddShardOptions(command, "trials", &arguments->shards);
+  command->add_option(
+      "--round", arguments->round,
+      "with --merge: written where trials are missing; with --shard: which trials to run, those "
+      "of the first round unless given");
   shards.shard->excludes(plan);
   shards.merge->excludes(plan);
   AddStudyOptions(command, &arguments->changes);

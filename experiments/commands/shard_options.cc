@@ -32,7 +32,7 @@ ShardOptions AddShardOptions(CLI::App* command, const std::string& pieces, Shard
 void RequireNoneMissing(const PiecePlan& plan, const MissingPieces& missing, std::uint32_t num_shards) {
   if (missing.num_pieces == 0) return;
   const std::string shards = ArrayText(missing.shards);
-  PrintMessage("{} {}s are missing, of the shards {} of {}; nothing was written\n", missing.num_pieces,
+  PrintMessage("{} {}s are missing, of the shards {} of {}; no result was written\n", missing.num_pieces,
                plan.piece_name, shards, num_shards);
   fmt::print("{}\n", shards);
   throw EndWith{kTryAgain};

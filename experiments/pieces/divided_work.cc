@@ -118,7 +118,7 @@ void PartInWork::Do(const std::function<void()>& work) {
     work();
   } catch (const Stopped&) {
     Write();
-    throw Stopped(fmt::format("stopped; {} has {} of {} {}s, the same command goes on", path_,
+    throw Stopped(fmt::format("stopped; {} has {} of at most {} {}s, the same command goes on", path_,
                               part_.results.size(), num_of_shard_, plan_.piece_name));
   }
   Write();
@@ -163,16 +163,20 @@ Part JoinParts(const std::vector<std::string>& paths) {
   return joined;
 }
 
-MissingPieces MissingIn(const PiecePlan& plan, const MergedParts& merged, size_t first, size_t end) {
+MissingPieces MissingAmong(const std::vector<PiecePlace>& places, const MergedParts& merged) {
   MissingPieces missing;
   std::set<std::uint32_t> shards;
-  for (const PiecePlace& place : PiecesOf(plan, Shard{}, first, end)) {
+  for (const PiecePlace& place : places) {
     if (merged.results.contains(place)) continue;
     ++missing.num_pieces;
     shards.insert(ShardOfPiece(place, merged.num_shards));
   }
   missing.shards.assign(shards.begin(), shards.end());
   return missing;
+}
+
+MissingPieces MissingIn(const PiecePlan& plan, const MergedParts& merged, size_t first, size_t end) {
+  return MissingAmong(PiecesOf(plan, Shard{}, first, end), merged);
 }
 
 std::string CostsInWords(const PiecePlan& plan, const MergedParts& merged) {

@@ -56,11 +56,12 @@ MergedParts MergeParts(const PiecePlan& plan, const std::vector<std::string>& pa
 // One part that holds what these hold, of whatever work; refused as above.
 Part JoinParts(const std::vector<std::string>& paths);
 
-// What the parts lack of the groups first, ..., end - 1.
+// What the parts lack of these pieces, or of the groups first, ..., end - 1.
 struct MissingPieces {
   size_t num_pieces = 0;
   std::vector<std::uint32_t> shards;  // that have them, ascending
 };
+MissingPieces MissingAmong(const std::vector<PiecePlace>& places, const MergedParts& merged);
 MissingPieces MissingIn(const PiecePlan& plan, const MergedParts& merged, size_t first, size_t end);
 
 // What the pieces took, for people: in all, by the dearest shard beside the mean, and by the dearest piece,

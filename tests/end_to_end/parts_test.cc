@@ -32,7 +32,8 @@ class Parts : public testing::Test {
   struct Work {
     Words command;
     Words files;
-    bool has_rounds = false;
+    bool has_rounds = false;       // two, the second with --merged
+    bool has_round_files = false;  // any number, all but the first with --round
   };
 
   std::string Part(int number) const { return folder_.Path(fmt::format("part_{}.json", number)); }
@@ -63,6 +64,18 @@ class Parts : public testing::Test {
       EXPECT_EQ(result.exit_code, exit_code) << result.err;
     }
   }
+  // The rounds after the first, until a merge lacks nothing: how many there were in all.
+  int RunRoundsOfFile(const Work& work, int count) const {
+    const Words merge = work.command + Words{"--out", folder_.Path("merged"), "--round", round_, "--merge"};
+    for (int num_rounds = 1; num_rounds < 10; ++num_rounds) {
+      const ProgramResult merged = RunRcme(merge + PartsOf(count));
+      if (merged.exit_code == 0) return num_rounds;
+      EXPECT_EQ(merged.exit_code, 75) << merged.err;
+      RunRound(work, count, {"--round", round_}, 0);
+    }
+    ADD_FAILURE() << "rounds without end";
+    return 0;
+  }
   void LoseAndMakeAgain(const Work& work, int count) const {
     const std::string lost = folder_.Path("lost");
     std::filesystem::rename(Part(4), lost);
@@ -73,7 +86,8 @@ class Parts : public testing::Test {
     EXPECT_EQ(merge.exit_code, 75) << merge.err;
     EXPECT_EQ(merge.out, "4\n");
     EXPECT_FALSE(std::filesystem::exists(out));
-    const Words again = ShardOf(work, 4, count);
+    const Words round = work.has_round_files ? Words{"--round", round_} : Words{};
+    const Words again = ShardOf(work, 4, count) + round;
     const ProgramResult first = RunRcme(again);
     EXPECT_EQ(first.exit_code, work.has_rounds ? 75 : 0) << first.err;
     if (work.has_rounds) {
@@ -96,6 +110,7 @@ class Parts : public testing::Test {
       for (int number = 1; number <= count; ++number) std::filesystem::remove(Part(number));
       RunRound(work, count, {}, work.has_rounds ? 75 : 0);
       if (work.has_rounds) RunRound(work, count, Words{"--merged"} + PartsOf(count), 0);
+      EXPECT_TRUE(!work.has_round_files || RunRoundsOfFile(work, count) >= 2);
       if (count >= 7) LoseAndMakeAgain(work, count);
       Words parts = PartsOf(count);
       std::ranges::reverse(parts);
@@ -120,6 +135,7 @@ class Parts : public testing::Test {
   }
 
   TempFolder folder_;
+  std::string round_ = folder_.Path("round.json");
   std::string study_ = folder_.Write("study.yaml", TunedYaml("  target: failure\n"
                                                              "  at_most: 0.3\n"
                                                              "  max_refusal: 0.9\n"
@@ -133,9 +149,11 @@ TEST_F(Parts, OfATuning) { ExpectTheBytesOfOneRun({{"tune", study_, "--threads",
 
 TEST_F(Parts, OfAnAudit) {
   ExpectTheBytesOfOneRun(
-      {{"audit", "--only", "sample_test.power,inlier.own_point.as_printed", "--threads", "1"},
-       {"audit.json", "audit.md"}},
-      {7});
+      {{"audit", "--only", "sample_test.power,sample_test.size.joint", "--threads", "1"},
+       {"audit.json", "audit.md"},
+       false,
+       true},
+      {1, 7});
 }
 
 TEST_F(Parts, OfATransfer) {

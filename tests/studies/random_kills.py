@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Random SIGKILLs over `rcme run`, `merge`, `tune` and `audit` in shards: is anything lost or doubled?
+"""Random SIGKILLs over `rcme run`, `merge`, `tune`, `audit` and `map` in shards: is anything lost or doubled?
 
-    tests/studies/random_kills.py PATH_OF_RCME [--kills 500] [--seed 1] [--keep counts]
+    tests/studies/random_kills.py PATH_OF_RCME [--kills 640] [--seed 1] [--keep counts]
 
-Eight shards of a run, of a tuning and of an audit are killed at random times again and again: after every kill the part has
+Eight shards of a run, of a tuning, of an audit and of a map are killed at random times again and again: after every kill the part has
 to be sound, with no fewer trials or pieces than before. Then merges are killed: what they make is there whole or not at all,
 and what is left behind hinders nobody. At the end what the parts give has to have the bytes of one call that was left in
-peace. A quarter of the kills goes to each of the four; those of tune are half its shards', half its merge's."""
+peace. A fifth of the kills goes to each of the five; those of tune are half its shards', half its merge's, those of audit half
+of its first round, half of its second."""
 
 import argparse
 import json
@@ -39,6 +40,7 @@ tune:
 """
 CLAIMS = "sample_test,inlier.own_point"
 NUM_SHARDS = 8
+WORKS = ["run", "tune", "audit", "map"]
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 
@@ -75,6 +77,10 @@ def summary(rcme, path, keep):
     forms = [["--format", "csv"], ["--format", "json"]] + ([["--raw", "csv"]] if keep == "all" else [])
     return [subprocess.run([rcme, "summarize", str(path), *form], check=True, stdout=subprocess.PIPE).stdout
             for form in forms]
+
+
+def same_files(folder, other, *names):
+    return all((folder / name).read_bytes() == (other / name).read_bytes() for name in names)
 
 
 class Killer:
@@ -159,35 +165,56 @@ def tune(killer, folder, study, kills):
 def audit(killer, folder, kills):
     parts = [folder / f"audit_{number}.json" for number in range(1, NUM_SHARDS + 1)]
     base = [killer.rcme, "audit", "--only", CLAIMS, "--threads", "1"]
+    merged, whole, later = folder / "merged", folder / "whole", folder / "round.json"
+    merge = [*base, "--merge", *map(str, parts), "--out", str(merged), "--round", str(later)]
+
+    def command(i, more=("--max-time", "0.3s")):
+        return [*base, "--shard", f"{i + 1}/{NUM_SHARDS}", "--out", str(parts[i]), *more,
+                *(["--round", str(later)] if later.exists() else [])]
+    for number in range(1, 10):
+        if number <= 2:
+            killer.kill_shards(f"audit --shard, round {number}", kills // 2, parts, command, num_pieces, 0.8)
+        for i in range(NUM_SHARDS):
+            whole_call(command(i, ()))
+        if whole_call(merge, (0, 75)) == 0:
+            break
+    whole_call([*base, "--out", str(whole)])
+    return number > 2 and same_files(merged, whole, "audit.json", "audit.md")
+
+
+def map_of_validity(killer, folder, kills):
+    parts = [folder / f"map_{number}.json" for number in range(1, NUM_SHARDS + 1)]
+    base = [killer.rcme, "map", "--trials", "300", "--threads", "1"]
+    merged, whole = folder / "merged_map", folder / "whole_map"
 
     def command(i, more=("--max-time", "0.3s")):
         return [*base, "--shard", f"{i + 1}/{NUM_SHARDS}", "--out", str(parts[i]), *more]
-    killer.kill_shards("audit --shard", kills, parts, command, num_pieces, 0.8)
+    killer.kill_shards("map --shard", kills, parts, command, num_pieces, 0.8)
     for i in range(NUM_SHARDS):
         whole_call(command(i, ()))
-    whole_call([*base, "--out", str(folder / "whole")])
-    whole_call([*base, "--merge", *map(str, parts), "--out", str(folder / "merged")])
-    return all((folder / "whole" / name).read_bytes() == (folder / "merged" / name).read_bytes()
-               for name in ("audit.json", "audit.md"))
+    whole_call([*base, "--out", str(whole)])
+    whole_call([*base, "--merge", *map(str, parts), "--out", str(merged)])
+    return same_files(merged, whole, "validity_map.csv", "validity_reference.csv")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rcme")
-    parser.add_argument("--of", nargs="+", choices=["run", "tune", "audit"], default=["run", "tune", "audit"])
-    parser.add_argument("--kills", type=int, default=500)
+    parser.add_argument("--of", nargs="+", choices=WORKS, default=WORKS)
+    parser.add_argument("--kills", type=int, default=640)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--trials", type=int, default=20000)
     parser.add_argument("--keep", choices=["all", "counts"], default="all")
     arguments = parser.parse_args()
-    killer, kills = Killer(arguments.rcme, arguments.seed), arguments.kills // 4
+    killer, kills = Killer(arguments.rcme, arguments.seed), arguments.kills // 5
     print("| what was killed | kills | calls that ended before theirs | after each |\n|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="rcme_kills_") as name:
         folder = pathlib.Path(name)
         study = folder / "study.yaml"
         study.write_text(STUDY.format(trials=arguments.trials))
         works = {"run": lambda: run_and_merge(killer, folder, study, kills, arguments),
-                 "tune": lambda: tune(killer, folder, study, kills), "audit": lambda: audit(killer, folder, kills)}
+                 "tune": lambda: tune(killer, folder, study, kills), "audit": lambda: audit(killer, folder, kills),
+                 "map": lambda: map_of_validity(killer, folder, kills)}
         same = {of: works[of]() for of in arguments.of}
     spent = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"\nthe bytes of one call: {same}; processor time {spent.ru_utime + spent.ru_stime:.0f} s")
