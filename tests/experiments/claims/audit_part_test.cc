@@ -16,6 +16,7 @@
 
 #include "experiments/base/file_output.h"
 #include "experiments/claims/audit_output.h"
+#include "experiments/claims/outcomes_json.h"
 #include "experiments/claims/trial_blocks.h"
 #include "tests/test_support/changed_json.h"
 #include "tests/test_support/expect_input_error.h"
@@ -218,6 +219,24 @@ TEST(TrialBlocks, CoverAllTrialsInRoundsThatEndAtLooks) {
   measured.targets = {MeasuredRate("rate")};
   expect(measured, {5000});
   expect(ImpossibleCheck(), {});
+}
+
+TEST(OutcomesJson, ComeBackToTheLastBit) {
+  Check check = EarlyCheck(0);
+  check.targets = {MeasuredRate("rate", 1), MeasuredMean("mean", 3)};
+  check.difficulty_statistic = 4;
+  const double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  const std::vector<Outcome> outcomes = {
+      {7.0, 1.0, 7.0, 0.1, 0.0}, {7.0, 0.0, 7.0, -infinity, -0.0}, {7.0, nan, 7.0, nan, 1e-320}};
+  const std::string text = OutcomesAsJson(check, outcomes);
+  EXPECT_EQ(text, R"(["10n",[0.1,"-inf","nan"],[0.0,-0.0,1e-320]])");
+  const std::vector<Outcome> read = OutcomesFrom(check, text, 3);
+  for (size_t i = 0; i < outcomes.size(); ++i) {
+    for (const size_t statistic : {1, 3, 4}) {
+      const double was = outcomes[i][statistic], is = read.at(i).at(statistic);
+      EXPECT_TRUE(std::isnan(was) ? std::isnan(is) : was == is && std::signbit(was) == std::signbit(is));
+    }
+  }
 }
 
 TEST_F(AuditParts, MissingShardsAreNamed) {
