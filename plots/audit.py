@@ -13,11 +13,13 @@ from audit_figures import groups, look
 from audit_figures.audit_file import read_audit
 from audit_figures.curve import panels_of
 from audit_figures.forest import ForestPanel
+from audit_figures.html_page import audit_page
 from audit_figures.page import Titled, draw_page
 from audit_figures.panel import EmptyPanel
 from audit_figures.roc import RocPanel, is_roc
-from common.command_line import FigureParser, PlotError, draw_figures
+from common.command_line import FigureParser, PlotError, run, written_figures
 from common.number_text import power_text
+from report_page.html import write_whole
 
 EXAMPLE = """
 example:
@@ -85,6 +87,8 @@ def parse(arguments):
     parser = FigureParser(prog="rcme plot audit", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("folder", metavar="DIR", help="the folder that 'rcme audit --out DIR' wrote; it holds audit.json")
     parser.add_argument("--out", metavar="OUTDIR", help="the folder to write to (default: DIR)")
+    parser.add_argument("--page", action="store_true",
+                        help="also write audit.html: verdicts, figures and every number on one page that needs nothing else")
     options = parser.parse_args(arguments)
     options.out = os.path.join(options.folder if options.out is None else options.out, "")
     return options
@@ -97,8 +101,18 @@ def draw_for(options):
     return {f"audit_{family}": draw_family(audit, family, claims) for family, claims in audit.families().items()}
 
 
+def make(arguments):
+    options = parse(arguments)
+    written = written_figures(options, draw_for)
+    if options.page:
+        audit = read_audit(os.path.join(options.folder, "audit.json"))
+        written.append(options.out + "audit.html")
+        write_whole(written[-1], audit_page(audit, draw_family))
+    return written
+
+
 def main(arguments=None):
-    return draw_figures("audit.py", parse, draw_for, arguments)
+    return run("audit.py", make, arguments)
 
 
 if __name__ == "__main__":

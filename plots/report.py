@@ -6,7 +6,6 @@ It prints what the files say and computes nothing: every rate, interval, differe
 
 import argparse
 import base64
-import contextlib
 import os
 import re
 import shlex
@@ -17,7 +16,8 @@ from common.style import label_of, split_unit
 from report_page import tables
 from report_page.data import read_runs
 from report_page.figures import figures, reliability_figure
-from report_page.html import code, definitions, details, element, joined, listed, page
+from report_page.html import code, definitions, details, element, joined, listed, page, write_whole
+from report_page.script import SCRIPT
 from report_page.style import CSS
 
 EXAMPLE = """
@@ -68,24 +68,41 @@ def study_link(run):
     return element("a", f"Save the study as {name}", href=f"data:text/yaml;base64,{data}", download=name)
 
 
+def findings_section(run):
+    sentences = run.facts.get("findings", [])
+    if not sentences:
+        return element("p", "Nothing to say of failures: no trial has a known truth.", class_="note")
+    return element("ul", *(element("li", sentence) for sentence in sentences), class_="findings")
+
+
+def severity_section(run):
+    """The panel beside the figures."""
+    return joined([element("p", "How hard the problems are, whoever solves them. Impossible: the Cramer-Rao bound exceeds what "
+                           "counts as a failure; parallax in degrees; plane: the share of matches that one homography explains; "
+                           "bound: the Cramer-Rao bound of the direction, degrees."),
+                   tables.severity_panel(run)])
+
+
 def results_section(run):
-    return joined([*(element("p", sentence) for sentence in run.facts.get("findings", [])),
-                   tables.results(run), tables.quantities(run),
+    is_short = len(run.facts["conditions"]) * len(run.facts["estimators"]) <= tables.MANY_ROWS
+    severity = [details("The problems: all measures of severity", tables.severity(run))] if len(run.problems.rows) else []
+    return joined([details("Main quantities", tables.results(run), is_open=is_short), *severity, tables.quantities(run),
                    details("Every number", tables.every_number(run))])
 
 
 def comparison_section(run):
-    """Against the reference, a table per event; the first is open."""
+    """Against the reference, a table per event; the first is open where it is short."""
     if run.comparison is None:
         reason = run.facts.get("caution") or "the study has one estimator: there is nothing to compare"
         return element("p", f"{reason[:1].upper()}{reason[1:]}.", class_="note")
     caution = run.facts.get("caution")
+    is_short = len(run.comparison.rows) <= tables.MANY_ROWS * len(run.facts["events"])
     return joined([
         *([element("p", f"Caution: {caution}.", class_="note")] if caution else []),
         element("p", "All estimators saw the same problems, so every trial is a pair. Positive differences are more "
                 "trials with the event than ", label_of(run.facts["reference"]), " had."),
-        *(details(event["name"].replace("_", " ").capitalize(), tables.comparison(run, event), is_open=position == 0)
-          for position, event in enumerate(run.facts["events"]))])
+        *(details(event["name"].replace("_", " ").capitalize(), tables.comparison(run, event),
+                  is_open=is_short and position == 0) for position, event in enumerate(run.facts["events"]))])
 
 
 def same_trials(run):
@@ -135,15 +152,15 @@ def reliability_section(run):
 
 
 def sections(run):
-    """[(part of the id, heading, content)] of one run."""
-    parts = [("study", "The study", study_section(run))]
-    if len(run.problems.rows):
-        parts.append(("severity", "Severity of the problems", tables.severity(run)))
-    parts += [("results", "Results", results_section(run)), ("figures", "Figures", figures(run))]
+    """(findings and figures, the panel beside them, what follows), each [(part of the id, heading, content)]."""
+    beside = [("severity", "Severity of the problems", severity_section(run))] if len(run.problems.rows) else []
+    first = [("findings", "Findings", findings_section(run)), ("figures", "Figures", figures(run))]
+    parts = [("results", "Results", results_section(run))]
     if run.reliability is not None:
         parts.append(("reliability", "Probability of failure", reliability_section(run)))
-    return parts + [("comparison", "Paired comparisons", comparison_section(run)),
-                    ("again", "How to get these numbers again", again_section(run))]
+    return first, beside, parts + [
+        ("comparison", "Paired comparisons", comparison_section(run)), ("study", "The study", study_section(run)),
+        ("again", "How to get these numbers again", again_section(run))]
 
 
 def title_of(run):
@@ -151,16 +168,22 @@ def title_of(run):
 
 
 def contents(runs, of_runs):
-    """The table of contents."""
+    """The table of contents, folded: the findings come first."""
     entries = [joined([element("a", title_of(run), href=f"#{run.anchor()}"),
-                       listed(*(element("a", heading, href=f"#{run.anchor(part)}") for part, heading, _ in of_run))])
+                       listed(*(element("a", heading, href=f"#{run.anchor(part)}")
+                                for group in of_run for part, heading, _ in group))])
                for run, of_run in zip(runs, of_runs)]
-    return element("nav", element("h2", "Contents"), listed(*entries), aria_label="Contents")
+    return element("nav", details("Contents", listed(*entries)), aria_label="Contents")
 
 
 def run_section(run, of_run):
-    return element("section", element("h2", title_of(run), id=run.anchor()), "\n", *(
-        element("h3", heading, id=run.anchor(part)) + "\n" + content + "\n" for part, heading, content in of_run))
+    def in_order(group):
+        return joined(element("h3", heading, id=run.anchor(part)) + "\n" + content + "\n" for part, heading, content in group)
+    first, beside, following = of_run
+    top = in_order(first)
+    if beside:
+        top = element("div", element("div", top), element("aside", in_order(beside), aria_label="Severity"), class_="beside")
+    return element("section", element("h2", title_of(run), id=run.anchor()), "\n", top, in_order(following))
 
 
 def report(runs):
@@ -170,22 +193,10 @@ def report(runs):
     header = element("header", element("h1", f"Report: {names}"), element(
         "p", "Robust two-view camera-motion estimators on simulated or real matches with known truth. Every rate comes with "
         "its exact interval and its n.", class_="subtitle"))
-    return page(f"rcme report: {names}", CSS, joined([
+    overview = [tables.overview(runs)] if len(runs) > 1 else []
+    return page(f"rcme report: {names}", CSS, SCRIPT, joined([
         header, "\n", contents(runs, of_runs), "\n",
-        element("main", tables.overview(runs), "\n",
-                *(run_section(run, of_run) for run, of_run in zip(runs, of_runs)))]))
-
-
-def write_whole(path, text):
-    """Beside its place first, then moved: a reader never meets half a page, and a failure leaves what was there."""
-    temporary = os.path.join(os.path.dirname(path), f".{os.path.basename(path)}.{os.getpid()}.tmp")
-    try:
-        with open(temporary, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(temporary, path)
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.remove(temporary)
+        element("main", *overview, "\n", *(run_section(run, of_run) for run, of_run in zip(runs, of_runs)))]))
 
 
 def parse(arguments):

@@ -28,8 +28,7 @@ std::string RateAt(const SummaryRow& row, const std::vector<std::string>& factor
                      100.0 * row.interval.upper, levels.empty() ? "" : " at ", fmt::join(levels, ", "));
 }
 
-std::string RangesOfFailure(const Summary& summary) {
-  std::vector<std::string> parts;
+void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* sentences) {
   for (const std::string& label : LabelsIn(summary.rows)) {
     const SummaryRow *least = nullptr, *most = nullptr;
     for (const SummaryRow& row : summary.rows) {
@@ -38,13 +37,12 @@ std::string RangesOfFailure(const Summary& summary) {
       if (!most || row.value > most->value) most = &row;
     }
     if (!least) continue;
-    parts.push_back(least->value == most->value
-                        ? fmt::format("{} {} throughout", label, RateAt(*least, summary.factor_names))
-                        : fmt::format("{} from {} to {}", label, RateAt(*least, summary.factor_names),
-                                      RateAt(*most, summary.factor_names)));
+    const std::string range = least->value == most->value
+                                  ? fmt::format("{} throughout", RateAt(*least, summary.factor_names))
+                                  : fmt::format("from {} to {}", RateAt(*least, summary.factor_names),
+                                                RateAt(*most, summary.factor_names));
+    sentences->push_back(fmt::format("Failure rate of {}: {}.", label, range));
   }
-  if (parts.empty()) return "";
-  return fmt::format("Failure rates (95 % intervals): {}.", fmt::join(parts, "; "));
 }
 
 struct Tally {
@@ -61,32 +59,30 @@ Tally CountDifferences(const Comparison& comparison, const std::string& label, c
   return tally;
 }
 
-std::string PairedDifferences(const Summary& summary, const Comparison& comparison) {
-  if (comparison.rows.empty()) return "";
-  std::vector<std::string> parts;
+void AddPairedDifferences(const Summary& summary, const Comparison& comparison,
+                          std::vector<std::string>* sentences) {
+  if (comparison.rows.empty()) return;
+  const size_t num_conditions = summary.rows.empty() ? 0 : summary.rows.back().condition + size_t{1};
+  const std::string test = fmt::format(
+      "of the {} condition{} ({}, Holm-adjusted p < {})", num_conditions, num_conditions == 1 ? "" : "s",
+      comparison.rows.front().is_anytime_valid ? "a test that is valid at every look" : "McNemar's test",
+      kSignificanceLevel);
   for (const std::string& label : LabelsIn(comparison.rows)) {
     const Tally failure = CountDifferences(comparison, label, "failure");
     const Tally refusal = CountDifferences(comparison, label, "refusal");
-    parts.push_back(
-        fmt::format("{} fails less often in {} and more often in {}, refuses less often in {} and more "
-                    "often in {}",
-                    label, failure.less, failure.more, refusal.less, refusal.more));
+    sentences->push_back(fmt::format(
+        "Against {} on the same trials {} fails less often in {} and more often in {}, refuses less often "
+        "in {} and more often in {} {}.",
+        comparison.reference, label, failure.less, failure.more, refusal.less, refusal.more, test));
   }
-  const size_t num_conditions = summary.rows.empty() ? 0 : summary.rows.back().condition + size_t{1};
-  return fmt::format(
-      "Of the {} conditions, against {} on the same trials ({}, Holm-adjusted p < {}): {}.", num_conditions,
-      comparison.reference,
-      comparison.rows.front().is_anytime_valid ? "a test that is valid at every look" : "McNemar's test",
-      kSignificanceLevel, fmt::join(parts, "; "));
 }
 
 }  // namespace
 
 std::vector<std::string> FindingsOf(const Summary& summary, const Comparison& comparison) {
   std::vector<std::string> sentences;
-  for (const std::string& sentence : {RangesOfFailure(summary), PairedDifferences(summary, comparison)}) {
-    if (!sentence.empty()) sentences.push_back(sentence);
-  }
+  AddRangesOfFailure(summary, &sentences);
+  AddPairedDifferences(summary, comparison, &sentences);
   return sentences;
 }
 

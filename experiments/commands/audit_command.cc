@@ -66,8 +66,8 @@ void WriteAudit(const Audit& audit, const std::string& out) {
   fmt::print("{}", AuditAsTable(audit));
   WriteFileWhole(out + "/audit.json", AuditAsJson(audit));
   WriteFileWhole(out + "/audit.md", AuditAsMarkdown(audit));
-  DrawFigures("audit", {out});
-  PrintMessage("done: {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", out);
+  DrawFigures("audit", {out, "--page"});
+  PrintMessage("done: {0}/audit.html, {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", out);
 }
 
 void RunAuditCommand(const AuditArguments& arguments) {
@@ -114,9 +114,9 @@ void AddAuditCommand(CLI::App& app) {
       "\n"
       "Every claim is a rate or a mean with the range that counts as nominal. Its trials stop when the "
       "verdict is\n"
-      "decided; the intervals hold however often they are looked at. Writes DIR/audit.md (to read), "
-      "DIR/audit.json\n"
-      "(everything) and one figure per family of claims.\n"
+      "decided; the intervals hold however often they are looked at. Writes DIR/audit.html and "
+      "DIR/audit.md\n"
+      "(to read), DIR/audit.json (everything) and one figure per family of claims.\n"
       "\n"
       "  rcme audit --out audit                                   all claims, at most a few minutes\n"
       "  rcme audit --only inlier,sigma_p.theta --out audit       a family and one claim\n"

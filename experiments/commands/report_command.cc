@@ -55,13 +55,17 @@ void WriteReport(const ReportArguments& arguments) {
 
 void AddReportCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "report", "One page of one or more runs: what was asked, every number, figures, how to do it again");
+      "report", "One page of one or more runs: what was found, figures, every number, how to do it again");
   command->footer(
-      "The page is one HTML file that needs nothing else: no network, no further files, no scripts. For\n"
-      "each run it holds the study in words and in full, the rates with exact 95 % intervals and n, every\n"
-      "quantity of `rcme summarize`, the paired comparisons of `rcme compare`, figures, and for every\n"
-      "condition the commands that give the same numbers again. Equal runs give equal bytes. Needs Python\n"
-      "with matplotlib and pandas.\n"
+      "The page is one HTML file that needs nothing else and asks for nothing: no network, no further "
+      "files.\n"
+      "For each run it begins with what was found and the figures, beside them how hard the problems are;\n"
+      "then tables that fold and sort: the rates with exact 95 % intervals and n, every quantity of\n"
+      "`rcme summarize`, the paired comparisons of `rcme compare`; the study in full, and for every "
+      "condition\n"
+      "the commands that give the same numbers again. For wide and narrow screens, light and dark, and "
+      "paper.\n"
+      "Equal runs give equal bytes. Needs Python with matplotlib and pandas.\n"
       "\n"
       "Examples:\n"
       "  rcme report run.sqlite --out report.html\n"

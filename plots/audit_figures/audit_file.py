@@ -49,6 +49,7 @@ class Target:
 class Evidence:
     conditions: dict  # name of the condition -> its level, as text
     targets: tuple
+    not_possible: str = ""  # why it cannot be measured there
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,9 @@ class Claim:
     holds_up_to_sigma_px: float
     figure_x: str  # the condition drawn along x; "" if there is none
     evidence: tuple
+    label: str = ""  # where the paper says it
+    sentence: str = ""
+    statistic: str = ""  # what was measured, in words
 
 
 @dataclass(frozen=True)
@@ -103,7 +107,11 @@ def is_interval(value):
 def read_evidence(node):
     conditions = node.get("conditions", lambda value: isinstance(value, dict) and
                           all(isinstance(level, str) for level in value.values()), "an object of texts")
-    return Evidence(conditions, tuple(map(read_target, node.nodes("targets", "target"))))
+    return Evidence(conditions, tuple(map(read_target, node.nodes("targets", "target"))), text_if_any(node, "not_possible"))
+
+
+def text_if_any(node, key):
+    return node.text(key) if key in node.value else ""
 
 
 def read_claim(node):
@@ -114,7 +122,8 @@ def read_claim(node):
                   verdict=node.one_of("verdict", CLAIM_VERDICTS),
                   holds_up_to_sigma_px=node.number_or("holds_up_to_sigma_px", math.nan),
                   figure_x=node.text("figure_x"),
-                  evidence=tuple(map(read_evidence, node.nodes("evidence", "evidence"))))
+                  evidence=tuple(map(read_evidence, node.nodes("evidence", "evidence"))),
+                  **{key: text_if_any(node, key) for key in ("label", "sentence", "statistic")})
     for number, evidence in enumerate(claim.evidence, 1):
         if claim.figure_x and claim.figure_x not in evidence.conditions:
             raise node.error(f"has 'figure_x': '{claim.figure_x}', but evidence {number} has no such key in 'conditions'")

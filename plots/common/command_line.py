@@ -114,10 +114,12 @@ def draw_figure(name, parse, draw, arguments):
 def draw_figures(name, parse, draw, arguments, dpi=style.RC["savefig.dpi"]):
     """The same of a script that draws several: draw(options) is {what its name adds to --out: figure}, all of them
     before the first is written."""
-    def make(arguments):
-        options = parse(arguments)
-        with sheet.use(getattr(options, "sheet", sheet.Sheet())):
-            figures = draw(options)
-            check_labels_were_met()
-            return [path for more, figure in figures.items() for path in style.save(figure, options.out + more, dpi)]
-    return run(name, make, arguments)
+    return run(name, lambda arguments: written_figures(parse(arguments), draw, dpi), arguments)
+
+
+def written_figures(options, draw, dpi=style.RC["savefig.dpi"]):
+    """The paths."""
+    with sheet.use(getattr(options, "sheet", sheet.Sheet())):
+        figures = draw(options)
+        check_labels_were_met()
+        return [path for more, figure in figures.items() for path in style.save(figure, options.out + more, dpi)]

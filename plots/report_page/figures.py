@@ -9,7 +9,7 @@ import shlex
 
 import matplotlib
 
-from common import style
+from common import sheet, style
 from common.command_line import PlotError
 from common.summary_csv import where
 from rates import cells, differences, lines
@@ -17,10 +17,11 @@ from rates.selection import title_of
 from reliability_figure import panels as reliability
 from report_page.html import code, element, joined
 
-QUANTITIES = ("failure", "no_candidate")
+QUANTITIES = ("failure", "failure_or_refusal", "no_candidate")  # the first two that a table has: an old one lacks the second
 EVENTS = ("failure", "failure_or_refusal")
 MAX_SLICES = 6  # heat maps of one run
 PIXELS_PER_INCH = 115
+NARROW, NARROW_SCREEN = 3.4, "(max-width: 40rem)"  # inches of the figure for such a screen
 
 
 def data_uri(figure):
@@ -34,12 +35,24 @@ def data_uri(figure):
 def drawn(draw, alt, caption, command):
     """One figure with its words, or the reason why it is not there."""
     try:
-        figure = draw()
+        picture = picture_of(draw, alt)
     except PlotError as error:
         return element("p", f"{caption} Not drawn: {error}", class_="note")
-    width = round(PIXELS_PER_INCH * figure.get_size_inches()[0])
-    return element("figure", element("img", src=data_uri(figure), alt=alt, width=width),
-                   element("figcaption", f"{caption} Drawn by ", code(command))) + "\n"
+    return element("figure", picture, element("figcaption", f"{caption} Drawn by ", code(command))) + "\n"
+
+
+def picture_of(draw, alt):
+    """The figure; on a narrow screen the one for a column of print, whose texts are as large there as here. Where it has no
+    room in a column, the wide one scrolls. Throws PlotError."""
+    figure = draw()
+    width, height = (round(PIXELS_PER_INCH * inches) for inches in figure.get_size_inches())
+    image = element("img", src=data_uri(figure), alt=alt, width=width, height=height)
+    try:
+        with sheet.use(sheet.Sheet(width=NARROW)):
+            narrow = element("source", media=NARROW_SCREEN, srcset=data_uri(draw()))
+    except PlotError:
+        return element("div", image, class_="scroll wide", role="region", tabindex="0", aria_label="figure")
+    return element("picture", narrow, image)
 
 
 def script_command(run, script, arguments):
@@ -55,25 +68,30 @@ def in_running_text(factor):
     return words + (f" ({unit})" if unit else "")
 
 
-def rates_in_words():
-    return " and ".join(title_of(quantity).lower() for quantity in QUANTITIES)
+def quantities_of(run):
+    present = set(run.summary.rows.quantity)
+    return [quantity for quantity in QUANTITIES if quantity in present][:2]
+
+
+def rates_in_words(run):
+    return " and ".join(title_of(quantity).lower() for quantity in quantities_of(run))
 
 
 def line_figure(run, x):
-    caption = f"{rates_in_words().capitalize()} against {in_running_text(x)}."
-    return drawn(lambda: lines.draw(run.summary, x, list(QUANTITIES)),
+    caption = f"{rates_in_words(run).capitalize()} against {in_running_text(x)}."
+    return drawn(lambda: lines.draw(run.summary, x, quantities_of(run)),
                  f"{caption} A line per estimator with the band of its exact 95 % intervals; the numbers are in the table "
                  "of results.", caption,
-                 script_command(run, "failure_rate", ["--x", x, "--quantities", ",".join(QUANTITIES)]))
+                 script_command(run, "failure_rate", ["--x", x, "--quantities", ",".join(quantities_of(run))]))
 
 
 def heat_map_figure(run, x, y, fixed):
     """`fixed`: [(factor, level)] of the others that vary."""
-    caption = f"{rates_in_words().capitalize()} over {in_running_text(x)} and {in_running_text(y)}" + "".join(
+    caption = f"{rates_in_words(run).capitalize()} over {in_running_text(x)} and {in_running_text(y)}" + "".join(
         f", {style.level_in_words(*pair)}" for pair in fixed) + "."
     conditions = [f"{factor}={level}" for factor, level in fixed]
-    arguments = ["--x", x, "--y", y, "--quantities", ",".join(QUANTITIES)]
-    return drawn(lambda: cells.draw(where(run.summary, conditions), x, y, list(QUANTITIES)),
+    arguments = ["--x", x, "--y", y, "--quantities", ",".join(quantities_of(run))]
+    return drawn(lambda: cells.draw(where(run.summary, conditions), x, y, quantities_of(run)),
                  f"{caption} A heat map per estimator with the rate and its exact 95 % interval in each cell; the numbers "
                  "are in the table of results.", caption,
                  script_command(run, "heat_map",

@@ -8,9 +8,11 @@ from rates.selection import difference_interval_in_words, interval_in_words, tes
 from reliability_figure.reliability_file import STATED
 from report_page.html import Html, code, definitions, details, element, joined, table
 
-SHOWN = ("failure", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
+SHOWN = ("failure", "failure_or_refusal", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
          "rotation_error_deg", "direction_error_deg", "auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg",
          "max_error_median_deg")  # of the results; all others stand in the table of every number
+PANEL = {"impossible": "impossible", "parallax_median_deg": "parallax", "homography_share": "plane", "crb_direction_deg": "bound"}
+MANY_ROWS = 40  # a longer table is folded
 SIGNIFICANCE_LEVEL = 0.05
 DASH = "\u2013"
 
@@ -157,6 +159,19 @@ def severity(run):
                  "their Monte-Carlo standard errors.",
                  ["condition", *map(style.in_words, factors), "n", *map(heading, quantities)], [(None, lines)],
                  1 + len(factors))
+
+
+def severity_panel(run):
+    """The same in short, to stand beside the figures: what most decides whether a problem can be solved."""
+    factors = [factor for factor in run.problems.factors if run.problems.rows[factor].nunique() > 1]
+    groups = grouped(run.problems.rows)
+    shown = [quantity for quantity in PANEL if any(quantity in of for _, of in groups)]
+    lines = []
+    for row, of in groups:
+        levels = ", ".join(style.level_text(row[factor]) for factor in factors) or row["condition"]
+        lines.append([levels, *(cell(of.get(quantity), of[quantity]["n"] if quantity in of else "") for quantity in shown)])
+    return table(f"By {', '.join(map(style.in_words, factors)).lower() or 'condition'}.",
+                 ["problems", *(PANEL[quantity] for quantity in shown)], [(None, lines)])
 
 
 def difference_cell(row):

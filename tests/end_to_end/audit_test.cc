@@ -42,6 +42,7 @@ TEST(Audit, PrintsTheTableAndWritesPageDataAndFigures) {
   }
   EXPECT_THAT(Contents(out + "/audit.md"), HasSubstr("![sampson](audit_sampson.png)"));
   EXPECT_GT(std::filesystem::file_size(out + "/audit_sampson.png"), 10'000);
+  EXPECT_THAT(Contents(out + "/audit.html"), HasSubstr("<h2>Findings</h2>"));
 }
 
 TEST(Audit, GivesTheSameBytesForAnyNumberOfThreads) {

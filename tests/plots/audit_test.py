@@ -20,6 +20,8 @@ PLOTS = HERE.parents[1] / "plots"
 sys.path[:0] = [str(PLOTS), str(HERE)]
 
 import audit  # noqa: E402
+from browser import BROWSER, SKIP_REASON, Browser  # noqa: E402
+from report_test import EVIL, Structure  # noqa: E402
 from audit_figures.audit_file import CLAIM_VERDICTS, TARGET_VERDICTS, read_audit  # noqa: E402
 from audit_figures.look import LOOKS, series_look  # noqa: E402
 from fake_audit import SIGMAS, claim, coverage, evidence, fake_audit, target  # noqa: E402
@@ -428,6 +430,62 @@ class Refusals(Written):
 
     def test_command_lines(self):
         self.assert_refused(self.run_main("--colour", "red"), "--colour", "--help")
+
+
+class Page(unittest.TestCase):
+    """audit.html, of claims whose every text is malicious."""
+
+    @classmethod
+    def setUpClass(cls):
+        scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(scratch.cleanup)
+        cls.folder = pathlib.Path(scratch.name)
+        claims = [dict(claim(f"inlier.{EVIL}", [evidence(coverage(0.0), sigma_px=s) for s in SIGMAS], "holds", EVIL, "sigma_px"),
+                       sentence=EVIL, statistic=EVIL, label=EVIL),
+                  claim("sigma_p.order", [evidence([target(EVIL, "rate", 0.7, 0.95, 0.93, 0.97, half=0.01)], scene=EVIL),
+                                          dict(evidence([]), not_possible=EVIL)], "does not hold")]
+        cls.content = dict(file_with(*claims), study=EVIL)
+        (cls.folder / "audit.json").write_text(json.dumps(cls.content))
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            assert audit.main([str(cls.folder), "--page"]) == 0
+        cls.written, cls.page = out.getvalue().split(), (cls.folder / "audit.html").read_text()
+
+    def test_the_verdicts_come_first_and_every_number_is_there(self):
+        structure = Structure(self.page)
+        self.assertEqual((structure.open, self.page.count("<script")), ([], 1))
+        self.assertIn(str(self.folder / "audit.html"), self.written)
+        self.assertEqual(structure.headings, [f"Audit of the paper's claims on study {EVIL}", "Findings", "Figures and numbers",
+                                              "inlier", "sigma_p"])
+        text = "".join(structure.text)
+        for words in ("\u2717 does not hold (1 of 2): ", "\u2713 holds (1 of 2): ", "70.0 [69.0, 71.0] %", "0.95 in [0.93, 0.97]",
+                      f"not possible: {EVIL}", f"\u201c{EVIL}.\u201d"):
+            self.assertIn(words, text)
+        for one in self.content["claims"]:
+            for row in one["evidence"]:
+                for measured in row["targets"]:
+                    self.assertIn(str(measured["n"]), structure.text)
+        inside = [link[1:] for link in structure.attributes("href") if link.startswith("#")]
+        self.assertLessEqual(set(inside), set(structure.ids))
+        self.assertEqual(len(set(structure.ids)), len(structure.ids))
+        self.assertTrue(all(len(picture["alt"]) > 40 for picture in structure.of("img")))
+
+    def test_without_the_option_there_is_none(self):
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(audit.main([str(self.folder), "--out", folder]), 0)
+            self.assertFalse(pathlib.Path(folder, "audit.html").exists())
+
+    @unittest.skipUnless(BROWSER, SKIP_REASON)
+    def test_in_a_browser(self):
+        with Browser() as browser:
+            for width, is_dark in ((400, False), (1200, True)):
+                browser.open(self.folder / "audit.html", width, is_dark)
+                self.assertEqual(browser.value_of("document.documentElement.scrollWidth"), width)
+                link = "document.querySelector('ul.findings a')"
+                self.assertFalse(browser.value_of("document.querySelector('main section details').open"))
+                browser.value_of(f"{link}.click()")
+                self.assertTrue(browser.value_of(f"""new Promise(done => setTimeout(() => done(document.getElementById(decodeURIComponent(
+                    {link}.hash.slice(1))).querySelector("details").open), 50))"""), "a link opens what is folded")
+                self.assertEqual((browser.complaints(), browser.requests()), ([], []))
 
 
 if __name__ == "__main__":

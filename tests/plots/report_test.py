@@ -7,8 +7,6 @@ import io
 import json
 import pathlib
 import re
-import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -19,15 +17,16 @@ PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import fake_reliability  # noqa: E402
+from browser import BROWSER, SKIP_REASON, Browser  # noqa: E402
 import report  # noqa: E402
 from report_page import figures as report_figures  # noqa: E402
+from report_page import html as html_of  # noqa: E402
 from report_page.html import VOID  # noqa: E402
 
 SUMMARY_HEADER = "study,condition,{factors}estimator,quantity,kind,value,lower,upper,standard_error,n\n"
 COMPARISON_HEADER = ("study,condition,{factors}estimator,reference,event,n,both,estimator_only,reference_only,neither,"
                      "risk_difference,lower,upper,p_mcnemar,p_holm\n")
 EVIL = '<script>alert("1")</script>&'  # a name is whatever a study says
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
 
 def facts(**changes):
@@ -93,7 +92,7 @@ class Structure(HTMLParser):
             raise AssertionError(f"</{tag}> ends nothing")
 
     def handle_data(self, data):
-        if self.open and self.open[-1] != "style":
+        if self.open and self.open[-1] not in ("style", "script"):
             self.text.append(data)
             if self.open[-1] in ("h1", "h2", "h3"):
                 self.headings.append(data)
@@ -155,10 +154,16 @@ class Page(ReportTest):
         self.add_run()
         page = self.page()
         self.assertNotRegex(page, "https?://")
-        self.assertNotIn("<script", page)
         structure = Structure(page)
+        self.assertEqual(structure.of("script"), [{}])  # one, inline, and the only one that the policy allows
+        policy = next(meta["content"] for meta in structure.of("meta") if "http-equiv" in meta)
+        self.assertTrue(policy.startswith("default-src 'none'; img-src data:; style-src 'sha256-"), policy)
+        for tag in ("script", "style"):
+            inside = re.search(f"<{tag}>(.*?)</{tag}>", page, re.DOTALL).group(1)
+            self.assertIn(f"{tag}-src {html_of.hash_of(inside)}", policy)
+        self.assertNotIn("unsafe", policy)
         self.assertNotIn("link", [tag for tag, _ in structure.elements])
-        for address in structure.attributes("src") + structure.attributes("href"):
+        for address in structure.attributes("src") + structure.attributes("srcset") + structure.attributes("href"):
             self.assertTrue(address.startswith(("data:", "#")), address)
         self.assertNotIn("url(", report.CSS)
 
@@ -243,7 +248,7 @@ class Page(ReportTest):
                      summary_csv=summary(EVIL, ((EVIL,), ("b",)), (EVIL, "mine"), (quoted(EVIL),)),
                      comparison_csv=comparison(EVIL, ((EVIL,), ("b",)), factors=(quoted(EVIL),)))
         page = self.page()
-        self.assertNotIn("<script", page)
+        self.assertEqual(page.count("<script"), 1)
         self.assertNotIn("\x00", page)
         structure = Structure(page)
         self.assertEqual(structure.open, [])
@@ -378,23 +383,72 @@ class Refusals(ReportTest):
         self.assert_refused(self.run_main(), "there is no folder")
 
 
-@unittest.skipUnless(BROWSER, "no chromium on this machine")
+@unittest.skipUnless(BROWSER, SKIP_REASON)
 class InABrowser(ReportTest):
-    def test_the_page_loads_without_a_complaint(self):
-        self.add_run(run_json=facts(name=EVIL))
+    """The page with a malicious name everywhere, and with severity and enough rows to sort."""
+
+    def test_both_widths_light_and_dark_sorting_and_silence(self):
+        scene = "".join(f"{quoted(EVIL)},{condition},{quoted(level)},scene,{quantity},mean,{value},,,0.05,10\n"
+                        for condition, level in enumerate(("gaussian", "laplace"))
+                        for quantity, value in (("parallax_median_deg", 4.3 - condition), ("crb_direction_deg", 0.5 + condition)))
+        self.add_run(run_json=facts(name=EVIL, findings=[EVIL, "Failure rate of mine: 2 % [1, 3] throughout."],
+                                    ademp=[[EVIL, EVIL]], description=EVIL), summary_csv=summary(EVIL) + scene,
+                     comparison_csv=comparison(EVIL))
         self.page()
-        with tempfile.TemporaryDirectory() as profile:
-            done = subprocess.run(
-                [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-                 "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                 f"--user-data-dir={profile}", "--enable-logging=stderr", "--dump-dom", self.out.as_uri()],
-                capture_output=True, text=True, timeout=120, check=False)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(re.findall(".*CONSOLE.*", done.stderr), [])
-        headings = Structure(done.stdout).headings
-        for heading in (f"Run 1: {EVIL}", "The study", "Results", "Figures", "Paired comparisons",
-                        "How to get these numbers again"):
-            self.assertIn(heading, headings)
+        with Browser() as browser:
+            for width in (400, 1200):
+                for is_dark in (False, True):
+                    with self.subTest(width=width, is_dark=is_dark):
+                        browser.open(self.out, width, is_dark)
+                        self.check_page(browser, width, is_dark)
+            self.check_sorting(browser)
+            self.check_folding(browser)
+            self.assertEqual((browser.complaints(), browser.requests()), ([], []))
+
+    def check_page(self, browser, width, is_dark):
+        self.assertEqual(browser.value_of("document.documentElement.scrollWidth"), width, "the page scrolls sideways")
+        self.assertEqual((browser.complaints(), browser.requests()), ([], []))
+        self.assertIn(f"Run 1: {EVIL}", browser.value_of("[...document.querySelectorAll('h2')].map(h => h.textContent)"))
+        paper = browser.value_of("getComputedStyle(document.body).backgroundColor")
+        self.assertEqual(sum(map(int, re.findall(r"\d+", paper))) < 150, is_dark, paper)
+        order = browser.value_of("""[...document.querySelectorAll("h1, h2, h3, h4")].map(h => Number(h.tagName[1]))""")
+        self.assertEqual(order[0], 1)
+        self.assertLessEqual(max(b - a for a, b in zip(order, order[1:])), 1)
+        self.assertEqual(browser.value_of("""[...document.querySelectorAll("h3")].slice(0, 3).map(h => h.textContent)"""),
+                         ["Findings", "Figures", "Severity of the problems"])
+        beside = browser.value_of("""(() => { const [a, b] = document.querySelector(".beside").children;
+            return b.getBoundingClientRect().left >= a.getBoundingClientRect().right; })()""")
+        self.assertEqual(beside, width == 1200)
+        shown = browser.value_of("[...document.images].map(i => [i.naturalWidth, i.getBoundingClientRect().width])")
+        self.assertTrue(all(natural > 0 and 250 < drawn <= width for natural, drawn in shown), shown)
+        picture = self.folder / f"{width}_{is_dark}.png"
+        browser.picture(picture)
+        self.assertGreater(picture.stat().st_size, 20000)
+
+    def check_sorting(self, browser):
+        """With the keyboard alone: two presses of a heading turn the rows of each condition round."""
+        rows = """[...document.querySelectorAll("table.results tbody")].map(
+            body => [...body.rows].slice(1).map(row => row.cells[2].textContent.split(" ")[0]))"""
+        before = browser.value_of(rows)
+        browser.value_of("""document.querySelector("table.results thead th:nth-child(3) button").focus()""")
+        found = []
+        for _ in range(2):
+            browser.press("Enter", 13)
+            found.append((browser.value_of("document.activeElement.parentElement.getAttribute('aria-sort')"), browser.value_of(rows)))
+        self.assertEqual([order for order, _ in found], ["ascending", "descending"])
+        for of_condition, rising, falling in zip(before, found[0][1], found[1][1]):
+            self.assertEqual(rising, sorted(of_condition, key=float))
+            self.assertEqual(falling, sorted(of_condition, key=float, reverse=True))
+        headings = browser.value_of("""[...document.querySelectorAll("table.results tbody")].map(b => b.rows[0].cells.length)""")
+        self.assertEqual(set(headings), {1}, "a condition's heading stays above its rows")
+
+    def check_folding(self, browser):
+        counts = browser.value_of("[document.querySelectorAll('details').length, document.querySelectorAll('details[open]').length]")
+        self.assertGreater(counts[0], 5)
+        self.assertLess(counts[1], counts[0])
+        unfolded = """(() => { const folded = document.querySelector('details:not([open])'); folded.querySelector('summary').click();
+            return folded.open; })()"""
+        self.assertTrue(browser.value_of(unfolded))
 
 
 if __name__ == "__main__":
