@@ -96,7 +96,7 @@ KNOWN_LOOKS = {
     "prcme_rank_aware": Look("pRCME, rank-aware", VERMILLION, "^", DASHED),
     "rcme_rank_aware": Look("RCME, rank-aware", SKY_BLUE, "v", DASH_DOT),
     "rcme_predictive": Look("RCME, predictive likelihood", GREEN, "H", DOTTED),
-    "rcme_calibrated": Look("RCME, calibrated", BLACK, "8"),
+    "rcme_calibrated": Look("RCME, calibrated", PURPLE, "8"),
 }
 OTHER_COLORS = (GREEN, PURPLE, BLUE, VERMILLION, BLACK, SKY_BLUE, ORANGE)
 OTHER_MARKERS = ("<", "*", "d", ">", "p", "h")
