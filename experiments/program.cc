@@ -80,6 +80,7 @@ int RunProgram(int argc, const char* const* argv) {
   AddCheckEstimatorCommand(app);
   AddEstimateCommand(app);
   AddMatchCommand(app);
+  AddPairsCommand(app);
   AddListCommand(app);
   try {
     CheckArguments(argc, argv);

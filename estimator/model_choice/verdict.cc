@@ -197,7 +197,8 @@ std::vector<Parameter> ParallaxParameters(ModelChoiceOptions& options) {
 }
 
 std::vector<ModelChoice> ChooseModels(const MotionProblem& problem,
-                                      const std::vector<ModelChoiceOptions>& options, RandomStream& rng) {
+                                      const std::vector<ModelChoiceOptions>& options, RandomStream& rng,
+                                      TwoViewFits* wanted_fits) {
   std::vector<ModelChoice> choices(options.size());
   if (const std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, kLeastMatches)) {
     for (ModelChoice& choice : choices) {
@@ -213,11 +214,13 @@ std::vector<ModelChoice> ChooseModels(const MotionProblem& problem,
                                                           choices[i].scores.begin())];
     Decide(problem, fits, options[i], &choices[i]);
   }
+  if (wanted_fits) *wanted_fits = fits;
   return choices;
 }
 
-ModelChoice ChooseModel(const MotionProblem& problem, const ModelChoiceOptions& options, RandomStream& rng) {
-  return ChooseModels(problem, {options}, rng).front();
+ModelChoice ChooseModel(const MotionProblem& problem, const ModelChoiceOptions& options, RandomStream& rng,
+                        TwoViewFits* fits) {
+  return ChooseModels(problem, {options}, rng, fits).front();
 }
 
 }  // namespace rcme

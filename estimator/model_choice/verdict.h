@@ -65,11 +65,13 @@ struct ModelChoice {
 };
 
 // The verdict of one criterion. Never throws for bad matches. A pure function of the problem and the stream's
-// name.
-ModelChoice ChooseModel(const MotionProblem& problem, const ModelChoiceOptions& options, RandomStream& rng);
+// name. `fits`, where it is wanted, gets the models where there is a verdict.
+ModelChoice ChooseModel(const MotionProblem& problem, const ModelChoiceOptions& options, RandomStream& rng,
+                        TwoViewFits* fits = nullptr);
 
 // The verdicts under several options, from one fit of the models: each what ChooseModel gives.
 std::vector<ModelChoice> ChooseModels(const MotionProblem& problem,
-                                      const std::vector<ModelChoiceOptions>& options, RandomStream& rng);
+                                      const std::vector<ModelChoiceOptions>& options, RandomStream& rng,
+                                      TwoViewFits* fits = nullptr);
 
 }  // namespace rcme

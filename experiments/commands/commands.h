@@ -26,6 +26,7 @@ void AddReplayCommand(CLI::App& app);
 void AddShowCommand(CLI::App& app);
 void AddEstimateCommand(CLI::App& app);
 void AddMatchCommand(CLI::App& app);
+void AddPairsCommand(CLI::App& app);
 void AddTuneCommand(CLI::App& app);
 void AddBudgetCommand(CLI::App& app);
 void AddTransferCommand(CLI::App& app);

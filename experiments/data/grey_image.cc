@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
+#include <string_view>
 
 #include "experiments/base/regular_file.h"
 #include "experiments/data/image_header.h"
@@ -30,6 +32,17 @@ void CheckHeader(const std::string& bytes, const std::string& path) {
   }
 }
 
+// Decoders fill what is missing of PNG and JPEG with grey: whether their end is there is seen here. Behind it
+// may be what a camera adds.
+void CheckIsWhole(const std::string& bytes, const std::string& path) {
+  constexpr size_t kLastBytes = 4096;
+  const std::string_view all(bytes), last = all.substr(all.size() - std::min(all.size(), kLastBytes));
+  const bool is_png = all.starts_with("\x89PNG"), is_jpeg = all.starts_with("\xFF\xD8");
+  if ((is_png && last.find("IEND") == std::string_view::npos) ||
+      (is_jpeg && last.find("\xFF\xD9") == std::string_view::npos))
+    throw InputError(fmt::format("{}: the image is damaged: it ends early", path));
+}
+
 }  // namespace
 
 std::string ReadImageBytes(const std::string& path) {
@@ -41,6 +54,7 @@ std::string ReadImageBytes(const std::string& path) {
 
 GreyImage UnpackImage(std::string bytes, const std::string& path) {
   CheckHeader(bytes, path);
+  CheckIsWhole(bytes, path);
   cv::Mat image;
   try {
     image =

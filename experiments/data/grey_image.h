@@ -15,8 +15,7 @@ struct GreyImage {
 std::string ReadImageBytes(const std::string& path);
 
 // Unpacks PNG, JPEG, TIFF, BMP or PNM, at most 4096 x 4096 px; `path` is what messages call it. Throws
-// InputError: another format, too large, damaged.
-
+// InputError: another format, too large, damaged, cut off.
 GreyImage UnpackImage(std::string bytes, const std::string& path);
 
 }  // namespace rcme

@@ -27,7 +27,7 @@ ALLOWED = {
 # The folders of a room from below: a file includes files of its own folder and of those before it. "." is the room
 # itself, where the program begins.
 FOLDERS = {
-    "experiments": ["base", "data", "study", "trial", "result_file", "pieces", "run", "model_choice", "analysis", "claims", "rare", "validity", "truth_free", "tuning",
+    "experiments": ["base", "data", "study", "trial", "result_file", "sequences", "pieces", "run", "model_choice", "analysis", "claims", "rare", "validity", "truth_free", "tuning",
                     "contract", "answer", "commands", "."],
     "plots": ["common", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "trial_sheet", "."],
 }

@@ -68,7 +68,7 @@ def as_run(command):
 
 
 class Commands(unittest.TestCase):
-    def sandbox(self):
+    def sandbox(self, with_datasets):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         folder = pathlib.Path(scratch.name)
@@ -76,7 +76,7 @@ class Commands(unittest.TestCase):
             (folder / name).symlink_to(ROOT / name)
         (folder / "bin").mkdir()
         (folder / "bin/rcme").symlink_to(pathlib.Path(os.environ["RCME"]).resolve())
-        make_fixtures(folder, folder / "bin/rcme")
+        make_fixtures(folder, folder / "bin/rcme", with_datasets)
         return folder
 
     def run_page(self, page):
@@ -84,7 +84,7 @@ class Commands(unittest.TestCase):
         commands = [one for one in shown if isinstance(one, pages.Command)]
         if all(any(re.match(pattern, one.text) for pattern in ELSEWHERE) for one in commands):
             return
-        folder = self.sandbox()
+        folder = self.sandbox(any("rcme pairs" in one.text for one in commands))
         environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "GLOG_minloglevel": "3"}
         for one in shown:
             if isinstance(one, pages.ShownFile):

@@ -1,8 +1,9 @@
-"""The reader's own things that pages speak of: matches.csv.gz, a folder of pairs, left.png and right.png."""
+"""The reader's own things that pages speak of: matches.csv.gz, a folder of pairs, left.png and right.png, data sets of images."""
 
 import gzip
 import pathlib
 import shutil
+import sqlite3
 import subprocess
 
 import matplotlib.image
@@ -32,7 +33,78 @@ def make_images(folder):
         matplotlib.image.imsave(folder / f"{name}.png", image, cmap="gray", vmin=-2, vmax=2)
 
 
-def make_fixtures(folder, program):
+SIZE, K, POINTS = (640, 480), (535.4, 539.2, 320.1, 247.6), 2500
+CENTERS = [(0.0, 0.0, 0.0), (0.22, 0.01, 0.03), (0.44, -0.02, 0.06)]
+
+
+def blobs_in(center):
+    """Points between 3 and 8 m before a camera that does not turn, each with its size and height: x, y, size, height in px."""
+    rng = np.random.default_rng(2)
+    points = np.column_stack([rng.uniform(-4, 4, POINTS), rng.uniform(-3, 3, POINTS), rng.uniform(3, 8, POINTS)]) - center
+    size, height = K[0] * rng.uniform(0.01, 0.04, POINTS) / points[:, 2], 2 * rng.normal(size=POINTS)
+    x, y = (K[axis] * points[:, axis] / points[:, 2] + K[2 + axis] for axis in (0, 1))
+    return np.column_stack([x, y, size, height])
+
+
+def draw(path, blobs):
+    image = np.zeros(SIZE[::-1])
+    for x, y, size, height in blobs:
+        left, top = max(int(x - 4 * size), 0), max(int(y - 4 * size), 0)
+        right, bottom = min(int(x + 4 * size), SIZE[0]), min(int(y + 4 * size), SIZE[1])
+        if left < right and top < bottom:
+            rows, columns = np.mgrid[top:bottom, left:right].astype(float)
+            image[top:bottom, left:right] += height * np.exp(-((columns - x) ** 2 + (rows - y) ** 2) / (2 * size**2))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    matplotlib.image.imsave(path, image, cmap="gray", vmin=-3, vmax=3)
+
+
+def make_datasets(folder):
+    """The same three images as KITTI, EuRoC and TUM have them, as a folder, and their points as a database of COLMAP."""
+    images = [folder / f"corridor/{i}.png" for i in range(3)]
+    for image, center in zip(images, CENTERS):
+        draw(image, blobs_in(center))
+    files = {
+        "dataset/sequences/04/calib.txt": f"P0: {K[0]} 0 {K[2]} 0 0 {K[1]} {K[3]} 0 0 0 1 0\n",
+        "dataset/sequences/04/times.txt": "0\n0.1\n0.2\n",
+        "dataset/poses/04.txt": "".join(f"1 0 0 {x} 0 1 0 {y} 0 0 1 {z}\n" for x, y, z in CENTERS),
+        "MH_01_easy/mav0/cam0/sensor.yaml":
+            "T_BS:\n  cols: 4\n  rows: 4\n  data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]\nresolution: [640, 480]\n"
+            f"intrinsics: {list(K)}\ndistortion_model: radial-tangential\ndistortion_coefficients: [0, 0, 0, 0]\n",
+        "MH_01_easy/mav0/cam0/data.csv": "".join(f"{i}00000000,{i}.png\n" for i in range(1, 4)),
+        "MH_01_easy/mav0/state_groundtruth_estimate0/data.csv":
+            "".join(f"{i}00000000,{x},{y},{z},1,0,0,0\n" for i, (x, y, z) in enumerate(CENTERS, 1)),
+        "rgbd_dataset_freiburg3_office/rgb.txt": "".join(f"0.{i} rgb/{i}.png\n" for i in range(1, 4)),
+        "rgbd_dataset_freiburg3_office/groundtruth.txt":
+            "".join(f"0.{i} {x} {y} {z} 0 0 0 1\n" for i, (x, y, z) in enumerate(CENTERS, 1)),
+    }
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    for to, name in (("dataset/sequences/04/image_0", "{:06}.png"), ("MH_01_easy/mav0/cam0/data", "{}.png"),
+                     ("rgbd_dataset_freiburg3_office/rgb", "{}.png")):
+        (folder / to).mkdir()
+        for number, image in enumerate(images, 0 if "06" in name else 1):
+            shutil.copy(image, folder / to / name.format(number))
+    (folder / "project").mkdir()
+    with sqlite3.connect(folder / "project/database.db") as database:
+        database.executescript(
+            "CREATE TABLE cameras (camera_id INTEGER PRIMARY KEY, model INTEGER, width INTEGER, height INTEGER, params BLOB);"
+            "CREATE TABLE images (image_id INTEGER PRIMARY KEY, name TEXT, camera_id INTEGER);"
+            "CREATE TABLE keypoints (image_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);"
+            "CREATE TABLE matches (pair_id INTEGER PRIMARY KEY, rows INTEGER, cols INTEGER, data BLOB);")
+        database.execute("INSERT INTO cameras VALUES (1, 1, 640, 480, ?)", (np.array([K[0], K[1], K[2] + 0.5, K[3] + 0.5]).tobytes(),))
+        for image in (1, 2, 3):
+            points = (blobs_in(CENTERS[image - 1])[:, :2] + 0.5 + np.random.default_rng(image).normal(0, 0.3, (POINTS, 2))).astype(np.float32)
+            database.execute("INSERT INTO images VALUES (?, ?, 1)", (image, f"{image}.png"))
+            database.execute("INSERT INTO keypoints VALUES (?, ?, 2, ?)", (image, POINTS, points.tobytes()))
+        same = np.column_stack([np.arange(POINTS)] * 2).astype(np.uint32).tobytes()
+        for first, second in ((1, 2), (1, 3), (2, 3)):
+            database.execute("INSERT INTO matches VALUES (?, ?, 2, ?)", (2147483647 * first + second, POINTS, same))
+
+
+def make_fixtures(folder, program, with_datasets):
     folder = pathlib.Path(folder)
     make_pairs(folder, program)
     make_images(folder)
+    if with_datasets:
+        make_datasets(folder)

@@ -1,0 +1,253 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+
+#include "experiments/base/message.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/front_end_options.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/sequences/layouts.h"
+#include "experiments/sequences/listed_pairs.h"
+#include "experiments/sequences/make_pairs.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct PairsArguments {
+  DatasetOptions dataset;
+  PairsOptions pairs;
+  std::string layout, lens = "pinhole", gate = "orb_slam2";
+  std::vector<double> truth_sd;
+};
+
+// How a layout is read: as images, or as pairs that it lists.
+struct Layout {
+  const char* name;
+  std::vector<Sequence> (*read)(const DatasetOptions&);
+  std::unique_ptr<ListedPairs> (*open)(const DatasetOptions&);
+};
+constexpr std::array<Layout, 6> kLayouts = {{{"kitti", ReadKitti, nullptr},
+                                             {"euroc", ReadEuroc, nullptr},
+                                             {"tum", ReadTum, nullptr},
+                                             {"images", ReadImageFolder, nullptr},
+                                             {"colmap", nullptr, OpenColmap},
+                                             {"matches", nullptr, OpenMatchFiles}}};
+
+std::vector<std::string> LayoutNames() {
+  std::vector<std::string> names;
+  for (const Layout& layout : kLayouts) names.emplace_back(layout.name);
+  return names;
+}
+
+std::vector<std::string> GateNames() {
+  std::vector<std::string> names = {"off"};
+  for (const auto& [name, criterion] : CriterionNames()) names.push_back(name);
+  return names;
+}
+
+// An option that the layout has no use for is not passed over.
+void CheckApplies(const PairsArguments& arguments) {
+  const auto refuse = [&](const char* option, bool is_given, const std::vector<std::string>& layouts) {
+    if (!is_given || std::ranges::find(layouts, arguments.layout) != layouts.end()) return;
+    throw InputError(fmt::format("{}: does not apply to the layout {}; it does to {}", option,
+                                 arguments.layout, fmt::join(layouts, ", ")));
+  };
+  const DatasetOptions& dataset = arguments.dataset;
+  const std::vector<std::string> sequences = {"kitti", "euroc", "tum"};
+  const std::vector<std::string> images = {"kitti", "euroc", "tum", "images"};
+  refuse("--sequence", !dataset.only.empty(), sequences);
+  refuse("--K", !dataset.K.empty(), {"tum", "images"});
+  refuse("--distortion", !dataset.distortion.empty(), {"tum", "images"});
+  refuse("--model", !dataset.model.empty(), {"colmap"});
+  refuse("--name", !dataset.name.empty(), {"kitti", "euroc", "tum", "images", "colmap"});
+  refuse("--max-frames", dataset.max_frames > 0, images);
+  refuse("--every", arguments.pairs.every > 1, images);
+  refuse("--neighbours", arguments.pairs.neighbours > 1, images);
+  refuse("--cache", !arguments.pairs.cache.empty(), images);
+  refuse("--truth-sd", !arguments.truth_sd.empty(), {"kitti", "euroc", "tum", "colmap"});
+}
+
+// All that the pairs depend on but the images' contents.
+std::string IdentityOf(const PairsArguments& arguments) {
+  const DatasetOptions& d = arguments.dataset;
+  const PairsOptions& p = arguments.pairs;
+  return fmt::format(
+      "{} {} | sequences {} | name {} | K {} | {} {} | model {} | frames {} | detector {} {} | ratio {} {} | "
+      "gate {} {} "
+      "{} {} | every {} | neighbours {} | truth_sd {}",
+      arguments.layout, std::filesystem::weakly_canonical(d.folder).string(), fmt::join(d.only, " "), d.name,
+      fmt::join(d.K, " "), arguments.lens, fmt::join(d.distortion, " "), d.model, d.max_frames,
+      static_cast<int>(p.detector.detector), p.detector.max_features, p.matcher.max_ratio,
+      p.matcher.is_mutual, arguments.gate, p.gate.least_matches, p.gate.least_parallax_deg, p.gate.sigma_px,
+      p.every, p.neighbours, fmt::join(arguments.truth_sd, " "));
+}
+
+void RunPairs(PairsArguments arguments) {
+  CheckApplies(arguments);
+  const StopOnSignals stop;
+  for (const auto& [name, model] : LensModelNames()) {
+    if (name == arguments.lens) arguments.dataset.lens = model;
+  }
+  arguments.pairs.gate.criterion.reset();
+  for (const auto& [name, criterion] : CriterionNames()) {
+    if (name == arguments.gate) arguments.pairs.gate.criterion = criterion;
+  }
+  if (!arguments.truth_sd.empty()) arguments.pairs.truth_sd = {arguments.truth_sd[0], arguments.truth_sd[1]};
+  const auto layout =
+      std::ranges::find_if(kLayouts, [&](const Layout& known) { return known.name == arguments.layout; });
+  const std::string& out = arguments.pairs.out;
+  std::error_code ignored;
+  if (std::filesystem::equivalent(out, arguments.dataset.folder, ignored))
+    throw InputError("--out: is the data set itself; give another folder");
+  std::vector<Sequence> sequences;
+  std::unique_ptr<ListedPairs> listed;
+  std::vector<std::string> notes;
+  if (layout->read) {
+    sequences = layout->read(arguments.dataset);
+    for (const Sequence& sequence : sequences) notes.push_back(sequence.note);
+  } else {
+    listed = layout->open(arguments.dataset);
+    notes.push_back(listed->Note());
+  }
+  PairJournal journal(out, IdentityOf(arguments));
+  if (journal.num_before() > 0) PrintMessage("goes on after {} pairs in {}\n", journal.num_before(), out);
+  if (listed) {
+    MakeListedPairs(*listed, arguments.pairs, &journal);
+  } else {
+    MakePairsOfImages(sequences, arguments.pairs, &journal);
+  }
+  fmt::print("{}", WritePairTables(journal, notes, out));
+  const bool is_any_kept =
+      std::ranges::any_of(journal.rows(), [](const PairRow& row) { return row.reason == kKeptPair; });
+  if (!is_any_kept) {
+    PrintMessage("no pair was kept; {}/INDEX.csv says of each why\n", out);
+    return;
+  }
+  PrintMessage(
+      "match files and INDEX.csv -> {}; next: rcme run experiments/studies/real_pairs.yaml --set folder={} "
+      "--out "
+      "run.sqlite\n",
+      out, out);
+}
+
+void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
+  command->add_option("dataset", arguments->dataset.folder, "the data set's folder (colmap: or its database)")
+      ->required();
+  command->add_option("--layout", arguments->layout, "how it lies there, see below")
+      ->check(CLI::IsMember(LayoutNames()))
+      ->required();
+  command
+      ->add_option("-o,--out", arguments->pairs.out,
+                   "folder for match files, INDEX.csv and pairs.txt; goes on in it")
+      ->required();
+  command
+      ->add_option("--sequence", arguments->dataset.only,
+                   "kitti, euroc, tum: a sequence, repeatable, as its folder is named; default: all")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--max-frames", arguments->dataset.max_frames,
+                   "only the first images of each sequence; 0: all")
+      ->transform(WholeNumberIn(0, 100'000'000));
+  command->add_option(
+      "--name", arguments->dataset.name,
+      "scene of the pairs (images, colmap), or what goes before the sequence's name (KITTI/)");
+  command->add_option("--K", arguments->dataset.K, "images, tum: fx fy cx cy, px, pixel (0, 0) a centre")
+      ->transform(NumberIn())
+      ->expected(4);
+  command->add_option("--lens", arguments->lens, "images, tum: the distortion of --K; default: pinhole")
+      ->check(CLI::IsMember({"pinhole", "radtan", "fisheye"}));
+  command
+      ->add_option("--distortion", arguments->dataset.distortion,
+                   "its coefficients as OpenCV's: radtan k1 k2 p1 p2 [k3 [k4 k5 k6]], fisheye k1 k2 k3 k4")
+      ->transform(NumberIn())
+      ->expected(4, 8);
+  command->add_option("--model", arguments->dataset.model,
+                      "colmap: reconstruction whose poses are the truth; default: sparse/0 if it is there");
+  command
+      ->add_option("--truth-sd", arguments->truth_sd,
+                   "standard deviations of the data set's poses per axis: degrees, and its unit of length")
+      ->transform(NumberIn({0.0, 1e6}))
+      ->expected(2);
+}
+
+void AddGateOptions(CLI::App* command, PairsArguments* arguments) {
+  KeyFrameGate& gate = arguments->pairs.gate;
+  command
+      ->add_option("--gate", arguments->gate,
+                   "what pairs have to pass; off: all are kept; default: orb_slam2")
+      ->check(CLI::IsMember(GateNames()));
+  command->add_option("--least-matches", gate.least_matches, "gate: fewer are too few")
+      ->transform(WholeNumberIn(8, 1'000'000))
+      ->capture_default_str();
+  command
+      ->add_option("--least-parallax", gate.least_parallax_deg,
+                   "gate: least angle of the 50th match, degrees")
+      ->transform(NumberIn({0.0, 90.0}))
+      ->capture_default_str();
+  command->add_option("--sigma", gate.sigma_px, "gate: noise it assumes, px")
+      ->transform(NumberIn({0.01, 100.0}))
+      ->capture_default_str();
+  command->add_option("--every", arguments->pairs.every, "of the images every n-th")
+      ->transform(WholeNumberIn(1, 1'000'000))
+      ->capture_default_str();
+  command
+      ->add_option("--neighbours", arguments->pairs.neighbours,
+                   "pairs of a key frame with that many before it; 2 gives rcme validate its triples")
+      ->transform(WholeNumberIn(1, 100))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void AddPairsCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("pairs", "From a data set of images to a folder of match files for any study");
+  command->footer(
+      "Layouts, as downloaded:\n"
+      "  kitti    dataset/{sequences/NN/{image_0/*.png, calib.txt, times.txt}, poses/NN.txt}   KITTI "
+      "odometry, grey\n"
+      "  euroc    NAME/mav0/{cam0/{data.csv, data/*.png, sensor.yaml}, state_groundtruth_estimate0/data.csv} "
+      "  EuRoC MAV\n"
+      "  tum      NAME/{rgb.txt, rgb/*.png, groundtruth.txt}   TUM RGB-D; the camera by freiburg1, 2, 3 in "
+      "the name, or --K\n"
+      "  images   *.png, *.jpg, ... of one folder, by name; needs --K\n"
+      "  colmap   database.db {cameras, images, keypoints, matches}, and sparse/0 as truth if it is there\n"
+      "  matches  match files, judged again and indexed\n"
+      "\n"
+      "An image waits as the first of a pair until a later one makes a pair with it that the gate keeps, and "
+      "then that\n"
+      "one waits: the initialiser of ORB-SLAM2, by which the paper chose its pairs. Dropped are pairs with\n"
+      "too_few_matches, planar_scene, rotation_only, too_little_parallax, too_few_in_front (of both "
+      "cameras), and what\n"
+      "no model explains (not_better_than_chance, ...). INDEX.csv lists all, kept or not, with the images' "
+      "names;\n"
+      "truth, where the layout has one, goes into the match files and plays no part in the choice. Damaged "
+      "images\n"
+      "are skipped and named; anything that is missing or contradicts itself ends with its path and exit "
+      "code 2.\n"
+      "Key points are undistorted; the sizes of a match's are kept as its sigma_px, which no estimator "
+      "uses.\n"
+      "Cut off, the same command goes on. --cache keeps features (1 MB an image) for other options of the "
+      "gate.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme pairs dataset --layout kitti --name KITTI/ --out kitti_pairs\n"
+      "  rcme pairs MH_01_easy --layout euroc --detector orb --out euroc_pairs\n"
+      "  rcme pairs corridor --layout images --K 520 520 320 240 --lens radtan --distortion -0.2 0.1 0 0 "
+      "--out pairs\n"
+      "  rcme pairs project/database.db --layout colmap --gate off --out colmap_pairs");
+  auto arguments = std::make_shared<PairsArguments>();
+  AddDatasetOptions(command, arguments.get());
+  AddFrontEndOptions(command, &arguments->pairs.detector, &arguments->pairs.matcher);
+  command->add_option("--cache", arguments->pairs.cache,
+                      "folder that keeps features by the images' contents");
+  AddGateOptions(command, arguments.get());
+  command->callback([arguments] { RunPairs(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,86 @@
+// From rendered data sets to studies and to what is said of them, through the program.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/end_to_end/bad_input.h"
+#include "tests/test_support/rendered_sequence.h"
+
+namespace rcme {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kStudyOfPairs =
+    "name: pairs\nseed: 1\ntrials: 1\ndata: {scene: match_files, folder: FOLDER, sigma_px: 0.5}\n"
+    "estimators: [{name: rcme_calibrated}]\n";
+
+TEST(PairsProgram, FromKittiToARateAndToAValidation) {
+  const TempFolder folder;
+  const std::string dataset = folder.Path("dataset"), out = folder.Path("pairs");
+  WriteKittiSequence(dataset, "04", 7);
+  const std::vector<std::string> command = {"pairs",        dataset, "--layout", "kitti",
+                                            "--neighbours", "2",     "--out",    out};
+  const ProgramResult made = RunRcme(command);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.out, ReadBytes(out + "/pairs.txt"));
+  EXPECT_NE(made.out.find("kitti_04"), std::string::npos) << made.out;
+  EXPECT_NE(ReadBytes(out + "/INDEX.csv").find("image_0/000000.png"), std::string::npos);
+  // Again: nothing is left to be done.
+  const std::string journal = ReadBytes(out + "/pairs.journal");
+  const ProgramResult again = RunRcme(command);
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_NE(again.err.find("goes on after"), std::string::npos) << again.err;
+  EXPECT_EQ(again.out, made.out);
+  EXPECT_EQ(ReadBytes(out + "/pairs.journal"), journal);
+  std::vector<std::string> other = command;
+  other.insert(other.end(), {"--detector", "orb"});
+  EXPECT_TRUE(IsRefused(RunRcme(other), {"--out: " + out, "other options"}));
+
+  std::string study = kStudyOfPairs;
+  study.replace(study.find("FOLDER"), 6, out);
+  const std::string yaml = folder.Write("study.yaml", study), run = folder.Path("run.sqlite");
+  ASSERT_EQ(RunRcme({"run", yaml, "--out", run, "--threads", "1"}).exit_code, 0);
+  const ProgramResult summary = RunRcme({"summarize", run});
+  EXPECT_EQ(summary.exit_code, 0) << summary.err;
+  EXPECT_NE(summary.out.find("kitti_04"), std::string::npos) << summary.out;
+  const ProgramResult validated =
+      RunRcme({"validate", out, "--out", folder.Path("validation"), "--no-figure", "--twins", "1"});
+  EXPECT_EQ(validated.exit_code, 0) << validated.err;
+  EXPECT_EQ(validated.out.find(" 0 triples"), std::string::npos) << validated.out;
+}
+
+TEST(PairsProgram, EndsWithTwoAndThePathWhereSomethingIsWrong) {
+  const TempFolder folder;
+  const std::string dataset = folder.Path("dataset"), out = folder.Path("out");
+  WriteKittiSequence(dataset, "04", 3);
+  const auto pairs = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command = {"pairs", dataset, "--out", out};
+    command.insert(command.end(), more.begin(), more.end());
+    return RunRcme(command);
+  };
+  EXPECT_TRUE(IsRefused(pairs({}), {"--layout"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "hpatches"}), {"--layout"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "euroc"}), {dataset + "/mav0: is not there"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "tum"}), {dataset + "/rgb.txt: is not there"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "colmap"}), {dataset + "/database.db: is not there"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "matches"}), {"holds no *.csv"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "images"}), {"--K: fx fy cx cy"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "kitti", "--K", "1", "1", "0", "0"}),
+                        {"--K: does not apply to the layout kitti"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "kitti", "--detector", "surf"}), {"--detector", "surf"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "kitti", "--gate", "hope"}), {"--gate", "hope"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"pairs", dataset, "--layout", "kitti", "--out", dataset}),
+                        {"is the data set itself"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"pairs", "/nowhere", "--layout", "kitti", "--out", out}),
+                        {"/nowhere: is not there"}));
+  fs::remove(dataset + "/sequences/04/image_0/000001.png");
+  EXPECT_TRUE(
+      IsRefused(pairs({"--layout", "kitti"}), {dataset + "/sequences/04/image_0/000001.png: is not there"}));
+  EXPECT_FALSE(fs::exists(out));
+}
+
+}  // namespace
+}  // namespace rcme
