@@ -1,5 +1,5 @@
-// The one door for estimators outside the program: a function of Python, a process, a file of results. All
-// give the same answer, and the same is made of it.
+// The one interface for estimators outside the program: a function of Python, a process, a file of results.
+// All give the same answer, and the same is made of it.
 #pragma once
 
 #include <cstdint>

@@ -10,6 +10,7 @@
 #include "experiments/answer/refusal_advice.h"
 #include "experiments/base/field_text.h"
 #include "experiments/study/estimator_spec.h"
+#include "peers/outside_answer.h"
 
 namespace rcme {
 namespace {
@@ -161,11 +162,12 @@ void AddProbabilities(const MotionEstimate& estimate, Json* json) {
   (*json)["inlier_probabilities"] = estimate.inlier_probabilities;
   (*json)["other_modes"] = Json::array();
   for (const MotionMode& mode : estimate.other_modes) {
-    (*json)["other_modes"].push_back({{"weight", mode.weight},
-                                      {"explained_share", mode.explained_share},
-                                      {"R", RowMajor(mode.cam2_from_cam1.R)},
-                                      {"t", RowMajor(mode.cam2_from_cam1.t)},
-                                      {"pose_cov", RowMajor(mode.pose_cov)}});
+    (*json)["other_modes"].push_back(
+        {{"weight", mode.weight},
+         {"explained_share", mode.explained_share},
+         {"R", RowMajor(mode.cam2_from_cam1.R)},
+         {"t", RowMajor(mode.cam2_from_cam1.t)},
+         {"pose_cov", RowMajor(CovarianceWithTranslation(mode.pose_cov, mode.cam2_from_cam1.t))}});
   }
 }
 
@@ -218,7 +220,7 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
   }
   json["R"] = RowMajor(estimate.cam2_from_cam1.R);
   json["t"] = RowMajor(estimate.cam2_from_cam1.t);
-  json["pose_cov"] = RowMajor(estimate.pose_cov);
+  json["pose_cov"] = RowMajor(CovarianceWithTranslation(estimate.pose_cov, estimate.cam2_from_cam1.t));
   json["failed_by_kappa"] = estimate.failed_by_kappa;
   if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
   json["evidence"] = EvidenceAsJson(answer.evidence);

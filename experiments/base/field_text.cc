@@ -41,7 +41,7 @@ std::string LatexText(const std::string& text) {
         escaped += "\\textbar{}";
         break;
       case '"':
-        escaped += "\\textquotedbl{}";
+        escaped += "\\char34{}";
         break;
       case '[':  // after the end of a row these two would be its argument
       case '*':

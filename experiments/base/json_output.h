@@ -11,7 +11,7 @@ namespace rcme {
 inline constexpr const char* kAuditFormat = "rcme audit 1";
 inline constexpr const char* kPartFormat = "rcme part 1";
 inline constexpr const char* kComparisonFormat = "rcme comparison 1";
-inline constexpr const char* kEstimateFormat = "rcme estimate 1";
+inline constexpr const char* kEstimateFormat = "rcme estimate 2";
 inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
 inline constexpr const char* kRareFormat = "rcme rare 1";
 inline constexpr const char* kReliabilityFormat = "rcme reliability 1";

@@ -289,7 +289,7 @@ void AddEstimateCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_flag(
       "--json", arguments->as_json,
-      "one JSON object (of several files one a line); R row-major (9), pose_cov row-major (25), rad^2; "
+      "one JSON object (of several files one a line); R row-major (9), pose_cov row-major (36), of [w, dt]; "
       "without a direction "
       "(direction_not_observable) R and rotation_cov (9) alone");
   command->callback([arguments] { RunEstimate(*arguments); });

@@ -17,7 +17,7 @@ FARTHEST = 10000  # big points; TeX knows no dimension beyond 16383 pt
 HATCH_TILE = 72  # big points
 ESCAPES = {"\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
            "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}",
-           "|": r"\textbar{}", '"': r"\textquotedbl{}", "\u2212": "$-$", "\u00b7": r"$\cdot$", "\u00b0": r"$^\circ$",
+           "|": r"\textbar{}", '"': r"\char34{}", "\u2212": "$-$", "\u00b7": r"$\cdot$", "\u00b0": r"$^\circ$",
            "\u2264": r"$\le$", "\u2265": r"$\ge$", "\u221e": r"$\infty$", "\u00b1": r"$\pm$", "\u2013": "--",
            "\u2026": r"\dots{}", "\u00b5": r"$\mu$", "\u00d7": r"$\times$", "\u2192": r"$\to$", "\u207b": "$^{-}$",
            "\u2713": r"$\surd$", "\u2717": r"$\times$", "\u25c6": r"$\diamond$", "\u25d0": r"$\sim$", "\u25a0": r"\rule{1ex}{1ex}",

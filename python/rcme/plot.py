@@ -19,7 +19,8 @@ def rate(ax: Any, summary: pandas.DataFrame, x: str, quantity: str = "failure", 
          labels: Optional[Mapping[str, str]] = None) -> Any:
     """A rate or score (%) against a factor: a line with its 95 % interval per estimator; where levels are words, marks.
 
-    ax : matplotlib axes; summary : what `summarize` gave; x : a factor (a column of it); quantity : a rate, a score or a mean;
+    ax : matplotlib axes; summary : what `summarize` gave; x : a factor (a column of it); quantity : a rate (failure,
+    failure_or_refusal, ...), a score or a mean;
     estimators : labels to draw, in order (default: all); where : levels of other factors, {factor: level}; labels : names for
     the legend, {label: name}. ValueError: no such column, quantity, estimator or level; another factor varies.
     """
@@ -27,20 +28,15 @@ def rate(ax: Any, summary: pandas.DataFrame, x: str, quantity: str = "failure", 
     rows = _rows(summary, "summary", ("estimator", "quantity", "value", "lower", "upper", "kind"), x, where)
     rows = _chosen(rows, "quantity", quantity, "quantity")
     scale = 100.0 if rows.kind.isin(["rate", "score"]).all() else 1.0
-    names = _estimators(rows, estimators)
-    places, ticks = _places(rows, x)
-    for number, name in enumerate(names):
-        points = rows[rows.estimator == name]
-        _check_one_per_level(points, x)
-        at, order = _ordered(points, x, places)
-        value, lower, upper = (scale * points[column].to_numpy(float)[order] for column in ("value", "lower", "upper"))
-        label = (labels or {}).get(name, name)
+    series, ticks = _series(rows, x, estimators, labels)
+    for label, at, aside, points in series:
+        value, lower, upper = (scale * points[column].to_numpy(float) for column in ("value", "lower", "upper"))
         if ticks is None:
-            (line,) = ax.plot(at, value, marker="o", markersize=3, label=label)
+            # The first is drawn widest: where estimators tie, it stays visible as a rim.
+            (line,) = ax.plot(at, value, marker="o", markersize=4 - 2 * aside, linewidth=1.6 - 1.4 * aside, label=label)
             ax.fill_between(at, lower, upper, color=line.get_color(), alpha=0.15, linewidth=0)
         else:
-            aside = at + 0.5 * ((number + 0.5) / len(names) - 0.5)
-            ax.errorbar(aside, value, yerr=_arms(value, lower, upper), fmt="o", markersize=3, label=label)
+            ax.errorbar(at + 0.5 * aside, value, yerr=_arms(value, lower, upper), fmt="o", markersize=3, label=label)
     _name_axes(ax, x, quantity + (" (%)" if scale == 100.0 else ""), ticks)
     return ax
 
@@ -56,18 +52,12 @@ def paired_difference(ax: Any, comparison: pandas.DataFrame, x: str, event: str 
     _axes(ax)
     rows = _rows(comparison, "comparison", ("estimator", "event", "risk_difference", "lower", "upper", "p_holm"), x, where)
     rows = _chosen(rows, "event", event, "event")
-    names = _estimators(rows, estimators)
-    places, ticks = _places(rows, x)
-    for number, name in enumerate(names):
-        points = rows[rows.estimator == name]
-        _check_one_per_level(points, x)
-        at, order = _ordered(points, x, places)
-        value, lower, upper, p = (points[column].to_numpy(float)[order]
-                                  for column in ("risk_difference", "lower", "upper", "p_holm"))
-        step = np.diff(np.unique(at)).min() if len(np.unique(at)) > 1 else 1.0
-        at = at + 0.3 * step * ((number + 0.5) / len(names) - 0.5)
+    series, ticks = _series(rows, x, estimators, labels)
+    for label, at, aside, points in series:
+        value, lower, upper, p = (points[column].to_numpy(float) for column in ("risk_difference", "lower", "upper", "p_holm"))
+        at = at + 0.3 * (np.diff(np.unique(at)).min() if len(np.unique(at)) > 1 else 1.0) * aside
         bars = ax.errorbar(at, 100 * value, yerr=100 * _arms(value, lower, upper), fmt="o", markersize=3.5,
-                           markerfacecolor="white", label=(labels or {}).get(name, name))
+                           markerfacecolor="white", label=label)
         is_sure = p < 0.05
         ax.plot(at[is_sure], 100 * value[is_sure], "o", markersize=3.5, color=bars[0].get_color())
     ax.axhline(0, color="0.25", linewidth=0.8, zorder=0)
@@ -206,10 +196,22 @@ def _places(rows: pandas.DataFrame, x: str) -> tuple[dict[Any, float], Optional[
         return {level: float(i) for i, level in enumerate(levels)}, [str(level) for level in levels]
 
 
-def _ordered(points: pandas.DataFrame, x: str, places: Mapping[Any, float]) -> tuple[np.ndarray, np.ndarray]:
-    at = np.array([places[level] for level in points[x]])
-    order = np.argsort(at, kind="stable")
-    return at[order], order
+def _series(rows: pandas.DataFrame, x: str, estimators: Optional[Sequence[str]], labels: Optional[Mapping[str, str]]
+            ) -> tuple[list[tuple[str, np.ndarray, float, pandas.DataFrame]], Optional[list[str]]]:
+    """Of each estimator its label, the places of its levels, what share of the room between levels it stands aside (-0.5..0.5)
+    and its rows in the order of the places; and the names of the ticks where levels are words."""
+    if labels is not None and not isinstance(labels, Mapping):
+        raise ValueError(f"labels: {_check.words(labels)} is not allowed; expected a dict {{label: name for the legend}}")
+    names = _estimators(rows, estimators)
+    places, ticks = _places(rows, x)
+    series = []
+    for number, name in enumerate(names):
+        points = rows[rows.estimator == name]
+        _check_one_per_level(points, x)
+        at = np.array([places[level] for level in points[x]])
+        order = np.argsort(at, kind="stable")
+        series.append(((labels or {}).get(name, name), at[order], (number + 0.5) / len(names) - 0.5, points.iloc[order]))
+    return series, ticks
 
 
 def _check_one_per_level(points: pandas.DataFrame, x: str) -> None:

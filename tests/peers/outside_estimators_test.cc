@@ -1,4 +1,4 @@
-// The door for estimators outside the program: their covariance, their lines of JSON, and processes that
+// The interface for estimators outside the program: their covariance, their lines of JSON, and processes that
 // answer, are late, crash or talk nonsense. The processes are scripts of the shell.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

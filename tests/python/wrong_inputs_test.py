@@ -95,7 +95,8 @@ SUMMARY = pandas.DataFrame({"study": "s", "noise": [1, 1], "estimator": "a", "qu
 NO_AXES = [("ax", dict(ax=None)), ("ax", dict(ax=3))]
 NO_TABLE = [("x", dict(x="colour")), ("x", dict(x=3)), ("x: ", dict(x="noise")), ("where", dict(where=3)),
             ("where", dict(where={"colour": 1})), ("where", dict(where={"noise": 2})),
-            ("estimators", dict(estimators=["nobody"])), ("estimators", dict(estimators=3))]
+            ("estimators", dict(estimators=["nobody"])), ("estimators", dict(estimators=3)),
+            ("labels", dict(labels=3)), ("labels", dict(labels=["a"]))]
 WRONG_PLOTS = {
     "rate": (dict(summary=SUMMARY, x="noise"), NO_AXES + NO_TABLE + [
         ("summary", dict(summary=3)), ("summary", dict(summary=SUMMARY[["study"]])), ("quantity", dict(quantity="colour"))]),
