@@ -30,6 +30,7 @@ import fake_tune  # noqa: E402
 import validation_test  # noqa: E402
 from audit_power_test import TABLE as POWER  # noqa: E402
 from common import sheet, style, tikz  # noqa: E402
+from common.summary_csv import read_summary, where  # noqa: E402
 from drawn_text import do_overlap, drawn_texts, problems_of  # noqa: E402
 
 RESULTS = ROOT / "experiments" / "results"
@@ -147,6 +148,15 @@ class Paper(unittest.TestCase):
         texts = " ".join(text for text, _, _ in drawn_texts(figures["figure"]))
         for label in labels:
             self.assertIn(label.split("=")[1], texts)
+
+    def test_narrow_cells_have_the_ends_of_the_interval_above_and_below_the_rate(self):
+        code, errors, figures = run_script(*self.arguments(*self.cases[4], "--width", "3.3"))
+        self.assertEqual((code, errors), (0, ""))
+        cell = sorted((text for text in figures["figure"].axes[0].texts if text.get_position()[0] == 4.5
+                       and 4 < text.get_position()[1] < 5), key=lambda text: -text.get_position()[1])
+        rows = where(read_summary(self.cases[4][1][0]), ["outlier_ratio=0.5", "clustered_share=0.97", "estimator=standard"]).rows
+        row, = rows[rows.quantity == "failure"].to_dict("records")
+        self.assertEqual([text.get_text() for text in cell], [f"{100 * float(row[name]):.1f}" for name in ("upper", "value", "lower")])
 
     def test_what_is_not_possible_is_refused(self):
         case = self.cases[0]
