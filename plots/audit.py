@@ -19,7 +19,7 @@ from audit_figures.panel import EmptyPanel
 from audit_figures.roc import RocPanel, is_roc
 from common.command_line import FigureParser, PlotError, run, written_figures
 from common.number_text import power_text
-from report_page.html import write_whole
+from page.html import write_whole
 
 EXAMPLE = """
 example:

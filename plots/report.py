@@ -13,12 +13,12 @@ import sys
 
 from common.command_line import Parser, PlotError, check_folder, run as run_script
 from common.style import label_of, split_unit
+from page.html import code, definitions, details, element, joined, listed, page, write_whole
+from page.script import SCRIPT
+from page.style import CSS
 from report_page import tables
 from report_page.data import read_runs
 from report_page.figures import figures, reliability_figure
-from report_page.html import code, definitions, details, element, joined, listed, page, write_whole
-from report_page.script import SCRIPT
-from report_page.style import CSS
 
 EXAMPLE = """
 example:

@@ -5,10 +5,10 @@ import math
 from audit_figures import audit_file as audit_of
 from audit_figures import look
 from common.number_text import number_text, power_text
-from report_page.figures import picture_of
-from report_page.html import code, details, element, joined, page, table
-from report_page.script import SCRIPT
-from report_page.style import CSS
+from page.html import code, details, element, joined, page, table
+from page.picture import picture_of
+from page.script import SCRIPT
+from page.style import CSS
 
 CLASSES = {audit_of.HOLDS: "holds", audit_of.HOLDS_AT_SMALL_NOISE: "holds", audit_of.DOES_NOT_HOLD: "fails"}
 ORDER = (audit_of.DOES_NOT_HOLD, audit_of.UNDECIDED, audit_of.HOLDS_AT_SMALL_NOISE, audit_of.HOLDS, audit_of.MEASURED,

@@ -1,35 +1,22 @@
 """The figures of the report, as pictures inside the page: rates against a factor that varies alone, heat maps where
 factors vary together, and differences to the reference."""
 
-import base64
-import io
 import itertools
 import math
 import shlex
 
-import matplotlib
-
-from common import sheet, style
+from common import style
 from common.command_line import PlotError
 from common.summary_csv import where
+from page.html import code, element, joined
+from page.picture import picture_of
 from rates import cells, differences, lines
 from rates.selection import title_of
 from reliability_figure import panels as reliability
-from report_page.html import code, element, joined
 
 QUANTITIES = ("failure", "failure_or_refusal", "no_candidate")  # the first two that a table has: an old one lacks the second
 EVENTS = ("failure", "failure_or_refusal")
 MAX_SLICES = 6  # heat maps of one run
-PIXELS_PER_INCH = 115
-NARROW, NARROW_SCREEN = 3.4, "(max-width: 40rem)"  # inches of the figure for such a screen
-
-
-def data_uri(figure):
-    """The figure as SVG; the same figure gives the same bytes."""
-    picture = io.BytesIO()
-    with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
-        figure.savefig(picture, format="svg", metadata={"Date": None, "Creator": None})
-    return "data:image/svg+xml;base64," + base64.b64encode(picture.getvalue()).decode()
 
 
 def drawn(draw, alt, caption, command):
@@ -39,20 +26,6 @@ def drawn(draw, alt, caption, command):
     except PlotError as error:
         return element("p", f"{caption} Not drawn: {error}", class_="note")
     return element("figure", picture, element("figcaption", f"{caption} Drawn by ", code(command))) + "\n"
-
-
-def picture_of(draw, alt):
-    """The figure; on a narrow screen the one for a column of print, whose texts are as large there as here. Where it has no
-    room in a column, the wide one scrolls. Throws PlotError."""
-    figure = draw()
-    width, height = (round(PIXELS_PER_INCH * inches) for inches in figure.get_size_inches())
-    image = element("img", src=data_uri(figure), alt=alt, width=width, height=height)
-    try:
-        with sheet.use(sheet.Sheet(width=NARROW)):
-            narrow = element("source", media=NARROW_SCREEN, srcset=data_uri(draw()))
-    except PlotError:
-        return element("div", image, class_="scroll wide", role="region", tabindex="0", aria_label="figure")
-    return element("picture", narrow, image)
 
 
 def script_command(run, script, arguments):

@@ -4,9 +4,9 @@ import itertools
 import shlex
 
 from common import style
+from page.html import Html, code, definitions, details, element, joined, table
 from rates.selection import difference_interval_in_words, interval_in_words, test_in_words, title_of
 from reliability_figure.reliability_file import STATED
-from report_page.html import Html, code, definitions, details, element, joined, table
 
 SHOWN = ("failure", "failure_or_refusal", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "nees_median",
          "rotation_error_deg", "direction_error_deg", "auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg",

@@ -29,7 +29,7 @@ ALLOWED = {
 FOLDERS = {
     "experiments": ["base", "data", "study", "trial", "result_file", "sequences", "pieces", "run", "model_choice", "analysis", "claims", "rare", "validity", "truth_free", "tuning",
                     "contract", "answer", "commands", "."],
-    "plots": ["common", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "trial_sheet", "."],
+    "plots": ["common", "page", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "trial_sheet", "."],
 }
 PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)
 OUR_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)

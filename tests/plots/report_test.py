@@ -20,8 +20,8 @@ import fake_reliability  # noqa: E402
 from browser import BROWSER, SKIP_REASON, Browser  # noqa: E402
 import report  # noqa: E402
 from report_page import figures as report_figures  # noqa: E402
-from report_page import html as html_of  # noqa: E402
-from report_page.html import VOID  # noqa: E402
+from page import html as html_of  # noqa: E402
+from page.html import VOID  # noqa: E402
 
 SUMMARY_HEADER = "study,condition,{factors}estimator,quantity,kind,value,lower,upper,standard_error,n\n"
 COMPARISON_HEADER = ("study,condition,{factors}estimator,reference,event,n,both,estimator_only,reference_only,neither,"

@@ -1,0 +1,35 @@
+"""A figure as a picture inside a page, on a narrow screen another one than on a wide."""
+
+import base64
+import io
+
+import matplotlib
+
+from common import sheet
+from common.command_line import PlotError
+from page.html import element
+
+PIXELS_PER_INCH = 115
+NARROW, NARROW_SCREEN = 3.4, "(max-width: 40rem)"  # inches of the figure for such a screen
+
+
+def data_uri(figure):
+    """The figure as SVG; the same figure gives the same bytes."""
+    picture = io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
+        figure.savefig(picture, format="svg", metadata={"Date": None, "Creator": None})
+    return "data:image/svg+xml;base64," + base64.b64encode(picture.getvalue()).decode()
+
+
+def picture_of(draw, alt):
+    """The figure; on a narrow screen the one for a column of print, whose texts are as large there as here. Where it has no
+    room in a column, the wide one scrolls. Throws PlotError."""
+    figure = draw()
+    width, height = (round(PIXELS_PER_INCH * inches) for inches in figure.get_size_inches())
+    image = element("img", src=data_uri(figure), alt=alt, width=width, height=height)
+    try:
+        with sheet.use(sheet.Sheet(width=NARROW)):
+            narrow = element("source", media=NARROW_SCREEN, srcset=data_uri(draw()))
+    except PlotError:
+        return element("div", image, class_="scroll wide", role="region", tabindex="0", aria_label="figure")
+    return element("picture", narrow, image)
