@@ -642,6 +642,21 @@ TEST_F(Sequences, MatchFilesAreJudgedAgain) {
   EXPECT_NE(table.find("too_few_matches"), std::string::npos) << table;
 }
 
+// cv::projectPoints and cv::fisheye::projectPoints of OpenCV 4.6 at (.5, -.3, 1) and (-.2, .4, 1).
+TEST(Lens, DistortsAsOpenCv) {
+  const Camera euroc{458.654, 457.296, 367.215, 248.375, 752, 480};
+  const auto expect = [&](LensModel model, const std::vector<double>& k, const Eigen::Vector2d& first,
+                          const Eigen::Vector2d& second) {
+    const Lens lens = MakeLens(euroc, model, k, "");
+    EXPECT_LT((ProjectThrough(lens, {0.5, -0.3}) - first).norm(), 2e-6) << ProjectThrough(lens, {0.5, -0.3});
+    EXPECT_LT((ProjectThrough(lens, {-0.2, 0.4}) - second).norm(), 2e-6) << ProjectThrough(lens, {-0.2, 0.4});
+  };
+  expect(LensModel::kRadtan, {-0.28, 0.07, 0.02, -0.03}, {562.255779, 132.007984}, {275.043892, 428.513040});
+  expect(LensModel::kRadtan, {0.1, -0.2, 0.01, 0.02, 0.3, 0.5, -0.1, 0.2}, {574.629873, 127.715124},
+         {284.272171, 418.342457});
+  expect(LensModel::kFisheye, {-0.1, 0.2, -0.3, 0.4}, {571.424674, 126.211974}, {282.051848, 418.196996});
+}
+
 TEST(Lens, UndistortsWhatItDistorts) {
   const Camera euroc{458.654, 457.296, 367.215, 248.375, 752, 480};
   const std::vector<Lens> lenses = {
