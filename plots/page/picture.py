@@ -10,7 +10,7 @@ from common.command_line import PlotError
 from page.html import element
 
 PIXELS_PER_INCH = 115
-NARROW, NARROW_SCREEN = 3.4, "(max-width: 40rem)"  # inches of the figure for such a screen
+WIDE, NARROW, NARROW_SCREEN = 6.8, 3.4, "(max-width: 40rem)"  # inches of the figures, the second for such a screen
 
 
 def data_uri(figure):
@@ -22,9 +22,13 @@ def data_uri(figure):
 
 
 def picture_of(draw, alt):
-    """The figure; on a narrow screen the one for a column of print, whose texts are as large there as here. Where it has no
-    room in a column, the wide one scrolls. Throws PlotError."""
-    figure = draw()
+    """The figure as it would be printed over a page; on a narrow screen the one for a column, whose texts are as large there.
+    What has no room in either is as it is, and scrolls. Throws PlotError."""
+    try:
+        with sheet.use(sheet.Sheet(width=WIDE)):
+            figure = draw()
+    except PlotError:
+        figure = draw()
     width, height = (round(PIXELS_PER_INCH * inches) for inches in figure.get_size_inches())
     image = element("img", src=data_uri(figure), alt=alt, width=width, height=height)
     try:

@@ -37,6 +37,7 @@ dd { margin: 0; overflow-wrap: anywhere; }
 aside table { font-size: .76rem; }
 aside :is(th, td) { padding: .2rem .3rem; }
 aside thead :not([aria-sort]) > button::after { content: ""; }
+aside th.name[scope=row] { white-space: normal; }
 aside h3 { margin-top: .6rem; }
 aside p, aside caption { font-size: .82rem; color: var(--soft); }
 .scroll { overflow-x: auto; margin: .8rem 0 1.2rem; }
@@ -63,7 +64,6 @@ details { margin: .8rem 0; }
 summary { cursor: pointer; font-weight: 600; color: var(--link); overflow-wrap: anywhere; }
 figure { margin: 1rem 0 1.8rem; }
 figure img { display: block; max-width: 100%; height: auto; background: #fff; border-radius: 4px; }
-figure .wide img { max-width: none; }
 figcaption { font-size: .86rem; color: var(--soft); max-width: 60rem; margin-top: .3rem; }
 .note { color: var(--soft); border-left: 4px solid var(--line); padding: .1rem .8rem; }
 .subtitle { color: var(--soft); margin-top: 0; }
@@ -76,6 +76,7 @@ figcaption { font-size: .86rem; color: var(--soft); max-width: 60rem; margin-top
   dl { grid-template-columns: minmax(0, 1fr); gap: 0; }
   dd { margin: 0 0 .5rem; }
   figure img { width: 100%; }
+  figure .wide img { max-width: none; width: auto; }
   .aside { display: block; margin-left: 0; }
 }
 @media (prefers-reduced-motion: no-preference) { html { scroll-behavior: smooth; } }

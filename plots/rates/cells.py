@@ -175,7 +175,8 @@ def draw(summary, x, y, quantities, estimators=()):
         for axes, name in zip(of_quantity, names):
             draw_panel(axes, drawn[drawn.estimator == name], x_axis, y_axis, scale, cell_width)
             title = f"{next(letters)}{title_of(quantity)}, {looks[name].label}"
-            axes.set_title("\n".join(wrap(title, panel_width, 7.5)) if panel_width else title, fontsize=7.5)
+            room = panel_width or max(1.5, CELL_WIDTH * len(x_axis.levels))
+            axes.set_title("\n".join(wrap(title, room, 7.5)), fontsize=7.5)
         draw_color_bars(figure, bars_of_quantity, scale, f"{kind_in_words(drawn)} (%)")
         name_axes(of_quantity, len(of_quantity) // len(bars_of_quantity), x, y)
     others = [factor for factor in summary.factors if factor not in (x, y)]
