@@ -14,6 +14,7 @@
 #include "estimator/robust_covariance/covariance_option.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -87,7 +88,8 @@ const EstimatorEntry& FindEstimator(const std::string& name) {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }
-  throw InputError(fmt::format("unknown estimator {}; known: {}", Quoted(name), fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown estimator {}{}; known: {}", Quoted(name), DidYouMean(name, names),
+                               fmt::join(names, ", ")));
 }
 
 const Parameter& FindOption(const std::string& estimator, const std::vector<Parameter>& options,
@@ -96,7 +98,8 @@ const Parameter& FindOption(const std::string& estimator, const std::vector<Para
   if (found != options.end()) return *found;
   std::vector<std::string> names;
   for (const Parameter& option : options) names.push_back(option.name());
-  throw InputError(fmt::format("estimator {} has no option {}; its options: {}", estimator, Quoted(name),
+  throw InputError(fmt::format("estimator {} has no option {}{}; its options: {}", estimator, Quoted(name),
+                               DidYouMean(name, names),
                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 

@@ -5,11 +5,24 @@
 
 #include "estimator/hypothesis_trace.h"
 #include "estimator/motion_estimator.h"
+#include "estimator/refinement/motion_search.h"
 
 namespace rcme {
 
 // Of the hypotheses of one problem: the estimate from each, whatever the others are.
 using Refinements = std::map<HypothesisId, MotionEstimate>;
+
+// The number of an InlierScore by which an estimator chooses among its candidates.
+enum class DecidingScore { kNumInliers, kMeanEntropy, kCost };  // kCost: negative_log_likelihood
+
+// A motion that is handed to an estimator, as it would be judged had the search found it.
+struct ScoredMotion {
+  RefinedMotion refined;  // not converged: no optimum is reached from there, and there is no score
+  InlierScore score;      // of the refined motion, its covariance included, over all matches
+  DecidingScore decides = DecidingScore::kNumInliers;
+  Thresholds thresholds;    // of the tests
+  MotionEstimate estimate;  // what would be returned, refused perhaps by the tests of the refined motion
+};
 
 // An estimator whose loop can be taken apart: make and score the hypotheses, decide, finish. Whatever the
 // options, Estimate(problem, rng) is Finish(problem, Decide(Trace(problem, rng)), &refinements).
@@ -25,6 +38,10 @@ class RansacEstimator : public MotionEstimator {
   // Takes from `refinements` what is there already, and adds what is not.
   virtual MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
                                 Refinements* refinements) const = 0;
+  // The motion refined from `start` and the matches that agree with it, and scored as a hypothesis is. Where
+  // the estimator refines nothing, refined robustly all the same. For those who look into a result:
+  // Estimate never asks it.
+  virtual ScoredMotion ScoreMotion(const MotionProblem& problem, const RelativePose& start) const = 0;
   virtual const RansacOptions& options() const = 0;
   // The same estimator with options that differ in those of kDecisionOptions and the levels of the tests of
   // the refined motion alone.

@@ -40,6 +40,23 @@ concept HasRobustScore = requires {
   typename Pipeline::RobustScore;
 };
 
+// Inliers, and the robust score of all squared distances together. `distances` is room for them.
+template <typename Pipeline>
+requires HasRobustScore<Pipeline> InlierScore ScoreDistances(const MotionProblem& problem,
+                                                             const typename Pipeline::PointTest& test,
+                                                             const Thresholds& thresholds,
+                                                             std::vector<double>* distances) {
+  InlierScore score;
+  distances->clear();
+  for (const Correspondence& match : problem.matches) {
+    PointResidual residual;
+    distances->push_back(test.Distance(match, &residual));
+    if (distances->back() <= thresholds.point) score.AddInlier(test.Entropy(residual));
+  }
+  score.negative_log_likelihood = Pipeline::RobustScore::Cost(*distances, thresholds);
+  return score;
+}
+
 template <typename Pipeline, typename Solver>
 class ReferenceSearch {
  public:
@@ -75,7 +92,8 @@ class ReferenceSearch {
   }
 
   InlierScore Score() {
-    if constexpr (HasRobustScore<Pipeline>) return ScoreDistances();
+    if constexpr (HasRobustScore<Pipeline>)
+      return ScoreDistances<Pipeline>(problem_, *test_, thresholds_, &distances_);
     if constexpr (kScoresTheRest<Solver, PointTest>) {
       return ScoreInliers(problem_, *test_, thresholds_, hypotheses_.models[0].id.sample);
     }
@@ -103,18 +121,6 @@ class ReferenceSearch {
   }
 
  private:
-  InlierScore ScoreDistances() requires HasRobustScore<Pipeline> {
-    InlierScore score;
-    distances_.clear();
-    for (const Correspondence& match : problem_.matches) {
-      PointResidual residual;
-      distances_.push_back(test_->Distance(match, &residual));
-      if (distances_.back() <= thresholds_.point) score.AddInlier(test_->Entropy(residual));
-    }
-    score.negative_log_likelihood = Pipeline::RobustScore::Cost(distances_, thresholds_);
-    return score;
-  }
-
   // Sigma_p propagated and the point test built on it; nothing if the covariance is not finite.
   std::optional<PointTest> MakePointTest(Hypothesis<Solver>* hypothesis) const {
     if constexpr (!PointTest::kNeedsCovariance) {

@@ -13,6 +13,7 @@
 #include "experiments/base/program_name.h"
 #include "experiments/base/scratch_folder.h"
 #include "experiments/base/stop_request.h"
+#include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -43,16 +44,18 @@ int RunProgram(int argc, const char* const* argv) {
       "\n"
       "A first session:\n"
       "  rcme list studies                                            what there is to run\n"
-      "  rcme run experiments/studies/failure_vs_outliers.yaml --out run.sqlite\n"
+      "  rcme run failure_vs_outliers --out run.sqlite                a study by its name, or a file of "
+      "yours\n"
       "  rcme summarize run.sqlite                                    rates with exact intervals\n"
       "  rcme compare run.sqlite                                      each estimator against the first\n"
       "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure   rates with their intervals\n"
       "  rcme report run.sqlite --out report.html                     all of it on one page, with figures\n"
       "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
       "  rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture\n"
-      "  rcme tune experiments/studies/tune_mu_lambda.yaml --out tuned.yaml   thresholds with a guarantee\n"
+      "  rcme tune tune_mu_lambda --out tuned.yaml                    thresholds with a guarantee\n"
       "  rcme audit --out audit                                       every claim of the paper, checked\n"
-      "  rcme estimate matches.csv.gz --estimator rcme                one real pair\n",
+      "  rcme estimate matches.csv.gz                                 one real pair, or a folder of them\n"
+      "  rcme help estimate                                           help for a command\n",
       "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
   app.get_formatter()->column_width(34);
@@ -82,6 +85,9 @@ int RunProgram(int argc, const char* const* argv) {
   AddMatchCommand(app);
   AddPairsCommand(app);
   AddListCommand(app);
+  AddHelpCommand(app);
+  AddCompletionCommand(app);
+  AddManCommand(app);
   try {
     CheckArguments(argc, argv);
     app.parse(argc, argv);
@@ -89,7 +95,10 @@ int RunProgram(int argc, const char* const* argv) {
     if (std::fflush(stdout) != 0) throw InputError("standard output cannot be written");
     return 0;
   } catch (const CLI::ParseError& error) {
-    if (app.exit(error) != 0) return 2;
+    if (app.exit(error) != 0) {
+      PrintMessage("{}", SuggestionsFor(app));
+      return 2;
+    }
     if (std::cout.flush()) return 0;
     PrintMessage("rcme: standard output cannot be written\n");
     return 2;

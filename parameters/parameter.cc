@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -28,6 +30,23 @@ std::string RangeInWords(const std::string& kind, const Parameter::Range& range)
   if (std::isinf(range.max)) return fmt::format("{} >= {}", kind, range.min);
   if (std::isinf(range.min)) return fmt::format("{} <= {}", kind, range.max);
   return fmt::format("{} in [{}, {}]", kind, range.min, range.max);
+}
+
+// The words of what is allowed: "one of: a, b", "a number in [0, 1] or auto".
+std::vector<std::string> WordsIn(const std::string& allowed) {
+  constexpr std::string_view kList = "one of: ", kComma = ", ", kOr = " or ";
+  const bool is_list = allowed.starts_with(kList);
+  const std::string_view separator = is_list ? kComma : kOr;
+  std::vector<std::string> words;
+  std::string_view rest = allowed;
+  rest.remove_prefix(is_list ? kList.size() : std::min(rest.find(kOr), rest.size()));
+  while (!rest.empty()) {
+    if (rest.starts_with(separator)) rest.remove_prefix(separator.size());
+    const size_t end = std::min(rest.find(separator), rest.size());
+    words.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(end);
+  }
+  return words;
 }
 
 }  // namespace
@@ -125,8 +144,9 @@ Parameter Parameter::Together(const std::vector<Parameter>& same) {
 }
 
 void Parameter::SetFromText(const std::string& text) const {
-  if (!set_(text))
-    throw InputError(fmt::format("{}: {} is not allowed; give {}", name_, Quoted(text), allowed_));
+  if (set_(text)) return;
+  throw InputError(fmt::format("{}: {} is not allowed{}; give {}", name_, Quoted(text),
+                               DidYouMean(text, WordsIn(allowed_)), allowed_));
 }
 
 std::string Parameter::ListWords(const std::vector<std::string>& words) {
@@ -139,7 +159,8 @@ const Parameter& FindParameter(const std::vector<Parameter>& parameters, const s
     if (parameter.name() == name) return parameter;
     names.push_back(parameter.name());
   }
-  throw InputError(fmt::format("unknown key {}; known keys: {}", Quoted(name), fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown key {}{}; known keys: {}", Quoted(name), DidYouMean(name, names),
+                               fmt::join(names, ", ")));
 }
 
 Settings ValuesOf(const std::vector<Parameter>& parameters) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "parameters/input_error.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 
@@ -27,8 +28,8 @@ const Entry& FindEntry(const std::vector<Entry>& registry, const std::string& ke
   if (entry != registry.end()) return *entry;
   std::vector<std::string> names;
   for (const Entry& known : registry) names.push_back(known.name);
-  throw InputError(
-      fmt::format("{}: '{}' is not allowed; give one of: {}", key, name, fmt::join(names, ", ")));
+  throw InputError(fmt::format("{}: '{}' is not allowed{}; give one of: {}", key, name,
+                               DidYouMean(name, names), fmt::join(names, ", ")));
 }
 
 }  // namespace rcme

@@ -162,4 +162,18 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
   return Distinct(std::move(optima), num_modes);
 }
 
+std::vector<Mode> ModesFrom(const MatchBlocks& matches, const MixturePrior& prior,
+                            const std::vector<RelativePose>& starts) {
+  std::vector<Mode> optima;
+  for (const RelativePose& start : starts) {
+    Mode mode;
+    mode.pose = start;
+    mode.mixture = FirstGuess(prior, NoiseLaw().scale_of_gaussian, 0.5);
+    AddOptimum(matches, prior, mode, &optima);
+    mode.mixture.scale = StartScale(matches, mode);
+    if (prior.estimates_scale) AddOptimum(matches, prior, std::move(mode), &optima);
+  }
+  return optima;
+}
+
 }  // namespace rcme

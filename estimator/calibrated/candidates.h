@@ -20,6 +20,11 @@ RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<ScoredEssential>& candidates, size_t num_modes);
 
+// The optima that are reached from these motions by all matches, begun at the assumed scale and (where sigma
+// is estimated) at the scale that suits them; each once.
+std::vector<Mode> ModesFrom(const MatchBlocks& matches, const MixturePrior& prior,
+                            const std::vector<RelativePose>& starts);
+
 // Whether two modes are one: within so many standard deviations of the first, by its information.
 bool IsSameMode(const Mode& a, const Mode& b, double standard_deviations = 5.0);
 

@@ -3,6 +3,7 @@
 #include "estimator/kernels/fast_engine.h"
 #include "estimator/ransac_estimator.h"
 #include "estimator/run_pipeline.h"
+#include "estimator/score_motion.h"
 #include "estimator/solvers/solver_table.h"
 
 namespace rcme {
@@ -27,6 +28,9 @@ class PipelineEstimator : public RansacEstimator {
   MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
                         Refinements* refinements) const override {
     return FinishPipeline<Engine>(problem, options_, loop, refinements);
+  }
+  ScoredMotion ScoreMotion(const MotionProblem& problem, const RelativePose& start) const override {
+    return ScoreMotionOf<Pipeline, Engine>(problem, options_, start);
   }
   const RansacOptions& options() const override { return options_; }
   std::unique_ptr<RansacEstimator> With(const RansacOptions& options) const override {

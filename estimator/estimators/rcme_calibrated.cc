@@ -152,7 +152,7 @@ std::string MessageOf(const MotionEstimate& e) {
                      e.failure_probability, ReasonOf(e));
 }
 
-class RcmeCalibrated : public MotionEstimator {
+class RcmeCalibrated : public CalibratedEstimator {
  public:
   explicit RcmeCalibrated(const CalibratedOptions& options) : options_(options) { Validate(options); }
 
@@ -200,6 +200,23 @@ class RcmeCalibrated : public MotionEstimator {
       MakeCovarianceRobust(problem, robust, verdict.pose_cov, &estimate);
     }
     return estimate;
+  }
+
+  std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
+                                          const std::vector<RelativePose>& starts) const override {
+    if (RefuseUnsolvable(problem, 6)) return {};
+    const MatchBlocks matches(problem);
+    const MixturePrior prior = PriorOf(problem, options_);
+    const std::vector<ExplainedMode> modes =
+        ExplainMatches(problem, matches, prior, options_, ModesFrom(matches, prior, starts));
+    if (modes.empty()) return {};
+    const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
+    std::vector<WeighedMotion> weighed;
+    for (size_t i = 0; i < modes.size(); ++i) {
+      weighed.push_back(
+          {modes[i].mode.pose, weights.of_modes[i], modes[i].explanation.num_explained, i == weights.answer});
+    }
+    return weighed;
   }
 
  private:

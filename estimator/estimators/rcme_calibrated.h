@@ -18,11 +18,34 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "estimator/calibrated/calibrated_options.h"
 #include "estimator/estimator_model.h"
 
 namespace rcme {
+
+// A motion that explains the matches, with the probability that the estimator gives it.
+struct WeighedMotion {
+  RelativePose cam2_from_cam1;
+  double weight = 0.0;
+  int num_explained = 0;
+  bool is_answer = false;
+};
+
+class CalibratedEstimator : public MotionEstimator {
+ public:
+  // What it would make of these motions, had its search found them and nothing else: the optima that are
+  // reached from them, and the others that follow from these (steps 3 to 6). For those who look into a
+  // result: Estimate never asks it.
+  virtual std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
+                                                  const std::vector<RelativePose>& starts) const = 0;
+};
+
+// The estimator as one that weighs motions; null if it does not.
+inline const CalibratedEstimator* AsCalibrated(const MotionEstimator& estimator) {
+  return dynamic_cast<const CalibratedEstimator*>(&estimator);
+}
 
 // Throws InputError if the options contradict each other.
 std::unique_ptr<MotionEstimator> MakeRcmeCalibrated(const CalibratedOptions& options);

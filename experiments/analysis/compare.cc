@@ -6,6 +6,7 @@
 
 #include "experiments/analysis/scenes_of_run.h"
 #include "parameters/input_error.h"
+#include "parameters/suggestion.h"
 #include "stats/multiple_testing.h"
 #include "stats/score_mean.h"
 #include "stats/stream_median.h"
@@ -20,8 +21,8 @@ size_t IndexOf(const std::string& label, const RunDescription& run) {
     if (estimator.label == label) return labels.size();
     labels.push_back(estimator.label);
   }
-  throw InputError(fmt::format("--against: study '{}' has no estimator '{}'; allowed: {}", run.study, label,
-                               fmt::join(labels, ", ")));
+  throw InputError(fmt::format("--against: study '{}' has no estimator '{}'{}; allowed: {}", run.study, label,
+                               DidYouMean(label, labels), fmt::join(labels, ", ")));
 }
 
 // The pairs of one group, estimator and thing compared, growing trial by trial.

@@ -8,6 +8,7 @@
 
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 #include "stats/isotonic_regression.h"
 
 namespace rcme {
@@ -32,7 +33,8 @@ Groups GroupsBy(const std::string& factor, const RunDescription& run) {
   if (factor.empty()) return {{""}, std::vector<size_t>(run.conditions.size(), 0)};
   const auto place = std::ranges::find(run.factors, factor);
   if (place == run.factors.end()) {
-    throw InputError(fmt::format("--by: study '{}' has no factor {}; allowed: {}", run.study, Quoted(factor),
+    throw InputError(fmt::format("--by: study '{}' has no factor {}{}; allowed: {}", run.study,
+                                 Quoted(factor), DidYouMean(factor, run.factors),
                                  fmt::join(run.factors, ", ")));
   }
   Groups groups;

@@ -19,7 +19,11 @@ Progress::Progress(std::string unit, std::int64_t total, std::int64_t num_done_b
       is_terminal_(isatty(STDERR_FILENO) == 1),
       interval_(is_terminal_ ? 200 : 5000),
       start_(Clock::now()),
-      next_print_(start_ + std::max(interval_, std::chrono::milliseconds(1000))) {}
+      next_print_(start_ + std::max(interval_, std::chrono::milliseconds(1000))) {
+  if (num_done_before > 0)
+    PrintMessage("{} of {} {} are there already, {} are left\n", num_done_before, total, unit_,
+                 total - num_done_before);
+}
 
 Progress::~Progress() {
   if (!has_printed_) return;

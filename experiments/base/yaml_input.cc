@@ -7,6 +7,7 @@
 
 #include "experiments/base/yaml_size.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -62,8 +63,9 @@ std::vector<std::pair<std::string, YAML::Node>> Entries(const Place& place, cons
   for (const auto& entry : map) {
     const std::string key = Scalar(place, entry.first, name);
     if (!known.empty() && known.count(key) == 0) {
-      place.Fail(entry.first, fmt::format("{}: unknown key {}; known keys: {}", name, Quoted(key),
-                                          fmt::join(known, ", ")));
+      place.Fail(entry.first,
+                 fmt::format("{}: unknown key {}{}; known keys: {}", name, Quoted(key),
+                             DidYouMean(key, {known.begin(), known.end()}), fmt::join(known, ", ")));
     }
     if (!seen.insert(key).second)
       place.Fail(entry.first, fmt::format("{}: key {} stands twice", name, Quoted(key)));

@@ -150,7 +150,7 @@ void AddAuditCommand(CLI::App& app) {
       ->delimiter(',');
   command
       ->add_option("--budget", arguments->budget, "quick (minutes) or full (up to hours; says so beforehand)")
-      ->check(CLI::IsMember({"quick", "full"}))
+      ->check(OneOf({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,
                       "folder for the results, made if missing; with --shard the file of the part");

@@ -96,7 +96,10 @@ void AddBudgetCommand(CLI::App& app) {
       "  rcme budget experiments/studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml\n"
       "  rcme run peers_10ms.yaml --out run.sqlite");
   auto arguments = std::make_shared<BudgetArguments>();
-  command->add_option("STUDY", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("STUDY", arguments->study,
+                   "study file (YAML), or the name of one that comes with the program")
+      ->required();
   AddStudyOptions(command, &arguments->changes);
   command->add_option("--time-ms", arguments->time_ms, "mean time of a call, ms")
       ->required()

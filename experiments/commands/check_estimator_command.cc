@@ -111,7 +111,7 @@ void AddCheckEstimatorCommand(CLI::App& app) {
   CLI::Option* only = command->add_option("--only", arguments->only, "checks a,b,...")
                           ->delimiter(',')
                           ->allow_extra_args(false)
-                          ->check(CLI::IsMember(CheckNames()));
+                          ->check(OneOf(CheckNames()));
   command
       ->add_option("--problem", arguments->problem,
                    "only the problem of this name, as a failed check gives it")

@@ -36,5 +36,9 @@ void AddModelChoiceCommand(CLI::App& app);
 void AddValidateCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);
 void AddListCommand(CLI::App& app);
+// Of all commands that were added before.
+void AddHelpCommand(CLI::App& app);
+void AddCompletionCommand(CLI::App& app);
+void AddManCommand(CLI::App& app);
 
 }  // namespace rcme

@@ -5,6 +5,7 @@
 #include "experiments/analysis/comparison_output.h"
 #include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -74,7 +75,7 @@ void AddCompareCommand(CLI::App& app) {
   command->add_flag("--anytime", arguments->options.is_anytime_valid,
                     "intervals and p-values that hold however often somebody has looked");
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(CLI::IsMember({"table", "csv", "json"}))
+      ->check(OneOf({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "estimator/estimator_registry.h"
+#include "experiments/base/shared_files.h"
 #include "experiments/study/estimator_file.h"
 
 namespace rcme {
@@ -9,7 +11,9 @@ namespace rcme {
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice) {
   command
       ->add_option("--estimator-file", choice->file,
-                   "estimator file: name and options from there, in place of a name")
+                   "estimator file, or the name of one that comes with the program (`rcme list "
+                   "estimator_files`): name and "
+                   "options from there, in place of a name")
       ->excludes(name);
   command
       ->add_option(
@@ -19,8 +23,21 @@ void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* 
       ->allow_extra_args(false);
 }
 
+namespace {
+
+// Whether only a file that comes with the program has this name.
+bool IsNameOfFile(const std::string& name) {
+  if (std::ranges::count(EstimatorRegistry(), name, &EstimatorEntry::name) > 0) return false;
+  const std::vector<std::string> files = NamesIn(SharedFolder::kEstimators);
+  return std::ranges::count(files, name) > 0;
+}
+
+}  // namespace
+
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
-  EstimatorSpec spec = choice.file ? LoadEstimatorFile(*choice.file) : DefaultEstimator(choice.name);
+  EstimatorSpec spec = choice.file                 ? LoadEstimatorFile(*choice.file)
+                       : IsNameOfFile(choice.name) ? LoadEstimatorFile(choice.name)
+                                                   : DefaultEstimator(choice.name);
   Settings options;
   for (const std::string& text : choice.overrides) {
     const size_t equals = std::min(text.find('='), text.size());

@@ -101,7 +101,10 @@ void AddExportCommand(CLI::App& app) {
       "  python3 mine.py < problems/problems.jsonl > answers.jsonl\n"
       "  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite");
   auto arguments = std::make_shared<ExportArguments>();
-  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("study", arguments->study,
+                   "study file (YAML), or the name of one that comes with the program")
+      ->required();
   command->add_option("-o,--out", arguments->out, "folder, made if missing")->required();
   AddStudyOptions(command, &arguments->changes);
   command->add_option("--trials", arguments->trials, "trials per condition")

@@ -19,7 +19,7 @@ void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOpt
             }
           },
           "what finds and describes key points; default: sift")
-      ->check(CLI::IsMember(names));
+      ->check(OneOf(names));
   command
       ->add_option("--max-features", detector->max_features,
                    "keep the strongest key points of an image; 0: all that sift and akaze find, 2,000 of orb")

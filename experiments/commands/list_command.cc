@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <set>
@@ -9,13 +8,14 @@
 #include "estimator/estimator_registry.h"
 #include "experiments/analysis/summarize.h"
 #include "experiments/base/columns.h"
+#include "experiments/base/shared_files.h"
+#include "experiments/base/yaml_input.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
-#include "experiments/study/study_file.h"
 #include "experiments/study/study_keys.h"
-#include "parameters/input_error.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"
 #include "simulator/noise_registry.h"
@@ -122,21 +122,31 @@ Rows ListClaims() {
   return rows;
 }
 
+// The value of a key of a shared file, as it stands there: the program may not be able to run it, because it
+// lacks a library, say.
+std::string ValueIn(SharedFolder folder, const std::string& name, const std::string& key) {
+  const std::string path = PathOf(folder) + "/" + name + ".yaml";
+  const FileKind kind = {"file", "a file of YAML"};
+  const YAML::Node value = ParseYaml(ReadInputText(path, kind), path, kind)[key];
+  return value && value.IsScalar() ? value.Scalar() : "";
+}
+
 Rows ListStudies() {
-  const std::filesystem::path folder = "experiments/studies";
-  if (!std::filesystem::is_directory(folder)) {
-    throw InputError("list studies: no folder experiments/studies here; run it from the project's root");
-  }
-  std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
-  }
-  std::sort(paths.begin(), paths.end());
   Rows rows = {{"study", "what it asks"}};
-  for (const std::string& path : paths) {
-    std::string description = LoadStudy(path).description;
+  for (const std::string& name : NamesIn(SharedFolder::kStudies)) {
+    std::string description = ValueIn(SharedFolder::kStudies, name, "description");
     std::replace(description.begin(), description.end(), '\n', ' ');
-    rows.push_back({path, description});
+    rows.push_back({name, description});
+  }
+  return rows;
+}
+
+Rows ListEstimatorFiles() {
+  Rows rows = {{"estimator file", "estimator", "label"}};
+  for (const std::string& name : NamesIn(SharedFolder::kEstimators)) {
+    const std::string estimator = ValueIn(SharedFolder::kEstimators, name, "name");
+    const std::string label = ValueIn(SharedFolder::kEstimators, name, "label");
+    rows.push_back({name, estimator, label.empty() ? estimator : label});
   }
   return rows;
 }
@@ -145,26 +155,36 @@ Rows ListStudies() {
 
 void AddListCommand(CLI::App& app) {
   using Lister = std::function<Rows()>;
-  static const std::vector<std::pair<std::string, Lister>> kLists = {
-      {"estimators", ListEstimators}, {"options", ListOptions}, {"scenes", ListScenes},
-      {"cameras", ListCameras},       {"motions", ListMotions}, {"noise", ListNoise},
-      {"outliers", ListOutliers},     {"keys", ListKeys},       {"settings", ListSettings},
-      {"quantities", ListQuantities}, {"claims", ListClaims},   {"studies", ListStudies}};
+  static const std::vector<std::pair<std::string, Lister>> kLists = {{"estimators", ListEstimators},
+                                                                     {"options", ListOptions},
+                                                                     {"scenes", ListScenes},
+                                                                     {"cameras", ListCameras},
+                                                                     {"motions", ListMotions},
+                                                                     {"noise", ListNoise},
+                                                                     {"outliers", ListOutliers},
+                                                                     {"keys", ListKeys},
+                                                                     {"settings", ListSettings},
+                                                                     {"quantities", ListQuantities},
+                                                                     {"claims", ListClaims},
+                                                                     {"studies", ListStudies},
+                                                                     {"estimator_files", ListEstimatorFiles}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
   CLI::App* command = app.add_subcommand(
       "list",
       "What there is: estimators and their options; scenes, cameras, motions, noise and outliers with their "
-      "settings; keys of a study, quantities, claims, studies");
+      "settings; keys of a study, quantities, claims; studies and estimator files that come with the "
+      "program");
   auto what = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("table");
-  command->add_option("what", *what, "one list; default: all but studies")->check(CLI::IsMember(names));
+  command->add_option("what", *what, "one list; default: all but studies and estimator_files")
+      ->check(OneOf(names));
   command->add_option("--format", *format, "table: columns for a terminal; markdown: as in docs/reference")
-      ->check(CLI::IsMember({"table", "markdown"}))
+      ->check(OneOf({"table", "markdown"}))
       ->capture_default_str();
   command->callback([what, format] {
     for (const auto& [name, lister] : kLists) {
-      if (what->empty() ? name == "studies" : name != *what) continue;
+      if (what->empty() ? name == "studies" || name == "estimator_files" : name != *what) continue;
       fmt::print("{}\n", *format == "table" ? FormatColumns(lister()) : FormatMarkdown(lister()));
     }
   });

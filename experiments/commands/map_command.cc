@@ -133,7 +133,8 @@ void AddMapCommand(CLI::App& app) {
       "  rcme map --shard 3/64 --out parts/3.json        one of 64 machines' share (docs/many_machines.md)\n"
       "  rcme map --merge parts/*.json --out map         all of them: the bytes of one machine");
   auto arguments = std::make_shared<MapArguments>();
-  command->add_option("study", arguments->study, "study file (YAML); without one: the built-in scene");
+  command->add_option("study", arguments->study,
+                      "study file (YAML) or its name; without one: the built-in scene");
   command
       ->add_option("-o,--out", arguments->out,
                    "folder for the tables; made if it is missing; with --shard the file of the part")

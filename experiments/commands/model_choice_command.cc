@@ -61,7 +61,10 @@ void AddModelChoiceCommand(CLI::App& app) {
       "\\\n"
       "      --where outlier_ratio=0.2");
   auto arguments = std::make_shared<ModelChoiceArguments>();
-  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("study", arguments->study,
+                   "study file (YAML), or the name of one that comes with the program")
+      ->required();
   command
       ->add_option("-o,--out", arguments->out,
                    "folder for model_choice.txt, .csv and .json; made if it is missing")

@@ -1,14 +1,17 @@
-// Checks of options that are numbers, so that they are read as in files: the whole text, decimal, finite.
+// Checks of options: numbers, read as in files (the whole text, decimal, finite), and words.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "parameters/parameter.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 
@@ -32,6 +35,16 @@ inline CLI::Validator WholeNumberIn(std::int64_t min,
                                     std::int64_t max = std::numeric_limits<std::int64_t>::max()) {
   return NumberValidator<long long>(ParseInteger, min, max,
                                     fmt::format("a whole number in [{}, {}]", min, max));
+}
+
+// For Option::check: one of some words.
+inline CLI::Validator OneOf(const std::vector<std::string>& words) {
+  const std::string allowed = fmt::format("{}", fmt::join(words, ", "));
+  const auto check = [=](const std::string& text) -> std::string {
+    if (std::ranges::count(words, text) > 0) return {};
+    return fmt::format("'{}' is not allowed{}; give one of: {}", text, DidYouMean(text, words), allowed);
+  };
+  return {check, "{" + fmt::format("{}", fmt::join(words, ",")) + "}"};
 }
 
 inline CLI::Validator NumberIn(Parameter::Range range = {}) {

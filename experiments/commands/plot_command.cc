@@ -6,6 +6,7 @@
 #include "experiments/commands/draw_figures.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -39,10 +40,11 @@ void RunPlot(const std::vector<std::string>& words) {
   if (kind == Kinds().end()) {
     std::vector<std::string> names;
     for (const Kind& known : Kinds()) names.push_back(known.name);
-    throw InputError(
-        fmt::format("plot: {}; give one of: {}",
-                    words.empty() ? "which kind of figure?" : Quoted(words.front()) + " is no kind of figure",
-                    fmt::join(names, ", ")));
+    throw InputError(fmt::format(
+        "plot: {}; give one of: {}",
+        words.empty() ? "which kind of figure?"
+                      : Quoted(words.front()) + " is no kind of figure" + DidYouMean(words.front(), names),
+        fmt::join(names, ", ")));
   }
   const ScriptEnd end = RunPlotScript(kind->name, {words.begin() + 1, words.end()}, ScriptOutput::kShown);
   if (end == ScriptEnd::kNoPython) ThrowNoPython("plot");

@@ -120,13 +120,16 @@ void AddRareCommand(CLI::App& app) {
       "  rcme rare STUDY --method stratified --trials 1000000 --out strata\n"
       "  rcme rare STUDY --repeat 200 --known-rate 1.1e-3 --out coverage     do the intervals hold it?");
   auto arguments = std::make_shared<RareArguments>();
-  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("study", arguments->study,
+                   "study file (YAML), or the name of one that comes with the program")
+      ->required();
   command
       ->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json; made if it is missing")
       ->required();
   AddStudyOptions(command, &arguments->changes);
   command->add_option("--method", arguments->method, "splitting (default) or stratified")
-      ->check(CLI::IsMember({"splitting", "stratified"}));
+      ->check(OneOf({"splitting", "stratified"}));
   command
       ->add_option("--trials", arguments->stratified.num_trials,
                    "stratified: trials drawn per condition (default: 100000)")

@@ -6,6 +6,7 @@
 #include "experiments/analysis/forecast_output.h"
 #include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 
 namespace rcme {
 
@@ -39,7 +40,7 @@ void AddReliabilityCommand(CLI::App& app) {
   command->add_option("--by", arguments->by,
                       "a factor of the study: one line per level, not one for all trials");
   command->add_option("--format", arguments->format, "table (for people) or json (for programs and figures)")
-      ->check(CLI::IsMember({"table", "json"}))
+      ->check(OneOf({"table", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {

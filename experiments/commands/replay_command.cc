@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "experiments/answer/why.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
@@ -86,6 +87,7 @@ void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t
                                                    : AreEqual(stored[e], result.records[e]) ? "the same"
                                                                                             : "DIFFERENT");
   }
+  fmt::print("{}", WhyAsText(plan, result));
 }
 
 }  // namespace

@@ -132,7 +132,10 @@ void Run(const RunArguments& arguments) {
 void AddRunCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("run", "Run a study and keep every trial in a result file");
   auto arguments = std::make_shared<RunArguments>();
-  command->add_option("study", arguments->study, "study file (YAML)")->required();
+  command
+      ->add_option("study", arguments->study,
+                   "study file (YAML), or the name of one that comes with the program")
+      ->required();
   command
       ->add_option("-o,--out", arguments->out,
                    "result file (SQLite); a run that was cut off is resumed, another study is refused")
@@ -164,7 +167,7 @@ void AddRunCommand(CLI::App& app) {
   command
       ->add_option("--until-event", arguments->until_event,
                    "whose rate: failure, refusal or failure_or_refusal")
-      ->check(CLI::IsMember(EventNames()))
+      ->check(OneOf(EventNames()))
       ->capture_default_str()
       ->needs(until);
   command->add_option("--max-trials", arguments->max_trials, "most trials per condition of --until")
@@ -186,7 +189,7 @@ void AddRunCommand(CLI::App& app) {
           "--keep", arguments->keep,
           "all: every trial; counts: what `rcme summarize` needs of all, exactly, with a few trials as "
           "they are, in a file that does not grow with their number")
-      ->check(CLI::IsMember({"all", "counts"}))
+      ->check(OneOf({"all", "counts"}))
       ->capture_default_str()
       ->excludes(until)
       ->excludes(repeats);

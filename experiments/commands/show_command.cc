@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "experiments/analysis/trial_output.h"
+#include "experiments/answer/why.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/message.h"
 #include "experiments/base/scratch_folder.h"
@@ -16,6 +17,7 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/result_file/result_store.h"
 #include "parameters/input_error.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -57,8 +59,8 @@ std::vector<size_t> EstimatorsOf(const Study& study, const std::vector<std::stri
     if (spec == study.estimators.end()) {
       std::vector<std::string> allowed;
       for (const EstimatorSpec& other : study.estimators) allowed.push_back(other.label);
-      throw InputError(fmt::format("--estimators: study '{}' has no estimator '{}'; allowed: {}", study.name,
-                                   label, fmt::join(allowed, ", ")));
+      throw InputError(fmt::format("--estimators: study '{}' has no estimator '{}'{}; allowed: {}",
+                                   study.name, label, DidYouMean(label, allowed), fmt::join(allowed, ", ")));
     }
     const auto e = static_cast<size_t>(spec - study.estimators.begin());
     if (std::ranges::count(chosen, e) == 0) chosen.push_back(e);
@@ -102,7 +104,7 @@ void Show(const ShowArguments& arguments, bool has_out) {
   if (drawn.empty()) drawn = {MostTelling(plan, result)};
 
   const std::string json = TrialAsJson(plan, result, drawn);
-  fmt::print("{}", TrialAsText(plan, result));
+  fmt::print("{}{}", TrialAsText(plan, result), WhyAsText(plan, result));
   if (!arguments.json.empty()) WriteFileWhole(arguments.json, json);
   const ScratchFolder folder;
   WriteFileWhole(folder.path() + "/trial.json", json);
@@ -124,7 +126,10 @@ void AddShowCommand(CLI::App& app) {
       "what the estimator took it for, and in image 2 the epipolar lines of up to eight numbered points,\n"
       "of the truth (broad) and of the estimate (dashed). Below, the scene from above, how hard the\n"
       "problem is, and all estimators of the study in a table. Without --estimators one is drawn: the\n"
-      "first that failed or refused, else the first of the study. Standard output gets a summary.\n"
+      "first that failed or refused, else the first of the study. Standard output gets a summary, and why\n"
+      "answers are wrong: whether the true motion, had it been found, would have scored better than the\n"
+      "answer by the estimator's own score (the search failed: more samples help) or not (the model cannot\n"
+      "tell: they do not), with the parallax, the planar share and the runner-up.\n"
       "\n"
       "Examples:\n"
       "  rcme show experiments/studies/failure_vs_outliers.yaml --condition 6 --trial 17\n"
@@ -132,7 +137,8 @@ void AddShowCommand(CLI::App& app) {
       "  rcme show study.yaml --condition 0 --trial 3 --seed 5 --set motion=forward --set outlier_ratio=0.4\n"
       "The trials worth a look: `rcme report` names the first failure and refusal of every condition.");
   auto arguments = std::make_shared<ShowArguments>();
-  command->add_option("study", arguments->study, "study file (YAML) or result file of `rcme run`")
+  command
+      ->add_option("study", arguments->study, "study file (YAML) or its name, or result file of `rcme run`")
       ->required();
   command
       ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")

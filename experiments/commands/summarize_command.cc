@@ -9,6 +9,7 @@
 #include "experiments/analysis/trial_table.h"
 #include "experiments/base/file_output.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -90,7 +91,7 @@ void AddSummarizeCommand(CLI::App& app) {
           ->add_option(
               "--format", arguments->format,
               "table (for people), csv or json (every quantity), latex (a table of a paper, booktabs)")
-          ->check(CLI::IsMember({"table", "csv", "json", "latex"}))
+          ->check(OneOf({"table", "csv", "json", "latex"}))
           ->capture_default_str();
   command
       ->add_option("--quantities", arguments->quantities,
@@ -104,7 +105,7 @@ void AddSummarizeCommand(CLI::App& app) {
       ->allow_extra_args(false)
       ->needs(format);
   command->add_option("--raw", arguments->raw, "csv: every trial in a row of its own, nothing summarized")
-      ->check(CLI::IsMember({"csv"}))
+      ->check(OneOf({"csv"}))
       ->excludes(format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->add_flag("--times", arguments->with_times,

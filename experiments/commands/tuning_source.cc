@@ -11,7 +11,10 @@
 namespace rcme {
 
 void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
-  command->add_option("study", arguments->study, "study file (YAML) with a block `tune`")->required();
+  command
+      ->add_option("study", arguments->study,
+                   "study file (YAML) with a block `tune`, or the name of one (`rcme list studies`)")
+      ->required();
   AddStudyOptions(command, &arguments->changes);
   command
       ->add_option(

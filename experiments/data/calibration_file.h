@@ -15,7 +15,7 @@ SettingHelp CalibrationHelp();
 // Where the settings choose `cameras: from_file`: the same with `cameras: own_intrinsics` and the intrinsics
 // that the file of `calibration` holds, so that they, not its path, are what a study is known by. Other
 // settings as they are. The file is a match file, of which only # size1, # size2, # K1_fx_fy_cx_cy and #
-// K2_fx_fy_cx_cy count; its path is relative to the working directory. Throws InputError that names file,
+// K2_fx_fy_cx_cy count; its path is seen from the working directory. Throws InputError that names file,
 // line and key.
 Settings WithCalibration(const Settings& settings);
 

@@ -9,6 +9,11 @@
 #include "experiments/data/match_folder.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
+#include "simulator/camera_registry.h"
+#include "simulator/motion_registry.h"
+#include "simulator/noise_registry.h"
+#include "simulator/outlier_registry.h"
 #include "simulator/scene_registry.h"
 
 namespace rcme {
@@ -16,9 +21,21 @@ namespace {
 
 std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
   return {Parameter::Text("folder", &settings.folder, "a folder of match files",
-                          "folder with *.csv or *.csv.gz, relative to the working directory"),
+                          "folder with *.csv or *.csv.gz, seen from the study's folder"),
           Parameter::Real("sigma_px", &settings.sigma_px, {1e-9, 1000.0}, "px",
                           "noise standard deviation that the estimators assume")};
+}
+
+// Adds those entries of a registry whose models have the parameter.
+template <typename Entry>
+void AddChoicesWith(const std::string& key, const std::string& choice, const std::vector<Entry>& registry,
+                    std::vector<std::string>* choices) {
+  std::vector<std::string> names;
+  for (const Entry& entry : registry) {
+    const auto model = entry.make();
+    if (std::ranges::count(model->Parameters(), key, &Parameter::name) > 0) names.push_back(entry.name);
+  }
+  if (!names.empty()) choices->push_back(fmt::format("{}: {}", choice, fmt::join(names, " or ")));
 }
 
 // The keys that choose by name, with the field of the choice.
@@ -51,8 +68,8 @@ Choices ChoicesIn(const Settings& settings) {
 [[noreturn]] void ThrowUnknownScene(const std::string& scene) {
   std::vector<std::string> names = {kMatchFilesScene};
   for (const SceneEntry& entry : SceneRegistry()) names.push_back(entry.name);
-  throw InputError(
-      fmt::format("scene: {} is not allowed; give one of: {}", Quoted(scene), fmt::join(names, ", ")));
+  throw InputError(fmt::format("scene: {} is not allowed{}; give one of: {}", Quoted(scene),
+                               DidYouMean(scene, names), fmt::join(names, ", ")));
 }
 
 [[noreturn]] void ThrowUnknownKey(const std::string& key, const std::string& scene,
@@ -61,8 +78,9 @@ Choices ChoicesIn(const Settings& settings) {
   for (const auto& [name, field] : ChoiceKeys()) names.push_back(name);
   if (scene == kMatchFilesScene) names.resize(1);
   for (const Parameter& parameter : parameters) names.push_back(parameter.name());
-  throw InputError(
-      fmt::format("unknown key {} for scene {}; known keys: {}", Quoted(key), scene, fmt::join(names, ", ")));
+  const std::string needs = ChoicesWith(key);
+  throw InputError(fmt::format("unknown key {} for scene {}{}; known keys: {}", Quoted(key), scene,
+                               needs.empty() ? DidYouMean(key, names) : needs, fmt::join(names, ", ")));
 }
 
 // The parameters of the settings' choices: of a folder of match files, or of a simulation.
@@ -98,6 +116,18 @@ struct Configured {
 };
 
 }  // namespace
+
+std::string ChoicesWith(const std::string& key) {
+  std::vector<std::string> choices;
+  AddChoicesWith(key, "scene", SceneRegistry(), &choices);
+  AddChoicesWith(key, "cameras", CameraRegistry(), &choices);
+  AddChoicesWith(key, "motion", MotionRegistry(), &choices);
+  AddChoicesWith(key, "noise", NoiseRegistry(), &choices);
+  AddChoicesWith(key, "outliers", OutlierRegistry(), &choices);
+  if (key == kCalibrationKey) choices.push_back(fmt::format("cameras: {}", kCamerasFromFile));
+  if (key == "folder") choices.push_back(fmt::format("scene: {}", kMatchFilesScene));
+  return choices.empty() ? "" : fmt::format(" (needs {})", fmt::join(choices, ", or "));
+}
 
 bool IsChoice(const std::string& key) {
   return std::ranges::any_of(ChoiceKeys(), [&](const auto& choice) { return choice.first == key; });

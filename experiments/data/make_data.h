@@ -35,6 +35,10 @@ Settings DistinctiveSettings(const Settings& settings, bool of_scene);
 // keys there are.
 bool IsChoice(const std::string& key);
 
+// " (needs cameras: pinhole)": the choices that bring a key, for messages about one that is not there; empty:
+// none does.
+std::string ChoicesWith(const std::string& key);
+
 // Every key a `data:` block with these settings may hold, with its value.
 std::vector<SettingHelp> DescribeSettings(const Settings& settings);
 

@@ -1,5 +1,6 @@
 #include "experiments/study/estimator_file.h"
 
+#include "experiments/base/shared_files.h"
 #include "experiments/study/estimator_entry.h"
 
 namespace rcme {
@@ -16,7 +17,8 @@ constexpr const char* kHowToUse =
 
 }  // namespace
 
-EstimatorSpec LoadEstimatorFile(const std::string& path) {
+EstimatorSpec LoadEstimatorFile(const std::string& name) {
+  const std::string path = FindFile(name, SharedFolder::kEstimators, EstimatorFileKind());
   return ParseEstimatorFile(ReadInputText(path, EstimatorFileKind()), path);
 }
 

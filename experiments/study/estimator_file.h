@@ -17,8 +17,9 @@ namespace rcme {
 // Where an estimator comes from, in the words of whoever wrote its file; each key once.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
-// Reads and validates an estimator file. Throws InputError as LoadStudy does.
-EstimatorSpec LoadEstimatorFile(const std::string& path);
+// Reads and validates an estimator file: a path, or the name of one that comes with the program
+// (base/shared_files.h). Throws InputError as LoadStudy does.
+EstimatorSpec LoadEstimatorFile(const std::string& name);
 
 // The same from text; `path` is what the messages call it.
 EstimatorSpec ParseEstimatorFile(const std::string& yaml, const std::string& path);

@@ -7,12 +7,15 @@
 #include <limits>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/base/shared_files.h"
+#include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -69,7 +72,7 @@ EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
     if (key == "label") label = Name(place, value, key);
     if (key != "file") continue;
     const std::filesystem::path path = std::filesystem::path(place.path()).parent_path() / text;
-    place.At(value, [&] { spec = LoadEstimatorFile(path.string()); });
+    place.At(value, [&] { spec = LoadEstimatorFile(std::filesystem::exists(path) ? path.string() : text); });
   }
   if (!label.empty()) spec.label = label;
   return spec;
@@ -211,8 +214,8 @@ EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
     if (spec.label == label) return spec;
     labels.push_back(spec.label);
   }
-  throw InputError(fmt::format("--set: the study has no estimator {}; its estimators: {}", Quoted(label),
-                               fmt::join(labels, ", ")));
+  throw InputError(fmt::format("--set: the study has no estimator {}{}; its estimators: {}", Quoted(label),
+                               DidYouMean(label, labels), fmt::join(labels, ", ")));
 }
 
 [[noreturn]] void ThrowUnknownOverride(const Study& study, const std::string& key) {
@@ -222,11 +225,15 @@ EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
       if (!IsIn(options, option)) options.push_back(option);
     }
   }
-  throw InputError(
-      fmt::format("--set: unknown key {}; known keys: of the data: {}; failure bounds: {}; options "
-                  "of the estimators: {}",
-                  Quoted(key), fmt::join(DataKeys(study), ", "), fmt::join(BoundKeys(), ", "),
-                  options.empty() ? "none" : fmt::format("{}", fmt::join(options, ", "))));
+  std::vector<std::string> all = options;
+  for (const std::vector<std::string>& keys : {DataKeys(study), BoundKeys()})
+    all.insert(all.end(), keys.begin(), keys.end());
+  const std::string needs = ChoicesWith(key);
+  throw InputError(fmt::format(
+      "--set: unknown key {}{}; known keys: of the data: {}; failure bounds: {}; options "
+      "of the estimators: {}",
+      Quoted(key), needs.empty() ? DidYouMean(key, all) : needs, fmt::join(DataKeys(study), ", "),
+      fmt::join(BoundKeys(), ", "), options.empty() ? "none" : fmt::format("{}", fmt::join(options, ", "))));
 }
 
 // An estimator that states the probability of a failure has bounds of its own: the study's, where its entry
@@ -242,7 +249,29 @@ void FollowFailureBounds(const YAML::Node& entries, Study* study) {
   }
 }
 
-Study ReadStudy(const std::string& yaml, const std::string& path) {
+// The settings whose values are paths.
+constexpr const char* kPathKeys[] = {"folder", kCalibrationKey};
+
+// A path in a study is seen from the study's folder.
+std::string SeenFrom(const std::filesystem::path& folder, const std::string& path) {
+  if (folder.empty() || path.empty() || std::filesystem::path(path).is_absolute()) return path;
+  return (folder / path).lexically_normal().string();
+}
+
+void SeePathsFrom(const std::filesystem::path& folder, Study* study) {
+  const auto is_path = [](const std::string& key) { return std::ranges::count(kPathKeys, key) > 0; };
+  for (auto& [key, value] : study->data) {
+    if (is_path(key)) value = SeenFrom(folder, value);
+  }
+  for (Factor& factor : study->factors) {
+    for (std::string& level : factor.levels) {
+      if (is_path(factor.key)) level = SeenFrom(folder, level);
+    }
+  }
+}
+
+// `folder`: that the paths of its data are seen from.
+Study ReadStudy(const std::string& yaml, const std::string& path, const std::filesystem::path& folder) {
   const Place place(path);
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
   Study study;
@@ -281,6 +310,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
   }
   if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
+  SeePathsFrom(folder, &study);
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
@@ -289,9 +319,12 @@ Study ReadStudy(const std::string& yaml, const std::string& path) {
 
 }  // namespace
 
-Study LoadStudy(const std::string& path) { return ParseStudy(ReadInputText(path, StudyFileKind()), path); }
+Study LoadStudy(const std::string& name) {
+  const std::string path = FindFile(name, SharedFolder::kStudies, StudyFileKind());
+  return ReadStudy(ReadInputText(path, StudyFileKind()), path, std::filesystem::path(path).parent_path());
+}
 
-Study ParseStudy(const std::string& yaml, const std::string& path) { return ReadStudy(yaml, path); }
+Study ParseStudy(const std::string& yaml, const std::string& path) { return ReadStudy(yaml, path, {}); }
 
 void Override(Study* study, const std::string& key, const std::string& value) {
   const size_t dot = key.rfind('.');

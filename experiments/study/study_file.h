@@ -26,12 +26,15 @@
 
 namespace rcme {
 
-// Reads and validates a study, and the estimator files it names, seen from its own folder. Throws InputError
+// Reads and validates a study, a path or the name of one that comes with the program (base/shared_files.h).
+// Every path in it, of estimator files, answers, a folder of pairs or a calibration, is seen from its own
+// folder; an estimator file may also be one that comes with the program, by its name. Throws InputError
 // with file, line, key and what is allowed for anything that is not: unknown or repeated keys, wrong types,
 // values out of range, empty factors, unknown scenes and estimators.
-Study LoadStudy(const std::string& path);
+Study LoadStudy(const std::string& name);
 
-// The same from text; `path` is what the messages call it.
+// The same from text; `path` is what the messages call it. The paths of its data are seen from the working
+// directory, as those of a result file are.
 Study ParseStudy(const std::string& yaml, const std::string& path);
 
 // One `--set key=value`: a data key; a failure bound, of the study and of all estimators that have it; or an

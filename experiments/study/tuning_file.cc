@@ -8,6 +8,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/study/study_keys.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -129,8 +130,9 @@ const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<Esti
     if (spec.label == tuning.estimator) return spec;
     labels.push_back(spec.label);
   }
-  throw InputError(fmt::format("tune: estimator: '{}' is no label of the study; give one of: {}",
-                               tuning.estimator, fmt::join(labels, ", ")));
+  throw InputError(fmt::format("tune: estimator: '{}' is no label of the study{}; give one of: {}",
+                               tuning.estimator, DidYouMean(tuning.estimator, labels),
+                               fmt::join(labels, ", ")));
 }
 
 Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<EstimatorSpec>& estimators) {

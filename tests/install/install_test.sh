@@ -8,6 +8,16 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$cmake" --install "$build" --prefix "$scratch/prefix" >/dev/null
 "$scratch/prefix/bin/rcme" --version
+
+# Studies and estimator files by their names, manual pages and completion, wherever the program was put.
+(cd / && "$scratch/prefix/bin/rcme" list studies | grep -q '^failure_vs_outliers ')
+test -s "$scratch/prefix/share/rcme/estimators/rcme_tuned.yaml"
+rm "$scratch/prefix/share/rcme/studies/failure_vs_outliers.yaml"
+if (cd / && "$scratch/prefix/bin/rcme" list studies | grep -q '^failure_vs_outliers '); then exit 1; fi  # these, not the source tree's
+grep -q 'RCME' "$scratch/prefix/share/man/man1/rcme-run.1"
+grep -q summarize "$scratch/prefix/share/bash-completion/completions/rcme"
+test -s "$scratch/prefix/share/zsh/site-functions/_rcme"
+test -s "$scratch/prefix/share/fish/vendor_completions.d/rcme.fish"
 "$cmake" -G Ninja -S "$(dirname "$0")/consumer" -B "$scratch/consumer" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
   -DCMAKE_BUILD_TYPE=Release >/dev/null
 "$cmake" --build "$scratch/consumer"

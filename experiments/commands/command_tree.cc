@@ -1,0 +1,116 @@
+#include "experiments/commands/command_tree.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "estimator/estimator_registry.h"
+#include "experiments/base/shared_files.h"
+#include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
+
+namespace rcme {
+namespace {
+
+std::vector<const CLI::App*> CommandsOf(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+// "{a,b,c}" as OneOf (number_option.h) describes what it allows; empty: something else.
+std::vector<std::string> WordsIn(const std::string& allowed) {
+  std::vector<std::string> words;
+  if (!allowed.starts_with('{') || !allowed.ends_with('}')) return words;
+  std::string word;
+  for (const char c : allowed.substr(1)) {
+    if (c != ',' && c != '}') {
+      word += c;
+    } else {
+      words.push_back(std::exchange(word, {}));
+    }
+  }
+  return words;
+}
+
+std::vector<std::string> EstimatorNames() {
+  std::vector<std::string> names;
+  for (const EstimatorEntry& entry : EstimatorRegistry()) names.push_back(entry.name);
+  return names;
+}
+
+std::vector<std::string> ValuesOf(const CLI::Option& option) {
+  const std::string name = option.get_single_name();
+  if (name == "estimator") return EstimatorNames();
+  if (name == "estimator-file" || name == "add-estimator") return NamesIn(SharedFolder::kEstimators);
+  if (name == "study") return NamesIn(SharedFolder::kStudies);
+  for (const std::string& part : {option.get_type_name()}) {
+    const size_t begin = part.find('{');
+    if (begin != std::string::npos) return WordsIn(part.substr(begin));
+  }
+  return {};
+}
+
+DescribedOption DescribedOptionOf(const CLI::Option& option) {
+  DescribedOption described;
+  for (const std::string& name : option.get_snames()) described.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) described.names.push_back("--" + name);
+  described.is_positional = described.names.empty();
+  if (described.is_positional) described.names.push_back(option.get_name(true));
+  described.description = option.get_description();
+  described.default_value = option.get_default_str();
+  described.is_required = option.get_required();
+  described.takes_value = option.get_items_expected_max() > 0;
+  if (described.takes_value) described.values = ValuesOf(option);
+  return described;
+}
+
+std::vector<std::string> OptionNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const DescribedOption& option : Described(command).options) {
+    if (!option.is_positional) names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  return names;
+}
+
+}  // namespace
+
+DescribedCommand Described(const CLI::App& command) {
+  DescribedCommand described{
+      command.get_parent() ? command.get_name() : "", command.get_description(), command.get_footer(), {}};
+  for (const CLI::Option* option : command.get_options())
+    described.options.push_back(DescribedOptionOf(*option));
+  std::ranges::stable_partition(described.options, [](const DescribedOption& o) { return o.is_positional; });
+  return described;
+}
+
+std::vector<DescribedCommand> DescribedTree(const CLI::App& app) {
+  std::vector<DescribedCommand> commands;
+  for (const CLI::App* command : CommandsOf(app)) commands.push_back(Described(*command));
+  std::ranges::sort(commands, {}, &DescribedCommand::name);
+  commands.insert(commands.begin(), Described(app));
+  return commands;
+}
+
+std::vector<std::string> CommandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : CommandsOf(app)) names.push_back(command->get_name());
+  return names;
+}
+
+std::string SuggestionsFor(const CLI::App& app) {
+  std::string sentences;
+  const auto suggest = [&](const CLI::App& command, const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+      const bool is_option = word.starts_with('-');
+      const std::string bare = word.substr(0, word.find('='));
+      const std::string suggestion =
+          is_option ? DidYouMean(bare, OptionNames(command)) : DidYouMean(word, CommandNames(app));
+      if (!suggestion.empty() && (is_option || app.get_subcommands().empty()))
+        sentences += Quoted(word) + suggestion + "\n";
+    }
+  };
+  for (const CLI::App* command : app.get_subcommands()) suggest(*command, command->remaining());
+  if (app.get_subcommands().empty()) suggest(app, app.remaining());
+  return sentences;
+}
+
+}  // namespace rcme

@@ -1,0 +1,156 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "experiments/commands/command_tree.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+
+namespace rcme {
+namespace {
+
+std::string Joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
+
+// The first sentence of a description, without what a shell's quotes would stumble over.
+std::string InShort(const std::string& text) {
+  std::string words = text.substr(0, std::min(text.find('\n'), text.find("; ")));
+  std::ranges::replace(words, ':', ',');
+  std::erase_if(words,
+                [](char c) { return std::string_view("'`\"[]\\$").find(c) != std::string_view::npos; });
+  return words;
+}
+
+std::vector<std::string> NamesOfOptions(const DescribedCommand& command) {
+  std::vector<std::string> names;
+  for (const DescribedOption& option : command.options) {
+    if (!option.is_positional) names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  return names;
+}
+
+// What its positional arguments may be, beside files.
+std::vector<std::string> PositionalValues(const DescribedCommand& command) {
+  std::vector<std::string> values;
+  for (const DescribedOption& option : command.options) {
+    if (option.is_positional) values.insert(values.end(), option.values.begin(), option.values.end());
+  }
+  return values;
+}
+
+// The program itself stands first; its arguments are the commands.
+std::vector<DescribedCommand> TreeFor(const CLI::App& app) {
+  std::vector<DescribedCommand> tree = DescribedTree(app);
+  for (DescribedCommand& command : tree) {
+    if (command.name == "help") command.options.front().values = CommandNames(app);
+  }
+  return tree;
+}
+
+std::string Bash(const CLI::App& app) {
+  const std::vector<DescribedCommand> tree = TreeFor(app);
+  std::string text =
+      "# Completion of rcme for bash, made by `rcme completion bash`.\n"
+      "_rcme() {\n"
+      "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"
+      "  local command=${COMP_WORDS[1]} options= values=\n"
+      "  [ \"$COMP_CWORD\" -eq 1 ] && command=\n"
+      "  case $command in\n";
+  for (const DescribedCommand& command : tree) {
+    const std::vector<std::string> values =
+        command.name.empty() ? CommandNames(app) : PositionalValues(command);
+    text += fmt::format("    {})\n      options='{}'\n      values='{}'\n      case $previous in\n",
+                        command.name.empty() ? "''" : command.name, Joined(NamesOfOptions(command)),
+                        Joined(values));
+    for (const DescribedOption& option : command.options) {
+      if (option.is_positional || !option.takes_value) continue;
+      text += fmt::format("        {}) options= values='{}' ;;\n", fmt::join(option.names, "|"),
+                          Joined(option.values));
+    }
+    text += "      esac ;;\n";
+  }
+  return text +
+         "  esac\n"
+         "  case $current in\n"
+         "    -*) COMPREPLY=($(compgen -W \"$options\" -- \"$current\")) ;;\n"
+         "    *) COMPREPLY=($(compgen -W \"$values\" -- \"$current\"))\n"
+         "       [ -n \"$command\" ] && COMPREPLY+=($(compgen -f -- \"$current\")) ;;\n"
+         "  esac\n"
+         "}\n"
+         "complete -o filenames -F _rcme rcme\n";
+}
+
+std::string Zsh(const CLI::App& app) {
+  std::string commands, cases;
+  for (const DescribedCommand& command : TreeFor(app)) {
+    if (command.name.empty()) continue;
+    commands += fmt::format("    '{}:{}'\n", command.name, InShort(command.description));
+    cases += fmt::format("    {})\n      _arguments", command.name);
+    for (const DescribedOption& option : command.options) {
+      const std::string values = option.values.empty() ? "_files" : "(" + Joined(option.values) + ")";
+      const std::string either = " \\\n        '*:" + InShort(option.names.front()) + ":{ compadd " +
+                                 Joined(option.values) + "; _files }'";
+      if (option.is_positional) {
+        cases += option.values.empty() ? " \\\n        '*:file:_files'" : either;
+        continue;
+      }
+      for (const std::string& name : option.names) {
+        cases += fmt::format(" \\\n        '*{}[{}]{}'", name, InShort(option.description),
+                             option.takes_value ? ":value:" + values : "");
+      }
+    }
+    cases += " ;;\n";
+  }
+  return "#compdef rcme\n# Completion of rcme for zsh, made by `rcme completion zsh`.\n_rcme() {\n"
+         "  local -a commands=(\n" +
+         commands +
+         "  )\n"
+         "  if (( CURRENT == 2 )); then\n    _describe 'command' commands\n    return\n  fi\n"
+         "  local command=$words[2]\n  shift words\n  (( CURRENT-- ))\n  case $command in\n" +
+         cases + "  esac\n}\n_rcme \"$@\"\n";
+}
+
+std::string Fish(const CLI::App& app) {
+  std::string text = "# Completion of rcme for fish, made by `rcme completion fish`.\n";
+  for (const DescribedCommand& command : TreeFor(app)) {
+    if (command.name.empty()) continue;
+    text += fmt::format("complete -c rcme -n __fish_use_subcommand -f -a {} -d '{}'\n", command.name,
+                        InShort(command.description));
+    const std::string here =
+        fmt::format("complete -c rcme -n '__fish_seen_subcommand_from {}'", command.name);
+    for (const DescribedOption& option : command.options) {
+      std::string line = here;
+      if (!option.is_positional) {
+        for (const std::string& name : option.names) {
+          line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+        }
+        line += fmt::format(" -d '{}'", InShort(option.description));
+        if (option.takes_value) line += " -r";
+      }
+      if (!option.values.empty()) line += fmt::format(" -a '{}'", Joined(option.values));
+      if (line != here) text += line + "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+void AddCompletionCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("completion", "A script that completes commands, options and names in a shell");
+  command->footer(
+      "Where rcme is installed the scripts are, too, and a new shell knows them. Otherwise:\n"
+      "  bash   rcme completion bash > ~/.local/share/bash-completion/completions/rcme\n"
+      "  zsh    rcme completion zsh > _rcme      in a folder of $fpath\n"
+      "  fish   rcme completion fish > ~/.config/fish/completions/rcme.fish");
+  auto shell = std::make_shared<std::string>();
+  command->add_option("shell", *shell, "bash, zsh or fish")
+      ->required()
+      ->check(OneOf({"bash", "zsh", "fish"}));
+  command->callback([&app, shell] {
+    fmt::print("{}", *shell == "bash" ? Bash(app) : *shell == "zsh" ? Zsh(app) : Fish(app));
+  });
+}
+
+}  // namespace rcme

@@ -1,0 +1,31 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "experiments/commands/command_tree.h"
+#include "experiments/commands/commands.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
+
+namespace rcme {
+
+void AddHelpCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("help", "Help for a command, as its --help");
+  auto name = std::make_shared<std::string>();
+  command->add_option("command", *name, "its name; default: the program itself");
+  command->callback([&app, name] {
+    if (name->empty()) {
+      fmt::print("{}", app.help("rcme"));
+      return;
+    }
+    const std::vector<std::string> names = CommandNames(app);
+    if (std::ranges::count(names, *name) == 0) {
+      throw InputError(fmt::format("help: {} is no command{}; give one of: {}", Quoted(*name),
+                                   DidYouMean(*name, names), fmt::join(names, ", ")));
+    }
+    fmt::print("{}", app.get_subcommand(*name)->help("rcme " + *name));
+  });
+}
+
+}  // namespace rcme
