@@ -168,7 +168,8 @@ TEST(Parameter, TogetherSetsAllOrNone) {
 TEST(FindParameter, UnknownKeyListsTheKnownOnes) {
   Options o;
   EXPECT_EQ(Refusal(o, "colour", "red"),
-            "unknown key 'colour'; known keys: real, open, automatic, integer, color, text");
+            "unknown key 'colour' (did you mean 'color'?); known keys: real, open, automatic, integer, "
+            "color, text");
 }
 
 TEST(ParseNumber, TakesTheWholeTextOrNothing) {
