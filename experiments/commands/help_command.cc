@@ -16,7 +16,8 @@ void AddHelpCommand(CLI::App& app) {
   command->add_option("command", *name, "its name; default: the program itself");
   command->callback([&app, name] {
     if (name->empty()) {
-      fmt::print("{}", app.help("rcme"));
+      // Not app.help(), which would be that of the command that was given.
+      fmt::print("{}", app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
       return;
     }
     const std::vector<std::string> names = CommandNames(app);
@@ -24,7 +25,7 @@ void AddHelpCommand(CLI::App& app) {
       throw InputError(fmt::format("help: {} is no command{}; give one of: {}", Quoted(*name),
                                    DidYouMean(*name, names), fmt::join(names, ", ")));
     }
-    fmt::print("{}", app.get_subcommand(*name)->help("rcme " + *name));
+    fmt::print("{}", app.get_subcommand(*name)->help(app.get_name()));
   });
 }
 

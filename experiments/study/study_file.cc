@@ -311,6 +311,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
   SeePathsFrom(folder, &study);
+  place.At(root["data"], [&] { study.data = WithCalibration(study.data); });
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);

@@ -129,7 +129,7 @@ TEST_F(Habits, AMissingChoiceIsNamed) {
   const std::string study = folder_.Write(
       "plane.yaml", "data: {scene: uniform_volume, off_plane_share: 0.1}\nestimators: [{name: standard}]\n");
   EXPECT_TRUE(IsRefused(RunRcme({"run", study, "--out", out_}),
-                        {"plane.yaml:1:", "needs scene: plane_and_parallax"}));
+                        {"plane.yaml:1:", "needs scene: plane or plane_and_parallax"}));
 }
 
 TEST_F(Habits, HelpOfACommandIsItsHelp) {
