@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "estimator/geometry/pose.h"
@@ -40,6 +41,11 @@ class MotionModel {
   // The length of the translation; null where there is none.
   virtual Baseline* MutableBaseline() { return nullptr; }
   virtual Motion Draw(RandomStream& rng) const = 0;
+  // A motion near one that was drawn, by a reversible move that leaves the law as it is: `step` in (0, 1] is
+  // its length, of the law's width. Nothing where the law has no such move.
+  virtual std::optional<Motion> DrawNear(const Motion&, double /*step*/, RandomStream&) const {
+    return std::nullopt;
+  }
 };
 
 // Uniform on the unit sphere.

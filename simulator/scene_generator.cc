@@ -129,9 +129,12 @@ double SceneGenerator::MeanParallaxDeg(const StreamName& pilot) const {
 }
 
 Scene SceneGenerator::Generate(int num_matches, RandomStream& rng) const {
+  return GenerateWith(motion_->Draw(rng), num_matches, rng);
+}
+
+Scene SceneGenerator::GenerateWith(const Motion& motion, int num_matches, RandomStream& rng) const {
   Scene scene;
   std::tie(scene.camera1, scene.camera2) = cameras_->Make();
-  const Motion motion = motion_->Draw(rng);
   scene.cam2_from_cam1_true = motion.cam2_from_cam1;
   scene.baseline_m = motion.baseline_m;
   const std::unique_ptr<const World> world = scene_->DrawWorld(scene, rng);

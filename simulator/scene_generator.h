@@ -36,12 +36,18 @@ class SceneGenerator {
   // One scene, from a stream of its own, of which more may be drawn than is used. Throws InputError that
   // names the keys if the parameters admit no such scene.
   Scene Generate(RandomStream& rng) const { return Generate(num_matches_, rng); }
+  // One of this motion.
+  Scene GenerateWith(const Motion& motion, RandomStream& rng) const {
+    return GenerateWith(motion, num_matches_, rng);
+  }
+  const MotionModel& motion_model() const { return *motion_; }
 
  private:
   // Mean over the pilot scenes of the median parallax of the points. Throws InputError if one cannot be
   // drawn.
   double MeanParallaxDeg(const StreamName& pilot) const;
   Scene Generate(int num_matches, RandomStream& rng) const;
+  Scene GenerateWith(const Motion& motion, int num_matches, RandomStream& rng) const;
   void DrawPart(const World& world, size_t part, size_t num_points, RandomStream& rng, Scene* scene) const;
 
   std::string scene_name_, cameras_name_, motion_name_;

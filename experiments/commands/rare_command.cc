@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
-#include <optional>
 
 #include "experiments/base/file_output.h"
 #include "experiments/base/stop_request.h"
@@ -12,7 +9,6 @@
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/rare/rare_output.h"
-#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -22,8 +18,6 @@ struct RareArguments {
   StudyChanges changes;
   RareEffort splitting;
   StratifiedEffort stratified;
-  int repeat = 0;
-  double known_rate = std::numeric_limits<double>::quiet_NaN();
   int threads = 0;
 };
 
@@ -31,7 +25,7 @@ struct RareTexts {
   std::string table, csv, json;
 };
 
-RareTexts SplitOnce(const StudyPlan& plan, const RareArguments& arguments) {
+RareTexts Split(const StudyPlan& plan, const RareArguments& arguments) {
   Progress progress("replicates", static_cast<std::int64_t>(plan.conditions.size() * plan.estimators.size()) *
                                       (arguments.splitting.num_replicates + 1));
   const std::vector<RareCell> cells =
@@ -39,26 +33,6 @@ RareTexts SplitOnce(const StudyPlan& plan, const RareArguments& arguments) {
   std::vector<RareRow> rows;
   for (const RareCell& cell : cells) rows.push_back(RowOf(cell));
   return {RareAsTable(plan, cells), RareAsCsv(plan, rows), RareAsJson(plan, arguments.splitting, cells)};
-}
-
-// The JSON is that of the first repetition.
-RareTexts SplitAgainAndAgain(const StudyPlan& plan, const RareArguments& arguments) {
-  Progress progress("replicates", static_cast<std::int64_t>(plan.conditions.size() * plan.estimators.size()) *
-                                      (arguments.splitting.num_replicates + 1) * arguments.repeat);
-  std::vector<std::vector<RareCell>> repetitions;
-  std::vector<RareRow> rows;
-  for (int repeat = 0; repeat < arguments.repeat; ++repeat) {
-    const std::uint64_t seed = plan.study.seed + static_cast<std::uint64_t>(repeat);
-    repetitions.push_back(SplitFailures(plan, seed, arguments.splitting, arguments.threads, &progress));
-    for (const RareCell& cell : repetitions.back()) {
-      rows.push_back(RowOf(cell));
-      rows.back().repeat = static_cast<size_t>(repeat);
-    }
-  }
-  std::optional<double> known;
-  if (!std::isnan(arguments.known_rate)) known = arguments.known_rate;
-  return {RareRepetitionsAsTable(plan, repetitions, known), RareAsCsv(plan, rows),
-          RareAsJson(plan, arguments.splitting, repetitions.front())};
 }
 
 RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments) {
@@ -74,14 +48,9 @@ RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments) {
 void RunRare(const RareArguments& arguments) {
   const StopOnSignals stop;
   const bool is_splitting = arguments.method == "splitting";
-  if (!is_splitting && arguments.repeat > 0) throw InputError("--repeat: only with --method splitting");
-  if (!std::isnan(arguments.known_rate) && arguments.repeat == 0)
-    throw InputError("--known-rate: only with --repeat, which counts the intervals that hold it");
   const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
   MakeResultFolder(arguments.out);
-  const RareTexts texts = !is_splitting          ? Stratify(plan, arguments)
-                          : arguments.repeat > 0 ? SplitAgainAndAgain(plan, arguments)
-                                                 : SplitOnce(plan, arguments);
+  const RareTexts texts = is_splitting ? Split(plan, arguments) : Stratify(plan, arguments);
   const std::filesystem::path folder(arguments.out);
   WriteFileWhole((folder / "rare.txt").string(), texts.table);
   WriteFileWhole((folder / "rare.csv").string(), texts.csv);
@@ -117,8 +86,7 @@ void AddRareCommand(CLI::App& app) {
       "Examples:\n"
       "  rcme rare experiments/studies/rare_noise.yaml --out rare\n"
       "  rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare\n"
-      "  rcme rare STUDY --method stratified --trials 1000000 --out strata\n"
-      "  rcme rare STUDY --repeat 200 --known-rate 1.1e-3 --out coverage     do the intervals hold it?");
+      "  rcme rare STUDY --method stratified --trials 1000000 --out strata");
   auto arguments = std::make_shared<RareArguments>();
   command
       ->add_option("study", arguments->study,
@@ -154,14 +122,6 @@ void AddRareCommand(CLI::App& app) {
       ->add_option("--kept-share", arguments->splitting.splitting.kept_share,
                    "splitting: share of the particles beyond each level (default: 0.2)")
       ->transform(NumberIn({0.02, 0.9}));
-  command
-      ->add_option("--repeat", arguments->repeat,
-                   "splitting: number of repetitions with fresh seeds: how do the estimates scatter?")
-      ->transform(WholeNumberIn(2, 100'000));
-  command
-      ->add_option("--known-rate", arguments->known_rate,
-                   "a rate known otherwise: how many of the repetitions' intervals hold it?")
-      ->transform(NumberIn({0.0, 1.0}));
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")

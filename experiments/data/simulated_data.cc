@@ -81,6 +81,17 @@ Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
   return scenes_.Generate(scene_rng);
 }
 
+Scene SimulatedData::DrawSceneOf(const Motion& motion, RandomStream& rng) const {
+  return scenes_.GenerateWith(motion, rng);
+}
+
+std::optional<Scene> SimulatedData::DrawSceneNear(const Motion& motion, double step,
+                                                  RandomStream& rng) const {
+  const std::optional<Motion> near = scenes_.motion_model().DrawNear(motion, step, rng);
+  if (!near) return std::nullopt;
+  return scenes_.GenerateWith(*near, rng);
+}
+
 TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_name) const {
   RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise);
   RandomStream outlier_rng = StreamFor(trial_name, StreamPurpose::kOutliers);

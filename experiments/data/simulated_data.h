@@ -46,6 +46,11 @@ class SimulatedData : public DataSource {
   Scene DrawScene(const StreamName& trial_name) const;
   TrialData MakeFrom(const Scene& scene, const StreamName& trial_name) const;
 
+  // Another scene of the same motion, or of one near it (MotionModel::DrawNear): nothing where the motion's
+  // law has no such move.
+  Scene DrawSceneOf(const Motion& motion, RandomStream& rng) const;
+  std::optional<Scene> DrawSceneNear(const Motion& motion, double step, RandomStream& rng) const;
+
   // Whether the noise is sigma_px times standard normal numbers (`noise: gaussian`).
   bool HasNormalNoise() const { return choices_.noise == "gaussian"; }
   // The second half with these numbers, four for each point of the scene (x1, y1, x2, y2), and outliers from

@@ -8,14 +8,23 @@
 #include "parameters/input_error.h"
 
 namespace rcme {
+namespace {
+
+Motion MotionOf(const Scene& scene) { return {scene.cam2_from_cam1_true, scene.baseline_m}; }
+
+bool SeesAll(const Scene& scene, const std::vector<Eigen::Vector3d>& points) {
+  return std::ranges::all_of(points, [&](const Eigen::Vector3d& point) { return scene.Sees(point); });
+}
+
+}  // namespace
+
 void RequireDrawnScenes(const Study& study) {
   for (const std::vector<std::string>& levels : DesignRows(study)) {
     for (const auto& [key, value] : SettingsOf(study, levels)) {
       if (key == "scene" && value == kMatchFilesScene) {
         throw InputError(
             "rare: scene: match_files is not allowed; rare failures need trials without end, and those of "
-            "real "
-            "pairs are counted");
+            "real pairs are counted");
       }
     }
   }
@@ -39,8 +48,7 @@ FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, 
   if (!data_->HasNormalNoise()) {
     throw InputError(
         "rare: noise: only gaussian is allowed, for splitting moves normal numbers; for other noise give "
-        "--method "
-        "stratified");
+        "--method stratified");
   }
   for (const auto& [part, name] : data_->ChosenParts())
     has_free_points_ = has_free_points_ || (part == "scene" && name == "uniform_volume");
@@ -55,16 +63,32 @@ std::shared_ptr<const Scene> FailingMotion::DrawScene(RandomStream& rng) const {
   return std::make_shared<const Scene>(data_->DrawScene({rng.Next64(), stream_key_, 0, 0}));
 }
 
-std::shared_ptr<const Scene> FailingMotion::WithSomePointsOf(const Scene& scene, double share,
-                                                             RandomStream& rng) const {
-  const std::shared_ptr<const Scene> fresh = DrawScene(rng);
+std::shared_ptr<const Scene> FailingMotion::WithSomePoints(const Scene& scene, double share,
+                                                           RandomStream& rng) const {
+  const Scene fresh = data_->DrawSceneOf(MotionOf(scene), rng);
   Scene mixed = scene;
   for (size_t i = 0; i < mixed.points_in_cam1.size(); ++i) {
-    const bool is_chosen = rng.Uniform() < share;
-    const Eigen::Vector3d &old_point = scene.points_in_cam1[i], &new_point = fresh->points_in_cam1[i];
-    if (is_chosen && scene.Sees(new_point) && fresh->Sees(old_point)) mixed.points_in_cam1[i] = new_point;
+    if (rng.Uniform() < share) mixed.points_in_cam1[i] = fresh.points_in_cam1[i];
   }
   return std::make_shared<const Scene>(std::move(mixed));
+}
+
+// The points have the density f(x) [both images see x] / Z(motion) each, and nobody knows Z. The exchange
+// algorithm (Murray, Ghahramani & MacKay 2006) does without: fresh points of the new motion are drawn, and
+// where those of either scene are all seen under the motion of the other, f and Z cancel and Metropolis and
+// Hastings' ratio is 1; elsewhere it is 0. Several tries are a power of one reversible move, and so are
+// reversible.
+std::shared_ptr<const Scene> FailingMotion::WithMotionNear(const Scene& scene, double step,
+                                                           RandomStream& rng) const {
+  constexpr int kTries = 3;
+  constexpr double kStepOfMotion = 0.3;
+  Scene moved = scene;
+  for (int i = 0; i < kTries; ++i) {
+    const std::optional<Scene> fresh = data_->DrawSceneNear(MotionOf(moved), kStepOfMotion * step, rng);
+    if (!fresh || !SeesAll(*fresh, moved.points_in_cam1) || !SeesAll(moved, fresh->points_in_cam1)) continue;
+    moved.cam2_from_cam1_true = fresh->cam2_from_cam1_true;
+  }
+  return std::make_shared<const Scene>(std::move(moved));
 }
 
 FailingMotion::State FailingMotion::Draw(RandomStream& rng) const {
@@ -81,22 +105,23 @@ FailingMotion::State FailingMotion::Propose(const State& state, double step, Ran
                                             bool& is_local) const {
   State moved = state;
   is_local = false;
-  const std::uint32_t kind = rng.IntegerBelow(8);
-  switch (kind) {
-    case 0:
-      moved.scene = DrawScene(rng);
-      return moved;
-    case 1:
-      moved.outlier_seed = rng.Next64();
-      return moved;
-    case 2:
-      moved.sampling_seed = rng.Next64();
-      return moved;
-    default:
-      is_local = true;
+  const std::uint32_t kind = rng.IntegerBelow(16);
+  if (kind == 0) {
+    moved.scene = DrawScene(rng);
+    return moved;
   }
-  if (kind == 3 && has_free_points_) {
-    moved.scene = WithSomePointsOf(*state.scene, 0.5 * step * step, rng);
+  if (kind == 1) {
+    moved.sampling_seed = rng.Next64();
+    return moved;
+  }
+  if (kind <= 3) {
+    moved.outlier_seed = rng.Next64();
+    return moved;
+  }
+  is_local = true;
+  if (kind <= 7 && has_free_points_) {
+    moved.scene = kind <= 5 ? WithSomePoints(*state.scene, 0.5 * step * step, rng)
+                            : WithMotionNear(*state.scene, step, rng);
     return moved;
   }
   rng.FillNormal(moved.noise);

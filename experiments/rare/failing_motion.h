@@ -42,13 +42,10 @@ class FailingMotion {
   // The law of a trial of the condition, with random numbers that no trial of a run has.
   State Draw(RandomStream& rng) const;
 
-  // Of eight moves four are of the noise, local, preconditioned Crank-Nicolson: sqrt(1 - step^2) z + step z'
-  // with fresh normals z' keeps the law of z. One is of the points, local too: where their law does not
-  // depend on the motion (uniform_volume), each is replaced with probability step^2 / 2 by the one of the
-  // same number in a fresh scene, if that is seen under this motion and the old one under that of the fresh
-  // scene; the law of points given the motion is f(x) [both images see x] / const, so that Metropolis and
-  // Hastings' ratio is 1 there and 0 elsewhere. Elsewhere it is one more of the noise. The other three renew
-  // the scene, the outliers or the samples whole.
+  // Of sixteen moves eight are of the noise, local, preconditioned Crank-Nicolson: sqrt(1 - step^2) z + step
+  // z' with fresh normals z' keeps the law of z. Where points are independent given the motion
+  // (uniform_volume), two renew each of them with probability step^2 / 2 and two move the motion; elsewhere
+  // these are moves of the noise too. Two renew the outliers, one the scene, one the samples, whole.
   State Propose(const State& state, double step, RandomStream& rng, bool& is_local) const;
 
   // ErrorOverBound of the estimator's answer.
@@ -56,13 +53,14 @@ class FailingMotion {
 
  private:
   std::shared_ptr<const Scene> DrawScene(RandomStream& rng) const;
-  std::shared_ptr<const Scene> WithSomePointsOf(const Scene& scene, double share, RandomStream& rng) const;
+  std::shared_ptr<const Scene> WithSomePoints(const Scene& scene, double share, RandomStream& rng) const;
+  std::shared_ptr<const Scene> WithMotionNear(const Scene& scene, double step, RandomStream& rng) const;
 
   std::shared_ptr<const SimulatedData> data_;
   std::shared_ptr<const MotionEstimator> estimator_;
   FailureBounds bounds_;
   std::uint64_t stream_key_;
-  bool has_free_points_ = false;  // their law does not depend on the motion
+  bool has_free_points_ = false;  // given the motion they are independent
 };
 
 }  // namespace rcme

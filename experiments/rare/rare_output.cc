@@ -130,16 +130,9 @@ double RareRow::BruteForceShare() const {
 
 RareRow RowOf(const RareCell& cell) {
   const SplittingRate& rate = cell.rate;
-  RareRow row{cell.condition,
-              cell.estimator,
-              0,
-              rate.estimate,
-              rate.standard_error,
-              rate.interval,
-              rate.num_values,
-              rate.unseen_up_to,
-              rate.relative_spread,
-              {}};
+  RareRow row{cell.condition,      cell.estimator,       rate.estimate,
+              rate.standard_error, rate.interval,        rate.num_values,
+              rate.unseen_up_to,   rate.relative_spread, {}};
   for (const SplittingDoubt doubt : rate.doubts) row.doubts.push_back(Name(doubt));
   return row;
 }
@@ -147,7 +140,6 @@ RareRow RowOf(const RareCell& cell) {
 RareRow RowOf(const StratifiedCell& cell) {
   RareRow row{cell.condition,
               cell.estimator,
-              0,
               cell.rate.estimate,
               cell.rate.standard_error,
               cell.rate.interval,
@@ -205,57 +197,19 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
       plan.study.name, FormatColumns(rows), kLeastFailures);
 }
 
-std::string RareRepetitionsAsTable(const StudyPlan& plan,
-                                   const std::vector<std::vector<RareCell>>& repetitions,
-                                   std::optional<double> known_rate) {
-  std::vector<std::vector<std::string>> rows = {
-      FirstRow(plan, {"repeats", "trusted", "mean of estimates", "relative sd", "mean calls",
-                      "intervals that hold it", "trusted ones"})};
-  for (size_t i = 0; i < repetitions.front().size(); ++i) {
-    Moments estimates, calls;
-    std::int64_t num_trusted = 0, num_hold = 0, num_trusted_hold = 0;
-    for (const std::vector<RareCell>& cells : repetitions) {
-      const SplittingRate& rate = cells[i].rate;
-      const bool holds = known_rate && rate.interval.Contains(*known_rate);
-      if (!std::isnan(rate.estimate)) estimates.Add(rate.estimate);
-      calls.Add(static_cast<double>(rate.num_values));
-      num_trusted += rate.IsTrusted();
-      num_hold += holds;
-      num_trusted_hold += holds && rate.IsTrusted();
-    }
-    const auto count = [&](std::int64_t hits, std::int64_t n) -> std::string {
-      if (!known_rate) return "-";
-      const Interval exact = ExactBinomialInterval(hits, n);
-      return fmt::format("{} of {} [{:.3f}, {:.3f}]", hits, n, exact.lower, exact.upper);
-    };
-    std::vector<std::string>& row =
-        rows.emplace_back(HeadOf(plan, repetitions.front()[i].condition, repetitions.front()[i].estimator));
-    row.push_back(fmt::format("{}", repetitions.size()));
-    row.push_back(fmt::format("{}", num_trusted));
-    row.push_back(fmt::format("{:.3e} +- {:.1e}", estimates.mean(), estimates.standard_error()));
-    row.push_back(fmt::format("{:.2f}", std::sqrt(estimates.variance()) / estimates.mean()));
-    row.push_back(fmt::format("{:.0f}", calls.mean()));
-    row.push_back(count(num_hold, std::ssize(repetitions)));
-    row.push_back(count(num_trusted_hold, num_trusted));
-  }
-  return fmt::format("{}: failures by multilevel splitting, repeated with fresh seeds{}\n\n{}",
-                     plan.study.name, known_rate ? fmt::format("; known rate {:g}", *known_rate) : "",
-                     FormatColumns(rows));
-}
-
 std::string RareAsCsv(const StudyPlan& plan, const std::vector<RareRow>& rows) {
   std::string text = "study,condition";
   for (const std::string& factor : plan.factor_names) text += fmt::format(",{}", CsvField(factor));
   text +=
-      ",estimator,quantity,kind,value,lower,upper,standard_error,n,repeat,trusted,doubts,unseen_up_to,"
+      ",estimator,quantity,kind,value,lower,upper,standard_error,n,trusted,doubts,unseen_up_to,"
       "relative_spread,brute_force_share\n";
   for (const RareRow& row : rows) {
     text += fmt::format("{},{}", CsvField(plan.study.name), row.condition);
     for (const std::string& name : HeadOf(plan, row.condition, row.estimator))
       text += fmt::format(",{}", CsvField(name));
-    text += fmt::format(",failure,rate,{},{},{},{},{},{},{},{},{},{},{}\n", CsvNumber(row.estimate),
+    text += fmt::format(",failure,rate,{},{},{},{},{},{},{},{},{},{}\n", CsvNumber(row.estimate),
                         CsvNumber(row.interval.lower), CsvNumber(row.interval.upper),
-                        CsvNumber(row.standard_error), row.num_calls, row.repeat, row.doubts.empty() ? 1 : 0,
+                        CsvNumber(row.standard_error), row.num_calls, row.doubts.empty() ? 1 : 0,
                         fmt::join(row.doubts, " "), CsvNumber(row.unseen_up_to),
                         CsvNumber(row.relative_spread), CsvFinite(row.BruteForceShare()));
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +10,7 @@ namespace rcme {
 
 // One line of the tables.
 struct RareRow {
-  size_t condition = 0, estimator = 0, repeat = 0;
+  size_t condition = 0, estimator = 0;
   double estimate = 0.0, standard_error = 0.0;
   Interval interval;
   std::int64_t num_calls = 0;       // of the estimator
@@ -31,13 +30,7 @@ inline constexpr double kLeastFailures = 3.0;  // as many of equal weight as hav
 std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cells);
 std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells);
 
-// Repetitions with fresh seeds in short: how many rates are trusted, how they scatter, and how many intervals
-// hold `known_rate`, where it is given.
-std::string RareRepetitionsAsTable(const StudyPlan& plan,
-                                   const std::vector<std::vector<RareCell>>& repetitions,
-                                   std::optional<double> known_rate);
-
-// Rows of `rcme summarize --format csv` with more columns: repeat, trusted, doubts, unseen_up_to,
+// Rows of `rcme summarize --format csv` with more columns: trusted, doubts, unseen_up_to,
 // relative_spread, brute_force_share. n counts calls of the estimator.
 std::string RareAsCsv(const StudyPlan& plan, const std::vector<RareRow>& rows);
 

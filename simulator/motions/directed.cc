@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
@@ -7,6 +8,15 @@ namespace rcme {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+// Back into [0, high] from a place not farther beyond it than its width.
+double Reflected(double x, double high) { return x < 0.0 ? -x : x > high ? 2.0 * high - x : x; }
+
+// Uniform steps on the unit sphere: as likely there as back.
+Eigen::Vector3d NearDirection(const Eigen::Vector3d& direction, double step, RandomStream& rng) {
+  const double x = rng.Normal(), y = rng.Normal(), z = rng.Normal();
+  return (direction + step * Eigen::Vector3d(x, y, z)).normalized();
+}
 
 // Camera 2 stands in the direction of an axis of camera 1, uniform in a cone around it.
 class DirectedMotion : public MotionModel {
@@ -35,6 +45,23 @@ class DirectedMotion : public MotionModel {
     const Eigen::Vector3d sideways = DrawSideways(axis, rng);
     const Eigen::Vector3d centre2_in_cam1 = height * axis + std::sqrt(1.0 - height * height) * sideways;
     return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length()};
+  }
+
+  // Axis and angle of the rotation move by themselves, as they are drawn: a uniform angle that is reflected
+  // at its bounds, a uniform axis. So does the direction, uniform on its cap, which it does not leave
+  // (Metropolis).
+  std::optional<Motion> DrawNear(const Motion& motion, double step, RandomStream& rng) const override {
+    const Eigen::Matrix3d& R_before = motion.cam2_from_cam1.R;
+    const Eigen::AngleAxisd before(R_before);
+    const double max_angle = max_rotation_deg_ * kRadPerDeg;
+    const double angle = Reflected(before.angle() + step * max_angle * rng.Uniform(-1.0, 1.0), max_angle);
+    const Eigen::Matrix3d R = RotationFromVector(angle * NearDirection(before.axis(), step, rng));
+
+    const Eigen::Vector3d centre_before = -(R_before.transpose() * motion.cam2_from_cam1.t);
+    const double side = is_either_way_ && axis_.dot(centre_before) < 0.0 ? -1.0 : 1.0;
+    Eigen::Vector3d centre = NearDirection(centre_before, step * max_deviation_deg_ * kRadPerDeg, rng);
+    if (side * axis_.dot(centre) < std::cos(max_deviation_deg_ * kRadPerDeg)) centre = centre_before;
+    return Motion{{R, -(R * centre).normalized()}, motion.baseline_m};
   }
 
  private:

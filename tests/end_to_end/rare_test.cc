@@ -43,12 +43,7 @@ TEST_F(RareProgram, WritesWhatItPrintsOnAnyNumberOfThreads) {
   EXPECT_EQ(Written("rare.json"), once);
 }
 
-TEST_F(RareProgram, RepeatsAndStratifies) {
-  std::vector<std::string> arguments = few_;
-  arguments.insert(arguments.end(), {"--repeat", "3", "--known-rate", "0.01"});
-  const ProgramResult repeated = Call(arguments);
-  ASSERT_EQ(repeated.exit_code, 0) << repeated.err;
-  EXPECT_NE(repeated.out.find("known rate 0.01"), std::string::npos) << repeated.out;
+TEST_F(RareProgram, Stratifies) {
   const ProgramResult strata =
       Call({"--method", "stratified", "--trials", "1000", "--set", "severity=skipped"});
   ASSERT_EQ(strata.exit_code, 0) << strata.err;
@@ -60,8 +55,6 @@ TEST_F(RareProgram, SaysWhatIsWrong) {
   const ProgramResult noise = Call({"--set", "noise=laplace"});
   EXPECT_EQ(noise.exit_code, 2);
   EXPECT_NE(noise.err.find("gaussian"), std::string::npos) << noise.err;
-  EXPECT_EQ(Call({"--known-rate", "0.1"}).exit_code, 2);
-  EXPECT_EQ(Call({"--method", "stratified", "--repeat", "3"}).exit_code, 2);
   EXPECT_EQ(Call({"--method", "guess"}).exit_code, 2);
   EXPECT_FALSE(std::filesystem::exists(out_ + "/rare.csv"));
 }

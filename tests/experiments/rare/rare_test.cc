@@ -58,7 +58,7 @@ TEST(ErrorOverBound, IsBeyondOneWhereTheMotionHasFailed) {
 TEST(FailingMotion, HasTheLawOfATrialAndItsMovesKeepIt) {
   // The rate of trials drawn by splitting's state, before and after moves that are all accepted, is that of
   // plain trials. z-tests at 1e-4.
-  const StudyPlan plan = FrequentFailures();
+  const StudyPlan plan = FrequentFailures(", motion: sideways");
   const FailingMotion system(plan, plan.conditions[0], 0);
   constexpr std::uint32_t kPlain = 6000;
   const double plain = static_cast<double>(CountFailures(plan, kPlain)) / kPlain;
@@ -81,13 +81,13 @@ TEST(FailingMotion, HasTheLawOfATrialAndItsMovesKeepIt) {
   }
 }
 
-TEST(FailingMotion, LocalMovesChangeTheNoiseOrSomePoints) {
-  const StudyPlan plan = FrequentFailures();
+TEST(FailingMotion, LocalMovesChangeTheNoiseSomePointsOrTheMotion) {
+  const StudyPlan plan = FrequentFailures(", motion: sideways");
   const FailingMotion system(plan, plan.conditions[0], 0);
   RandomStream rng({.seed = 1, .purpose = 94});
   const MotionInputs state = system.Draw(rng);
-  int num_noise = 0, num_points = 0, num_renewed = 0;
-  for (int i = 0; i < 800; ++i) {
+  int num_noise = 0, num_points = 0, num_motion = 0, num_moved = 0, num_renewed = 0;
+  for (int i = 0; i < 1600; ++i) {
     bool is_local = false;
     const MotionInputs moved = system.Propose(state, 0.3, rng, is_local);
     const bool has_other_scene = moved.scene != state.scene;
@@ -96,19 +96,24 @@ TEST(FailingMotion, LocalMovesChangeTheNoiseOrSomePoints) {
     EXPECT_EQ(num_changed, 1);
     num_noise += moved.noise != state.noise;
     if (!is_local || !has_other_scene) continue;
-    ++num_points;
-    EXPECT_EQ(moved.scene->cam2_from_cam1_true.R, state.scene->cam2_from_cam1_true.R);
+    int renewed = 0;
     for (size_t k = 0; k < state.scene->points_in_cam1.size(); ++k) {
-      num_renewed += moved.scene->points_in_cam1[k] != state.scene->points_in_cam1[k];
+      renewed += moved.scene->points_in_cam1[k] != state.scene->points_in_cam1[k];
       EXPECT_TRUE(moved.scene->Sees(moved.scene->points_in_cam1[k]));
     }
+    const bool has_moved = moved.scene->cam2_from_cam1_true.R != state.scene->cam2_from_cam1_true.R;
+    EXPECT_TRUE(!has_moved || renewed == 0);
+    num_moved += has_moved;
+    num_renewed += renewed;
+    // None of the points is renewed with probability 0.955^30 = 0.25 if it was the points' turn.
+    (renewed > 0 ? num_points : num_motion) += 1;
   }
-  // Within 3.9 standard deviations of one half and of one eighth.
-  EXPECT_NEAR(num_noise, 400, 55);
-  EXPECT_NEAR(num_points, 100, 37);
-  // step^2 / 2 = 4.5 % of 30 points, but for those that one of the two motions does not show.
-  EXPECT_LT(num_renewed, 0.06 * 30 * num_points);
-  EXPECT_GT(num_renewed, 0.02 * 30 * num_points);
+  // Within 3.9 standard deviations of one half, of 1/8 * 0.75, and of 1/8 * 1.25.
+  EXPECT_NEAR(num_noise, 800, 78);
+  EXPECT_NEAR(num_points, 150, 46);
+  EXPECT_NEAR(num_motion, 250, 57);
+  EXPECT_NEAR(num_renewed, 0.045 * 30 * 200, 75);
+  EXPECT_GT(num_moved, 60);
 }
 
 TEST(SplitFailures, SaysWhatItCannotTake) {

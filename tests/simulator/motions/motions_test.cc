@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -187,6 +188,41 @@ TEST(BaselineLength, IsMetresOrThatOfTheParallax) {
   EXPECT_THROW(baseline.Length(), std::logic_error) << "not known yet";
   baseline.length_of_parallax_m = 0.7;
   EXPECT_EQ(baseline.Length(), 0.7);
+}
+
+// Moved motions have the law of drawn ones: angle and height above the rim of the cap uniform, half of them
+// to either side, axes of rotation uniform. Kolmogorov and Smirnov's tests at 1e-4; a short step goes nearby.
+TEST(SidewaysMotion, DrawNearKeepsTheLaw) {
+  const std::unique_ptr<MotionModel> model = MakeSidewaysMotion();
+  const double max_angle = 5.0 / kDegPerRad, rim = std::cos(max_angle);
+  for (const double step : {0.1, 0.5, 1.0}) {
+    std::vector<double> angles, heights, axes;
+    int num_right = 0, num_moved = 0;
+    for (std::uint32_t trial = 0; trial < kNumMotions; ++trial) {
+      RandomStream rng({2, 0, trial, 1});
+      Motion motion = Draw(*model, trial);
+      for (int move = 0; move < 10; ++move) {
+        const Motion before = motion;
+        motion = model->DrawNear(before, step, rng).value();
+        EXPECT_EQ(motion.baseline_m, before.baseline_m);
+        num_moved += Centre2(motion) != Centre2(before);
+        const Eigen::AngleAxisd turn(
+            Eigen::Matrix3d(motion.cam2_from_cam1.R * before.cam2_from_cam1.R.transpose()));
+        EXPECT_LT(turn.angle(), step <= 0.1 ? 0.6 * max_angle : 2.1 * max_angle);
+      }
+      const Eigen::AngleAxisd rotation(motion.cam2_from_cam1.R);
+      angles.push_back(rotation.angle() / max_angle);
+      axes.push_back(0.5 * (1.0 + rotation.axis().z()));
+      const double x = Centre2(motion).x();
+      num_right += x > 0.0;
+      heights.push_back((std::abs(x) - rim) / (1.0 - rim));
+    }
+    for (const std::vector<double>& sample : {angles, heights, axes})
+      EXPECT_GT(TestKolmogorovSmirnov(sample, UniformCdf).p_value, 1e-4) << step;
+    EXPECT_NEAR(num_right, kNumMotions / 2, 3.9 * std::sqrt(kNumMotions / 4.0));
+    EXPECT_GT(num_moved, 10 * kNumMotions / 3);
+  }
+  EXPECT_FALSE(MakePureRotation()->DrawNear({}, 0.5, *std::make_unique<RandomStream>(StreamName{})));
 }
 
 }  // namespace
