@@ -17,7 +17,7 @@
 
 namespace rcme {
 
-inline constexpr double kRoundGrowth = 4.0;
+inline constexpr double kRoundGrowth = 1.5;
 // Of a round, at most: so many machines have equal shares of it.
 inline constexpr std::int64_t kBlocksOfRound = 64;
 

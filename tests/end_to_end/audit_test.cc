@@ -106,7 +106,7 @@ TEST(Audit, InShardsGivesTheSameBytes) {
         parts.push_back(PartPath(folder, number, count));
       }
       ProgramResult merged;
-      for (int k = 0; k < 9; ++k) {
+      for (int k = 0; k < 15; ++k) {
         merged = MergeAudit(options, parts, folder.Path("merged"), round);
         if (merged.exit_code != 75) break;
         for (int number = 1; number <= count; ++number) RunAuditShard(folder, options, number, count, round);

@@ -67,7 +67,7 @@ class Parts : public testing::Test {
   // The rounds after the first, until a merge lacks nothing: how many there were in all.
   int RunRoundsOfFile(const Work& work, int count) const {
     const Words merge = work.command + Words{"--out", folder_.Path("merged"), "--round", round_, "--merge"};
-    for (int num_rounds = 1; num_rounds < 10; ++num_rounds) {
+    for (int num_rounds = 1; num_rounds < 15; ++num_rounds) {
       const ProgramResult merged = RunRcme(merge + PartsOf(count));
       if (merged.exit_code == 0) return num_rounds;
       EXPECT_EQ(merged.exit_code, 75) << merged.err;

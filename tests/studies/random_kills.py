@@ -171,7 +171,7 @@ def audit(killer, folder, kills):
     def command(i, more=("--max-time", "0.3s")):
         return [*base, "--shard", f"{i + 1}/{NUM_SHARDS}", "--out", str(parts[i]), *more,
                 *(["--round", str(later)] if later.exists() else [])]
-    for number in range(1, 10):
+    for number in range(1, 16):
         if number <= 2:
             killer.kill_shards(f"audit --shard, round {number}", kills // 2, parts, command, num_pieces, 0.8)
         for i in range(NUM_SHARDS):
