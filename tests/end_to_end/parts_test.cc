@@ -148,12 +148,11 @@ class Parts : public testing::Test {
 TEST_F(Parts, OfATuning) { ExpectTheBytesOfOneRun({{"tune", study_, "--threads", "1"}, {""}, true}, {1, 7}); }
 
 TEST_F(Parts, OfAnAudit) {
-  ExpectTheBytesOfOneRun(
-      {{"audit", "--only", "sample_test.power,sample_test.size.joint", "--threads", "1"},
-       {"audit.json", "audit.md"},
-       false,
-       true},
-      {1, 7});
+  ExpectTheBytesOfOneRun({{"audit", "--only", "sample_test.power,sample_test.size.joint", "--threads", "1"},
+                          {"audit.json", "audit.md"},
+                          false,
+                          true},
+                         {1, 7});
 }
 
 TEST_F(Parts, OfATransfer) {
