@@ -41,7 +41,7 @@ class DirectedMotion : public MotionModel {
     const Eigen::Matrix3d R = DrawRotation(max_rotation_deg_ * kRadPerDeg, rng);
     const Eigen::Vector3d axis = is_either_way_ && rng.Uniform() < 0.5 ? Eigen::Vector3d(-axis_) : axis_;
     // Uniform on the cap: the height is uniform.
-    const double height = rng.Uniform(std::cos(max_deviation_deg_ * kRadPerDeg), 1.0);
+    const double height = rng.Uniform(RimOfCone(), 1.0);
     const Eigen::Vector3d sideways = DrawSideways(axis, rng);
     const Eigen::Vector3d centre2_in_cam1 = height * axis + std::sqrt(1.0 - height * height) * sideways;
     return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length()};
@@ -60,11 +60,14 @@ class DirectedMotion : public MotionModel {
     const Eigen::Vector3d centre_before = -(R_before.transpose() * motion.cam2_from_cam1.t);
     const double side = is_either_way_ && axis_.dot(centre_before) < 0.0 ? -1.0 : 1.0;
     Eigen::Vector3d centre = NearDirection(centre_before, step * max_deviation_deg_ * kRadPerDeg, rng);
-    if (side * axis_.dot(centre) < std::cos(max_deviation_deg_ * kRadPerDeg)) centre = centre_before;
+    if (side * axis_.dot(centre) < RimOfCone()) centre = centre_before;
     return Motion{{R, -(R * centre).normalized()}, motion.baseline_m};
   }
 
  private:
+  // The height of the rim on the unit sphere.
+  double RimOfCone() const { return std::cos(max_deviation_deg_ * kRadPerDeg); }
+
   // Uniform on the circle of unit vectors normal to `axis`.
   static Eigen::Vector3d DrawSideways(const Eigen::Vector3d& axis, RandomStream& rng) {
     const Eigen::Matrix<double, 3, 2> B = DirectionBasis(axis);

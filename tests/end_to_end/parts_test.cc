@@ -152,7 +152,7 @@ TEST_F(Parts, OfAnAudit) {
                           {"audit.json", "audit.md"},
                           false,
                           true},
-                         {1, 7});
+                         {7});
 }
 
 TEST_F(Parts, OfATransfer) {
