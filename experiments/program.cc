@@ -15,6 +15,7 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/twin_commands.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -79,6 +80,8 @@ int RunProgram(int argc, const char* const* argv) {
   AddMapCommand(app);
   AddRareCommand(app);
   AddModelChoiceCommand(app);
+  AddPaperTableCommand(app);
+  AddTwinCommand(app);
   AddValidateCommand(app);
   AddCheckEstimatorCommand(app);
   AddEstimateCommand(app);

@@ -122,9 +122,14 @@ void Run(const RunArguments& arguments) {
   if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &*store);
   const RunReport report = keeps_counts ? CountStudy(plan, arguments.threads, arguments.out, shard)
                                         : RunStudy(plan, arguments.threads, &*store, shard);
-  PrintMessage("done: {} trials ({} were there already) in {}; next: rcme {} {}\n", report.num_trials,
-               report.num_trials - report.num_run_now, DurationInWords(report.seconds),
-               shard.count > 1 ? "merge" : "summarize", arguments.out);
+  const bool is_of_real_pairs = plan.conditions.front().source->SharedScene().has_value();
+  const std::string next =
+      shard.count > 1 ? "rcme merge " + arguments.out
+      : is_of_real_pairs && !keeps_counts
+          ? fmt::format("rcme summarize {0} (or, by scene, rcme paper-table {0})", arguments.out)
+          : "rcme summarize " + arguments.out;
+  PrintMessage("done: {} trials ({} were there already) in {}; next: {}\n", report.num_trials,
+               report.num_trials - report.num_run_now, DurationInWords(report.seconds), next);
 }
 
 }  // namespace

@@ -20,10 +20,14 @@ namespace rcme {
 namespace {
 
 std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
-  return {Parameter::Text("folder", &settings.folder, "a folder of match files",
-                          "folder with *.csv or *.csv.gz, seen from the study's folder"),
-          Parameter::Real("sigma_px", &settings.sigma_px, {1e-9, 1000.0}, "px",
-                          "noise standard deviation that the estimators assume")};
+  std::vector<Parameter> all = {
+      Parameter::Text("folder", &settings.folder, "a folder of match files",
+                      "folder with *.csv or *.csv.gz, seen from the study's folder"),
+      Parameter::Real("sigma_px", &settings.sigma_px, {1e-9, 1000.0}, "px",
+                      "noise standard deviation that the estimators assume")};
+  const std::vector<Parameter> of_redraw = Parameters(settings.redraw);
+  all.insert(all.end(), of_redraw.begin(), of_redraw.end());
+  return all;
 }
 
 // Adds those entries of a registry whose models have the parameter.

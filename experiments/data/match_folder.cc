@@ -114,6 +114,16 @@ std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   return paths;
 }
 
+ImageNames ImageNamesIn(const std::string& folder) {
+  ImageNames names;
+  for (const fs::path& path : MatchFilesIn(folder)) {
+    const MatchFile file = ReadMatchFile(path.string());
+    if (!file.image1.empty() && !file.image2.empty())
+      names[path.filename().string()] = {file.image1, file.image2};
+  }
+  return names;
+}
+
 int MatchFolderData::NumTrials(int trials) const {
   const auto product = static_cast<std::int64_t>(trials) * static_cast<std::int64_t>(pairs_.size());
   if (product <= std::numeric_limits<int>::max()) return static_cast<int>(product);
@@ -132,6 +142,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   const std::set<std::string> weak = PairsWithWeakDirection(settings.folder, paths);
   std::map<std::string, Group> groups;
   size_t num_matches = 0;
+  const Redraw redraw(settings.redraw);
   for (const fs::path& path : paths) {
     MatchFile file = ReadMatchFile(path.string());
     num_matches += file.matches.size();
@@ -148,13 +159,15 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     group.num_with_truth_sd += file.truth_sd.has_value();
     group.digest = Digest(file, data.truth.is_direction_known, group.digest);
     data.problem = {std::move(file.matches), file.camera1, file.camera2, settings.sigma_px};
+    if (redraw.IsOn()) Redraw::Label(&data);
     group.pairs.push_back(std::move(data));
   }
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;
   for (auto& [scene, group] : groups) {
     std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
     if (group.num_with_truth_sd > 0) identity += fmt::format(", truth_sd in {}", group.num_with_truth_sd);
-    sources.emplace_back(scene, std::make_shared<MatchFolderData>(scene, std::move(group.pairs), identity));
+    sources.emplace_back(scene,
+                         std::make_shared<MatchFolderData>(scene, std::move(group.pairs), identity, redraw));
   }
   return sources;
 }

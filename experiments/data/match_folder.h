@@ -1,13 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/data/data_source.h"
 #include "experiments/data/match_file.h"
+#include "experiments/data/redraw.h"
 
 namespace rcme {
 
@@ -15,18 +18,24 @@ namespace rcme {
 struct MatchFolderSettings {
   std::string folder;     // relative to the working directory
   double sigma_px = 0.5;  // the noise level that the estimators assume
+  RedrawSettings redraw;
 };
 
 // The pairs of one scene of a folder of match files; trial t is file t mod (number of files), each pass with
-// its own random samples. Pairs of one scene share images: they are not independent.
+// its own random samples, and noise and wrong matches where these are drawn anew. Pairs of one scene share
+// images: they are not independent.
 class MatchFolderData : public DataSource {
  public:
-  MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::string identity)
-      : scene_(std::move(scene)), pairs_(std::move(pairs)), identity_(std::move(identity)) {}
+  MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::string identity, Redraw redraw)
+      : scene_(std::move(scene)),
+        pairs_(std::move(pairs)),
+        identity_(std::move(identity)),
+        redraw_(std::move(redraw)) {}
 
   int NumTrials(int trials) const override;
   TrialData Make(const StreamName& trial_name) const override {
-    return pairs_[trial_name.trial % pairs_.size()];
+    const TrialData& pair = pairs_[trial_name.trial % pairs_.size()];
+    return redraw_.IsOn() ? redraw_.Draw(pair, trial_name) : pair;
   }
   std::string Identity() const override { return identity_; }
   std::optional<std::string> SharedScene() const override { return scene_; }
@@ -35,10 +44,16 @@ class MatchFolderData : public DataSource {
   std::string scene_;
   std::vector<TrialData> pairs_;
   std::string identity_;
+  Redraw redraw_;
 };
 
 // The match files of a folder in the order of names. Throws InputError: no such folder, none in it, too many.
 std::vector<std::filesystem::path> MatchFilesIn(const std::string& folder);
+
+// The two images of each match file of a folder that names them, by the file's name (TrialData::origin).
+// Pairs of one scene with an equal name share the image.
+using ImageNames = std::map<std::string, std::pair<std::string, std::string>>;
+ImageNames ImageNamesIn(const std::string& folder);
 
 // The name of a pair in an index: that of its file without the ending.
 std::string PairIdOf(const std::filesystem::path& match_file);

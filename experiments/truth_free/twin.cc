@@ -28,6 +28,21 @@ std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
 
 }  // namespace
 
+std::uint64_t StreamKeyOf(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char letter : name) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3;
+  return (hash >> 48 ^ hash) & 0xffff'ffff'ffff;
+}
+
+Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match) {
+  for (int round = 0; round < 2; ++round) {
+    const Eigen::Vector4d delta = SampsonVector(F, match);
+    match.x1_px += delta.head<2>();
+    match.x2_px += delta.tail<2>();
+  }
+  return match;
+}
+
 double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate) {
   if (std::isfinite(estimate.sigma_estimated_px)) return estimate.sigma_estimated_px;
   const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
@@ -52,11 +67,7 @@ NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uin
   for (const int i : estimate.inliers) {
     Correspondence& match = made.problem.matches[static_cast<size_t>(i)];
     const Correspondence observed = match;
-    for (int round = 0; round < 2; ++round) {
-      const Eigen::Vector4d delta = SampsonVector(F, match);
-      match.x1_px += delta.head<2>();
-      match.x2_px += delta.tail<2>();
-    }
+    match = Snapped(F, match);
     match.x1_px += noise_of(image1, observed.x1_px);
     match.x2_px += noise_of(image2, observed.x2_px);
   }

@@ -10,6 +10,12 @@
 
 namespace rcme {
 
+// Names the random streams of a pair or a set by its name (FNV-1a, folded to the 48 bits of a condition).
+std::uint64_t StreamKeyOf(const std::string& name);
+
+// The match moved onto the nearest one that satisfies F, to second order of the distance.
+Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match);
+
 // Residual noise of the matches that agree with an answer, px: as the estimator says, else from the median of
 // their residuals.
 double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate);

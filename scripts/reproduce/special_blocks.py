@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import statistics
 
 from recipes import MADE, RESULTS, ROOT, read_recipes
 from tables import as_number, is_level, levels_of, rate, read_table, scientific, select, the_row, words_of
@@ -254,6 +255,51 @@ def caught(spec):
     return markdown(["what is planted", *tests], body)
 
 
+def median_ratios(spec):
+    """By what covariances are too small: of each test the middle one of the sets' ratios, a row per table (tables: NAME as WORDS;
+    ...)."""
+    tests = words_of(spec.get("tests"))
+    body = []
+    for name, words in spec.parts("tables"):
+        rows = read_table(name)
+        ratios = [sorted(float(row["value"]) for row in select(rows, f"test={test}") if row["value"]) for test in tests]
+        body.append([words, *(f"{statistics.median(each):.2f} ({each[0]:.2f} to {each[-1]:.2f})" for each in ratios)])
+    return markdown(["", *tests], body)
+
+
+def twins(spec):
+    """Of each scene how many of the compared quantities a twin predicts within their joint interval, and which not."""
+    rows = read_table(spec.argument)
+    body = []
+    for scene in levels_of(rows, "scene"):
+        line = [scene, select(rows, f"scene={scene}")[0]["pairs"]]
+        for twin, _ in spec.parts("twins"):
+            here = [row for row in rows if row["scene"] == scene and row["twin"] == twin]
+            missed = [row["quantity"] for row in here if row["within"] == "no"]
+            line += [f"{len(here) - len(missed)} of {len(here)}" if here else "-", ", ".join(missed) or "none"]
+        body.append(line)
+    head = [words for _, heading in spec.parts("twins") for words in (heading + ": within", "not within")]
+    return markdown(["scene", "pairs", *head], body)
+
+
+def twin_values(spec):
+    """Of each scene and quantity of `quantities` what one twin (`twin`) predicts, and what was observed with its joint interval."""
+    rows = select(read_table(spec.argument), f"twin={spec.get('twin')}")
+    quantities = spec.parts("quantities")
+
+    def shown(row):
+        scale, form = (100, "{:.0f}") if row["kind"] == "rate" else (1, "{:.3g}")
+        predicted, observed, lower, upper = (
+            form.format(scale * float(row[name])) if row[name] else "-" for name in ("predicted", "observed", "lower", "upper"))
+        return f"{predicted} / {observed} [{lower}, {upper}]" + ("" if row["within"] == "yes" else " *")
+
+    body = []
+    for scene in levels_of(rows, "scene"):
+        found = {row["quantity"]: row for row in rows if row["scene"] == scene}
+        body.append([scene, *(shown(found[name]) if name in found else "-" for name, _ in quantities)])
+    return markdown(["scene", *(heading for _, heading in quantities)], body)
+
+
 def winners(spec):
     """Of each study and each kind of table who succeeds most often, whose interval overlaps the winner's, and which of all
     these is fastest."""
@@ -279,4 +325,4 @@ SPECIAL = {"made": made, "list": all_results, "largest_sigma": largest_sigma, "p
            "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
            "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "transfer": transfer,
            "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
-           "caught": caught}
+           "caught": caught, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}

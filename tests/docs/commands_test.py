@@ -54,7 +54,7 @@ SHORTER = [
     (r"^rcme rare (.*)$", r"rcme rare \1 --particles 20 --replicates 4 --moves 1"),
     (r"^rcme model-choice (.*)$", r"rcme model-choice \1 --trials 1"),
     (r"^rcme budget (.*)$", r"rcme budget \1 --calls 1 --set outlier_ratio=0.3"),
-    (r"^rcme validate (.*)$", r"rcme validate \1 --twins 1"),
+    (r"^rcme (validate|twin) (.*)$", r"rcme \1 \2 --twins 1"),
 ]
 
 

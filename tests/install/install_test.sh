@@ -22,3 +22,9 @@ test -s "$scratch/prefix/share/fish/vendor_completions.d/rcme.fish"
   -DCMAKE_BUILD_TYPE=Release >/dev/null
 "$cmake" --build "$scratch/consumer"
 "$scratch/consumer/consumer"
+# The example for a robot, which needs one header.
+root=$(cd "$(dirname "$0")/../.." && pwd)
+"$cmake" -G Ninja -S "$root/examples/robot" -B "$scratch/robot" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
+  -DCMAKE_BUILD_TYPE=Release >/dev/null
+"$cmake" --build "$scratch/robot"
+"$scratch/robot/robot_example"

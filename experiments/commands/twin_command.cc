@@ -1,0 +1,166 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "experiments/base/file_output.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/commands/estimator_source.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/twin_commands.h"
+#include "experiments/data/match_folder.h"
+#include "experiments/study/study_file.h"
+#include "experiments/truth_free/twin_report.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct TwinArguments {
+  std::string pairs, out;
+  EstimatorChoice estimator;
+  std::string scene;  // empty: all
+  double sigma_px = 0.5;
+  std::int64_t seed = 1;
+  int num_twins = 5;
+};
+
+// Where the files of a scene go: STUDY.yaml names one scene alone, a folder holds those of all.
+struct TwinPlaces {
+  std::filesystem::path study, simulated_study, templates;
+};
+
+TwinPlaces PlacesOf(const std::filesystem::path& out, const std::string& scene) {
+  if (out.extension() == ".yaml") {
+    std::filesystem::path stem = out;
+    stem.replace_extension();
+    return {out, stem.string() + "_simulated.yaml", stem.string() + "_pairs"};
+  }
+  return {out / (scene + ".yaml"), out / (scene + "_simulated.yaml"), out / (scene + "_pairs")};
+}
+
+void WriteTemplates(const TwinSource& source, const std::filesystem::path& folder) {
+  MakeResultFolder(folder.string());
+  for (const AnsweredTrial& one : source.pairs) {
+    if (!one.exact) continue;
+    MatchFile file;
+    file.scene = source.scene;
+    file.image1 = one.image1;
+    file.image2 = one.image2;
+    file.matches = one.exact->problem.matches;
+    file.camera1 = one.exact->problem.camera1;
+    file.camera2 = one.exact->problem.camera2;
+    file.cam2_from_cam1_true = one.exact->truth.cam2_from_cam1_true;
+    WriteMatchFile(file,
+                   (folder / (one.pair.origin.substr(0, one.pair.origin.find(".csv")) + ".csv")).string());
+  }
+}
+
+void WriteStudy(const TwinReport& report, const std::string& kind, const Settings& data, int trials,
+                const EstimatorSpec& estimator, const std::filesystem::path& path) {
+  Study study;
+  study.name = fmt::format("twin_{}_{}", kind, report.scene);
+  study.description =
+      kind == "semi_real"
+          ? "The key points of real pairs at their estimated geometry; noise and wrong matches drawn anew."
+          : "A simulated scene with the noise, the wrong matches, the depths and the motion of real pairs.";
+  study.trials = trials;
+  study.data = data;
+  study.estimators = {estimator};
+  WriteFileWhole(path.string(), ToYaml(study));
+}
+
+void RunTwin(const TwinArguments& arguments) {
+  const StopOnSignals stop;
+  const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
+  const std::unique_ptr<MotionEstimator> estimator = Make(spec);
+  auto scenes = LoadMatchFolder({arguments.pairs, arguments.sigma_px, {}});
+  const ImageNames images = ImageNamesIn(arguments.pairs);
+  std::string names;
+  for (const auto& [scene, data] : scenes) names += (names.empty() ? "" : ", ") + scene;
+  if (!arguments.scene.empty()) {
+    std::erase_if(scenes, [&](const auto& scene) { return scene.first != arguments.scene; });
+    if (scenes.empty())
+      throw InputError(fmt::format("--scene: '{}' is not there; give one of: {}", arguments.scene, names));
+  }
+  const std::filesystem::path out(arguments.out);
+  const bool is_one_study = out.extension() == ".yaml";
+  if (is_one_study && scenes.size() > 1)
+    throw InputError(fmt::format("--out: {} holds one scene's study; give --scene (one of: {}), or a folder",
+                                 arguments.out, names));
+  if (is_one_study)
+    CheckCanBeWritten(arguments.out);
+  else
+    MakeResultFolder(arguments.out);
+  std::vector<TwinReport> reports;
+  for (const auto& [scene, data] : scenes) {
+    const auto seed = static_cast<std::uint64_t>(arguments.seed);
+    const TwinPlaces places = PlacesOf(out, scene);
+    const TwinSource source = AnswerScene(scene, *data, images, *estimator, seed);
+    reports.push_back(MakeTwinReport(source, *estimator, places.templates.filename().string(),
+                                     arguments.sigma_px, seed, arguments.num_twins));
+    const TwinReport& report = reports.back();
+    WriteTemplates(source, places.templates);
+    WriteStudy(report, "semi_real", report.semi_real, 20, spec, places.study);
+    if (!report.simulated.empty())
+      WriteStudy(report, "simulated", report.simulated, 400, spec, places.simulated_study);
+  }
+  const std::string text = TwinsAsText(reports);
+  if (!is_one_study) {
+    WriteFileWhole((out / "twin.txt").string(), text);
+    WriteFileWhole((out / "twin.csv").string(), TwinsAsCsv(reports));
+  }
+  fmt::print("{}", text);
+}
+
+}  // namespace
+
+void AddTwinCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "twin", "Simulated studies fitted to real pairs, and what simulation does not explain of them");
+  command->footer(
+      "Of each scene of a folder of match files two studies for `rcme run`:\n"
+      "  semi-real  the real key points, put where the estimated geometry has them (as match files of their "
+      "own);\n"
+      "             noise of the size, tails and correlation of the residuals drawn anew, wrong matches "
+      "dealt out\n"
+      "             again\n"
+      "  simulated  a scene of the simulator with the cameras, depths, parallax, motion, planarity, "
+      "clustering,\n"
+      "             noise and wrong matches of the pairs\n"
+      "and a report: what the estimator does on the pairs (refusals, failures, stated probability of "
+      "failure,\n"
+      "estimated noise, inlier test, tails, stated deviations, halves, correlation of residuals) beside what "
+      "it\n"
+      "does on the twins, with a test of each difference, and what is not explained.\n"
+      "\n"
+      "Examples:\n"
+      "  rcme twin PAIRS --out twins\n"
+      "  rcme twin PAIRS --scene kitti00 --out kitti00.yaml && rcme run kitti00.yaml --out run.sqlite");
+  auto arguments = std::make_shared<TwinArguments>();
+  command->add_option("pairs", arguments->pairs, "folder of match files")->required();
+  CLI::Option* estimator =
+      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
+          ->capture_default_str();
+  AddEstimatorOptions(command, estimator, &arguments->estimator);
+  command
+      ->add_option(
+          "-o,--out", arguments->out,
+          "STUDY.yaml (one scene), with STUDY_simulated.yaml and STUDY_pairs/ beside it; or a folder for "
+          "those of every scene, twin.txt and twin.csv")
+      ->required();
+  command->add_option("--scene", arguments->scene, "this scene alone");
+  command
+      ->add_option("--sigma", arguments->sigma_px, "noise standard deviation that the estimator assumes, px")
+      ->transform(NumberIn({1e-9, 1000.0}))
+      ->capture_default_str();
+  command->add_option("--twins", arguments->num_twins, "of either kind for each pair")
+      ->transform(WholeNumberIn(1, 100))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of samples, halves and twins")
+      ->transform(WholeNumberIn(0))
+      ->capture_default_str();
+  command->callback([arguments] { RunTwin(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,11 @@
+// The commands that set real pairs beside simulation and the paper; see commands.h.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace rcme {
+
+void AddPaperTableCommand(CLI::App& app);
+void AddTwinCommand(CLI::App& app);
+
+}  // namespace rcme

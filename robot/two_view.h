@@ -1,0 +1,92 @@
+// The motion between two images for a robot's program: OpenCV's types in, motion, covariance, probability of
+// failure and a verdict out. Nothing else of rcme is needed: include this header, link rcme::robot.
+//
+//   const rcme::TwoViewInitializer initializer({.K1 = K, .K2 = K, .size1 = image.size(), .size2 =
+//   image.size()}); const rcme::TwoViewMotion motion = initializer.Estimate(points1, points2); if
+//   (motion.verdict == rcme::TwoViewVerdict::kGood) ...
+//
+// Frames: a point X1 in camera 1's frame (x right, y down, z forward) is X2 = R X1 + t in camera 2's; the
+// scale cannot be seen, |t| = 1. Image points are pixels of undistorted images, (0, 0) being the centre of
+// the top-left pixel.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rcme {
+
+class MotionEstimator;
+
+struct TwoViewOptions {
+  cv::Mat K1, K2;         // 3x3, CV_32F or CV_64F, [fx 0 cx; 0 fy cy; 0 0 1], px
+  cv::Size size1, size2;  // of the images, px
+  double sigma_px = 0.5;  // assumed noise per coordinate; rcme_calibrated, the default, estimates it and
+                          // takes this as a guess
+  double greatest_failure_probability = 0.05;  // a motion that is more likely wrong is kDoubtful
+  std::string estimator = "rcme_calibrated";   // any of `rcme list estimators` but those of other libraries
+  // By name, as `rcme list options` has them.
+  std::vector<std::pair<std::string, std::string>> options = {{"covariance", "robust"}};
+  std::uint64_t seed = 1;  // of the samples: equal input, equal answer
+};
+
+enum class TwoViewVerdict {
+  kGood,      // a motion, wrong with a probability of at most greatest_failure_probability
+  kDoubtful,  // a motion that is more likely wrong, or whose estimator states no probability
+  kRefused,   // no motion: too few matches, no parallax, no more agreement than by chance, ... (`status`,
+              // `message`)
+  kBadInput,  // nothing was computed: `message` says what is wrong
+};
+const char* Name(TwoViewVerdict verdict);
+
+// Matrices are CV_64F; empty, and numbers NaN, where there is no motion.
+struct TwoViewMotion {
+  TwoViewVerdict verdict = TwoViewVerdict::kBadInput;
+  std::string status;   // the estimator's word: "ok", "no_candidate", "direction_not_observable", ...
+  std::string message;  // one sentence for a person
+
+  cv::Mat R, t;  // 3x3, 3x1
+  // 5x5, rad^2, of [w; b]: the true rotation is Exp(w) R (w along camera 2's axes), the true direction is t +
+  // B b normalised, to first order.
+  cv::Mat covariance;
+  cv::Mat direction_basis;  // B, 3x2, orthonormal, normal to t
+  // That the rotation is off by more than 3 degrees or the direction by more than 15, or what bounds the
+  // options name.
+  double failure_probability = std::numeric_limits<double>::quiet_NaN();
+  double sigma_px = std::numeric_limits<double>::quiet_NaN();  // as estimated from the residuals
+
+  // One per match given: whether it agrees with the motion; its point in camera 1's frame, baselines, and
+  // whether there is one (it agrees, and lies in front of both cameras).
+  std::vector<bool> is_inlier;
+  std::vector<cv::Point3f> points;
+  std::vector<bool> is_triangulated;
+};
+
+// Const, and may be called from several threads at once.
+class TwoViewInitializer {
+ public:
+  // Throws std::runtime_error for options that make no sense, which are the programmer's: K, sizes, an
+  // unknown estimator or option.
+  explicit TwoViewInitializer(const TwoViewOptions& options);
+  ~TwoViewInitializer();
+
+  // points1[i] is matched with points2[i]. Never throws for what a front end may give: lists of different
+  // length, few matches, points that are not finite.
+  TwoViewMotion Estimate(const std::vector<cv::Point2f>& points1,
+                         const std::vector<cv::Point2f>& points2) const;
+
+  // As ORB-SLAM2's initialiser is called: matches12[i] is the key point of image 2 that is matched with key
+  // point i of image 1, or -1. The lists of the answer have one entry per key point of image 1.
+  TwoViewMotion Estimate(const std::vector<cv::KeyPoint>& keys1, const std::vector<cv::KeyPoint>& keys2,
+                         const std::vector<int>& matches12) const;
+
+ private:
+  struct Setup;
+  std::unique_ptr<const Setup> setup_;
+};
+
+}  // namespace rcme

@@ -1,0 +1,89 @@
+// From real pairs to studies that resemble them, which the program can run.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/end_to_end/bad_input.h"
+#include "tests/test_support/match_text.h"
+
+namespace rcme {
+namespace {
+
+class TwinProgram : public testing::Test {
+ protected:
+  TwinProgram() {
+    for (const char* name : {"a_1", "a_2", "b_1"}) {
+      const std::string scene = std::string("# scene: ").append(1, name[0]) + "\n";
+      pairs_.Write(std::string(name) + ".csv",
+                   scene + MatchHeader() + TruePoseHeader() + NoisyRows(static_cast<std::uint64_t>(name[2])));
+    }
+  }
+  // 120 right matches with noise of about 0.2 px and 20 wrong ones.
+  static std::string NoisyRows(std::uint64_t seed) {
+    RandomStream rng({.seed = seed, .purpose = 77});
+    std::string rows;
+    for (int i = 0; i < 140; ++i) {
+      const double depth = rng.Uniform(4.0, 12.0), x = rng.Uniform(100.0, 500.0),
+                   y = rng.Uniform(100.0, 350.0);
+      double x2 = x + 600.0 * 0.8 / depth + 0.3 * rng.Normal(),
+             y2 = y + 600.0 * 0.6 / depth + 0.3 * rng.Normal();
+      if (i % 7 == 0) x2 = rng.Uniform(0.0, 640.0), y2 = rng.Uniform(0.0, 480.0);
+      rows += fmt::format("{},{},{},{}\n", x, y, x2, y2);
+    }
+    return rows;
+  }
+
+  TempFolder pairs_, folder_;
+};
+
+TEST_F(TwinProgram, WritesStudiesThatRun) {
+  const std::string out = folder_.Path("twins");
+  const ProgramResult result = RunRcme({"twin", pairs_.path(), "--out", out, "--twins", "2"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, ReadBytes(out + "/twin.txt"));
+  for (const char* part :
+       {"a: 2 pairs, 2 with a geometry", "b: 1 pairs", "spatial_halves", "within: semi-real"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in\n" << result.out;
+  EXPECT_NE(ReadBytes(out + "/twin.csv").find("\na,2,semi_real,refusal,rate,0,0,"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(out + "/a_pairs/a_1.csv"));
+  for (const char* study : {"/a.yaml", "/a_simulated.yaml"}) {
+    const std::string run = folder_.Path("run.sqlite");
+    std::filesystem::remove(run);
+    const ProgramResult ran = RunRcme({"run", out + study, "--trials", "2", "--out", run});
+    ASSERT_EQ(ran.exit_code, 0) << study << ran.err;
+    EXPECT_NE(RunRcme({"summarize", run}).out.find("rcme_calibrated"), std::string::npos);
+  }
+  EXPECT_NE(ReadBytes(out + "/a.yaml").find("redraw_noise_px"), std::string::npos);
+  const std::string once = ReadBytes(out + "/twin.csv");
+  ASSERT_EQ(RunRcme({"twin", pairs_.path(), "--out", out, "--twins", "2"}).exit_code, 0);
+  EXPECT_EQ(ReadBytes(out + "/twin.csv"), once);
+}
+
+TEST_F(TwinProgram, OfOneSceneWritesOneStudy) {
+  const std::string study = folder_.Path("b.yaml");
+  const ProgramResult result =
+      RunRcme({"twin", pairs_.path(), "--scene", "b", "--out", study, "--twins", "1"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(study));
+  EXPECT_TRUE(std::filesystem::exists(folder_.Path("b_pairs")));
+}
+
+TEST_F(TwinProgram, SaysWhatIsWrong) {
+  const auto call = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"twin", pairs_.path(), "--twins", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunRcme(arguments);
+  };
+  EXPECT_TRUE(IsRefused(call({"--out", folder_.Path("s.yaml")}), {"--out", "one scene's study", "a, b"}));
+  EXPECT_TRUE(IsRefused(call({"--out", folder_.Path("x"), "--scene", "c"}), {"--scene: 'c' is not there"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"twin", folder_.Path("none"), "--out", folder_.Path("x")}), {"none"}));
+  TempFolder few;
+  few.Write("a.csv", "# scene: a\n" + MatchHeader() + MatchRows(5));
+  EXPECT_TRUE(IsRefused(RunRcme({"twin", few.path(), "--out", folder_.Path("x")}),
+                        {"scene a", "nothing to resemble"}));
+}
+
+}  // namespace
+}  // namespace rcme
