@@ -18,7 +18,7 @@ namespace rcme {
 struct MatchFolderSettings {
   std::string folder;     // relative to the working directory
   double sigma_px = 0.5;  // the noise level that the estimators assume
-  RedrawSettings redraw;
+  RedrawSettings redraw = {};
 };
 
 // The pairs of one scene of a folder of match files; trial t is file t mod (number of files), each pass with

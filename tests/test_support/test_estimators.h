@@ -37,6 +37,9 @@ class CountedEstimator : public RansacEstimator {
     ++counts_->finishes;
     return AsRansac(*rcme_)->Finish(problem, loop, refinements);
   }
+  ScoredMotion ScoreMotion(const MotionProblem& problem, const RelativePose& start) const override {
+    return AsRansac(*rcme_)->ScoreMotion(problem, start);
+  }
   const RansacOptions& options() const override { return AsRansac(*rcme_)->options(); }
   std::unique_ptr<RansacEstimator> With(const RansacOptions& options) const override {
     return std::make_unique<CountedEstimator>(AsRansac(*rcme_)->With(options), counts_);
