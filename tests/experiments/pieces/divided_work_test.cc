@@ -121,7 +121,7 @@ TEST_F(DividedWork, WhatIsStoppedIsKeptAndGoesOn) {
     FAIL();
   } catch (const Stopped& stopped) {
     const std::string words = stopped.what();
-    EXPECT_NE(words.find(fmt::format("4 of {} rows", 31 - num_pieces)), std::string::npos) << words;
+    EXPECT_NE(words.find(fmt::format("4 of at most {} rows", 31 - num_pieces)), std::string::npos) << words;
   }
 }
 
