@@ -1,4 +1,5 @@
-// The paper's table from two sequences of 60 frames, of KITTI's and of EuRoC's camera.
+// The paper's table, from match files and from rendered sequences of 60 frames as KITTI and EuRoC lay them
+// out.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -6,6 +7,7 @@
 
 #include "stats/random.h"
 #include "tests/end_to_end/bad_input.h"
+#include "tests/test_support/rendered_sequence.h"
 
 namespace rcme {
 namespace {
@@ -40,7 +42,7 @@ std::string FramePair(const std::string& scene, const SequenceCamera& camera, in
   return text;
 }
 
-TEST(PaperTableProgram, OfTwoSequencesOf60Frames) {
+TEST(PaperTableProgram, OfTheMatchFilesOfTwoSequences) {
   TempFolder folder, pairs;
   for (int frame = 0; frame < 59; ++frame) {
     pairs.Write(fmt::format("kitti_00_{:06}.csv", frame),
@@ -69,6 +71,69 @@ TEST(PaperTableProgram, OfTwoSequencesOf60Frames) {
     EXPECT_NE(csv.find(row), std::string::npos) << row << " is not in\n" << csv;
   EXPECT_TRUE(IsRefused(RunRcme({"paper-table", run, "--group", "indoor"}), {"--group", "NAME=SCENE"}));
   EXPECT_TRUE(IsRefused(RunRcme({"paper-table", folder.Path("none.sqlite")}), {"none.sqlite"}));
+}
+
+// From a data set to the table: `rcme pairs`, `rcme run`, `rcme paper-table`. Returns the table's text.
+std::string TableOfDataset(const std::string& dataset, const std::string& layout, const TempFolder& folder) {
+  const std::string pairs = folder.Path("pairs"), run = folder.Path("run.sqlite");
+  const std::string study =
+      folder.Write("study.yaml",
+                   "name: table\ntrials: 1\ndata: {scene: match_files, folder: nowhere}\nestimators:\n"
+                   "  - {name: rcme, label: RCME, options: {reading: as_printed, num_iterations: 50}}\n"
+                   "  - {name: rcme_calibrated, label: calibrated}\n");
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"pairs", dataset, "--layout", layout, "--max-features", "300", "--out", pairs},
+           {"run", study, "--set", "folder=" + pairs, "--out", run, "--threads", "1"}}) {
+    const ProgramResult result = RunRcme(command);
+    EXPECT_EQ(result.exit_code, 0) << command[0] << ": " << result.err;
+  }
+  const ProgramResult table = RunRcme({"paper-table", run, "--out", folder.Path("table")});
+  EXPECT_EQ(table.exit_code, 0) << table.err;
+  return table.out;
+}
+
+// The rows "run,..." of the table's file: that of this part, estimator and quantity.
+std::vector<std::string> RowOf(const TempFolder& folder, const std::string& part_estimator_quantity) {
+  const std::string csv = ReadBytes(folder.Path("table") + "/paper_table.csv");
+  const size_t begin = csv.find("\nrun," + part_estimator_quantity + ",");
+  EXPECT_NE(begin, std::string::npos) << part_estimator_quantity << " is not in\n" << csv;
+  if (begin == std::string::npos) return {};
+  std::vector<std::string> fields = {""};
+  for (size_t i = begin + 1; csv[i] != '\n'; ++i) {
+    if (csv[i] == ',') {
+      fields.emplace_back();
+    } else {
+      fields.back() += csv[i];
+    }
+  }
+  return fields;
+}
+
+// More than 30 of the 59 pairs of neighbouring frames are key frames, and the motions of all of them are
+// right.
+void ExpectRightMotions(const TempFolder& folder, const std::string& scene) {
+  const std::vector<std::string> failures = RowOf(folder, scene + ",calibrated,true_failure");
+  ASSERT_GT(failures.size(), 8u);
+  EXPECT_EQ(failures[5], "0");
+  EXPECT_GT(std::stoi(failures[8]), 30);
+}
+
+TEST(PaperTableProgram, OfARenderedKittiSequenceOf60Frames) {
+  const TempFolder folder;
+  WriteKittiSequence(folder.Path("dataset"), "00", 60);
+  const std::string table = TableOfDataset(folder.Path("dataset"), "kitti", folder);
+  EXPECT_NE(table.find("kitti_00"), std::string::npos) << table;
+  ExpectRightMotions(folder, "kitti_00");
+}
+
+TEST(PaperTableProgram, OfARenderedEurocSequenceOf60Frames) {
+  const TempFolder folder;
+  RenderedCamera camera;
+  camera.radtan = {-0.28, 0.07, 0.0004, -0.0003};
+  WriteEurocSequence(folder.Path("MH_01_easy"), 60, camera);
+  const std::string table = TableOfDataset(folder.Path("MH_01_easy"), "euroc", folder);
+  EXPECT_NE(table.find("MH_01_easy"), std::string::npos) << table;
+  ExpectRightMotions(folder, "MH_01_easy");
 }
 
 TEST(PaperTableProgram, OfARunThatKeepsCountsSaysWhatItNeeds) {
