@@ -28,8 +28,8 @@ double StudentScale(int degrees_of_freedom, RandomStream& rng) {
   return std::sqrt((degrees_of_freedom - 2.0) / chi_square);
 }
 
-std::shared_ptr<const NoiseModel> Configured(std::unique_ptr<NoiseModel> law,
-                                             const std::vector<std::pair<std::string, double>>& values) {
+std::shared_ptr<const NoiseModel> ConfiguredNoise(std::unique_ptr<NoiseModel> law,
+                                                  const std::vector<std::pair<std::string, double>>& values) {
   for (const Parameter& parameter : law->Parameters()) {
     for (const auto& [name, value] : values) {
       if (parameter.name() == name) parameter.SetFromText(fmt::format("{}", value));
@@ -39,7 +39,7 @@ std::shared_ptr<const NoiseModel> Configured(std::unique_ptr<NoiseModel> law,
 }
 
 std::shared_ptr<const NoiseModel> SharedNoise(double sigma_px, double length_px) {
-  return Configured(
+  return ConfiguredNoise(
       MakeCorrelatedNoise(),
       {{"sigma_px", sigma_px}, {"noise_correlation", 1.0}, {"noise_correlation_length_px", length_px}});
 }
