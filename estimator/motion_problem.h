@@ -7,11 +7,13 @@
 
 namespace rcme {
 
-// The input of an estimator: the matches, the cameras, and the assumed noise level.
+// The input of an estimator: the matches, the cameras, and the assumed noise.
 struct MotionProblem {
   std::vector<Correspondence> matches;
   Camera camera1, camera2;
   double sigma_px = 0.5;  // assumed standard deviation of the noise per coordinate in each image (a.2)
+  // Of each match, how many times as great its noise is as sigma_px: 1 in the median. Empty: all alike.
+  std::vector<double> noise_scale = {};
 };
 
 }  // namespace rcme
