@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/noise_scale.h"
+
 namespace rcme {
 namespace {
 
@@ -46,6 +48,23 @@ double RmsDistanceFromLine(const std::vector<Correspondence>& matches,
   return std::sqrt(std::max(eigen.eigenvalues()(0), 0.0));
 }
 
+std::optional<MotionEstimate> RefuseNoiseScale(const MotionProblem& problem) {
+  const std::vector<double>& scales = problem.noise_scale;
+  if (scales.empty()) return std::nullopt;
+  if (scales.size() != problem.matches.size()) {
+    return Refusal(MotionStatus::kInvalidInput,
+                   fmt::format("noise_scale has {} entries for {} matches; one for each, or none, is allowed",
+                               scales.size(), problem.matches.size()));
+  }
+  for (size_t i = 0; i < scales.size(); ++i) {
+    if (scales[i] >= 1.0 / kMaxNoiseScale && scales[i] <= kMaxNoiseScale) continue;
+    return Refusal(MotionStatus::kInvalidInput,
+                   fmt::format("the noise_scale of match {} is {}; a number in [{:g}, {:g}] is allowed", i,
+                               scales[i], 1.0 / kMaxNoiseScale, kMaxNoiseScale));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int min_matches) {
@@ -65,6 +84,7 @@ std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int
                      fmt::format("match {} has a coordinate that is not a finite pixel position", i));
     }
   }
+  if (std::optional<MotionEstimate> refusal = RefuseNoiseScale(problem)) return refusal;
   const int num_distinct = CountDistinct(problem.matches, min_matches);
   if (num_distinct < min_matches) {
     return Refusal(MotionStatus::kTooFewMatches,

@@ -111,19 +111,21 @@ std::string ProblemId(const MotionProblem& problem, std::uint32_t seed) {
     for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) add(x);
   }
   add(problem.sigma_px);
+  for (const double scale : problem.noise_scale) add(scale);
   add(seed);
   return fmt::format("{:016x}", hash ^ (hash >> 32));
 }
 
 std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed) {
-  const Json json = {{"format", kProblemFormat},
-                     {"id", ProblemId(problem, seed)},
-                     {"x1", PointsAsJson(problem.matches, &Correspondence::x1_px)},
-                     {"x2", PointsAsJson(problem.matches, &Correspondence::x2_px)},
-                     {"camera1", CameraAsJson(problem.camera1)},
-                     {"camera2", CameraAsJson(problem.camera2)},
-                     {"sigma_px", problem.sigma_px},
-                     {"seed", seed}};
+  Json json = {{"format", kProblemFormat},
+               {"id", ProblemId(problem, seed)},
+               {"x1", PointsAsJson(problem.matches, &Correspondence::x1_px)},
+               {"x2", PointsAsJson(problem.matches, &Correspondence::x2_px)},
+               {"camera1", CameraAsJson(problem.camera1)},
+               {"camera2", CameraAsJson(problem.camera2)},
+               {"sigma_px", problem.sigma_px},
+               {"seed", seed}};
+  if (!problem.noise_scale.empty()) json["noise_scale"] = problem.noise_scale;
   return json.dump() + "\n";
 }
 

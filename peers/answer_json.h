@@ -13,8 +13,8 @@ namespace rcme {
 // Names a problem and its seed: 16 hexadecimal digits of all their numbers.
 std::string ProblemId(const MotionProblem& problem, std::uint32_t seed);
 
-// {"format", "id", "x1", "x2", "camera1", "camera2", "sigma_px", "seed"} and a line end; numbers such that
-// they are read back bit for bit.
+// {"format", "id", "x1", "x2", "camera1", "camera2", "sigma_px", "seed"}, "noise_scale" where the problem has
+// one, and a line end; numbers such that they are read back bit for bit.
 std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed);
 
 // What stands on one line.

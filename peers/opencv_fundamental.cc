@@ -4,6 +4,7 @@
 #include <numeric>
 #include <opencv2/calib3d.hpp>
 
+#include "estimator/noise_scale.h"
 #include "peers/peers.h"
 #include "peers/recover_pose.h"
 
@@ -34,13 +35,6 @@ double ThresholdPx(const FundamentalOptions& options, const MotionProblem& probl
   return std::hypot(1.0, ratio) * options.threshold_sigma * problem.sigma_px;
 }
 
-MotionProblem Reordered(const MotionProblem& problem, const std::vector<int>& order) {
-  MotionProblem reordered = problem;
-  for (size_t i = 0; i < order.size(); ++i)
-    reordered.matches[i] = problem.matches[static_cast<size_t>(order[i])];
-  return reordered;
-}
-
 // F, E = K2' F K1, and the motion of the essential matrix next to it. Both methods draw their samples from a
 // generator that always begins alike: what the stream decides is the order in which OpenCV gets the matches.
 // Of exactly seven matches OpenCV gives up to three F: the first with most points in front is taken.
@@ -49,7 +43,7 @@ std::optional<PeerAnswer> AskFindFundamentalMat(const MotionProblem& problem,
   std::vector<int> order(problem.matches.size());
   std::iota(order.begin(), order.end(), 0);
   rng.Shuffle(std::span(order));
-  const MotionProblem reordered = Reordered(problem, order);
+  const MotionProblem reordered = PartOf(problem, order);
   const CvPoints points = PixelsOf(reordered);
   cv::Mat mask;
   const cv::Mat Fs =

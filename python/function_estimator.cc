@@ -74,7 +74,7 @@ class FunctionEstimator : public MotionEstimator {
     try {
       return AnswerIn((*function_)(PointsOf(problem.matches, &Correspondence::x1_px),
                                    PointsOf(problem.matches, &Correspondence::x2_px), DictOf(problem.camera1),
-                                   DictOf(problem.camera2), problem.sigma_px, seed));
+                                   DictOf(problem.camera2), problem.sigma_px, ScalesOrNone(problem), seed));
     } catch (const py::error_already_set& error) {
       throw NoOutsideAnswer(MotionStatus::kLibraryError, error.what());
     } catch (const py::cast_error& error) {
@@ -138,6 +138,12 @@ py::object PointsOf(const std::vector<Correspondence>& matches, Eigen::Vector2d 
     numbers(row, 1) = (matches[i].*point).y();
   }
   return points;
+}
+
+py::object ScalesOrNone(const MotionProblem& problem) {
+  const std::vector<double>& scales = problem.noise_scale;
+  if (scales.empty()) return py::none();
+  return ArrayOf(Eigen::Map<const Eigen::VectorXd>(scales.data(), static_cast<Eigen::Index>(scales.size())));
 }
 
 py::dict DictOf(const Camera& camera) {

@@ -18,8 +18,8 @@ namespace rcme {
 void AddPythonEstimator();
 
 // A function as the module's Python half hands it over (python/rcme/_function.py): it takes (x1, x2, camera1,
-// camera2, sigma_px, seed) and returns a dict of the fields of an OutsideAnswer, whatever the user's own
-// function does.
+// camera2, sigma_px, noise_scale, seed) and returns a dict of the fields of an OutsideAnswer, whatever the
+// user's own function does.
 struct PythonFunction {
   pybind11::function call;
   std::string code;  // a hash of its source: a changed function is another estimator
@@ -43,5 +43,6 @@ EstimatorSpec SpecOfFunction(const std::string& name, const std::string& code);
 pybind11::object PointsOf(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*point);
 pybind11::dict DictOf(const Camera& camera);
 pybind11::object ArrayOf(const Eigen::MatrixXd& matrix);
+pybind11::object ScalesOrNone(const MotionProblem& problem);  // None: all matches are alike
 
 }  // namespace rcme

@@ -88,12 +88,12 @@ Camera CameraOf(const std::array<double, 4>& k, int width, int height) {
 }
 
 py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
-                  double sigma_px, const std::string& name, const std::string& file, const Settings& options,
-                  std::uint64_t seed) {
+                  double sigma_px, std::vector<double> noise_scale, const std::string& name,
+                  const std::string& file, const Settings& options, std::uint64_t seed) {
   EstimatorSpec spec = file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file);
   SetOptions(&spec, options);
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
-  MotionProblem problem{{}, camera1, camera2, sigma_px};
+  MotionProblem problem{{}, camera1, camera2, sigma_px, std::move(noise_scale)};
   for (py::ssize_t i = 0; i < x1.shape(0); ++i)
     problem.matches.push_back({{x1.at(i, 0), x1.at(i, 1)}, {x2.at(i, 0), x2.at(i, 1)}});
   MotionEstimate estimate;
@@ -180,9 +180,10 @@ py::dict Simulate(const StudySource& source, std::int64_t condition_index, std::
   return py::dict("x1"_a = PointsOf(problem.matches, &Correspondence::x1_px),
                   "x2"_a = PointsOf(problem.matches, &Correspondence::x2_px),
                   "camera1"_a = DictOf(problem.camera1), "camera2"_a = DictOf(problem.camera2),
-                  "sigma_px"_a = problem.sigma_px, "truth"_a = TruthOf(data), "severity"_a = severity,
-                  "levels"_a = LevelsOf(plan, condition), "origin"_a = data.origin, "weight"_a = data.weight,
-                  "condition"_a = condition.index, "trial"_a = trial);
+                  "sigma_px"_a = problem.sigma_px, "noise_scale"_a = ScalesOrNone(problem),
+                  "truth"_a = TruthOf(data), "severity"_a = severity, "levels"_a = LevelsOf(plan, condition),
+                  "origin"_a = data.origin, "weight"_a = data.weight, "condition"_a = condition.index,
+                  "trial"_a = trial);
 }
 
 // Work that may be stopped: Ctrl-C is an exception of Python once what is in hand is kept.

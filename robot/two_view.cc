@@ -8,6 +8,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/geometry/triangulation.h"
+#include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "stats/random.h"
 
@@ -128,7 +129,8 @@ TwoViewInitializer::TwoViewInitializer(const TwoViewOptions& options)
 TwoViewInitializer::~TwoViewInitializer() = default;
 
 TwoViewMotion TwoViewInitializer::Estimate(const std::vector<cv::Point2f>& points1,
-                                           const std::vector<cv::Point2f>& points2) const {
+                                           const std::vector<cv::Point2f>& points2,
+                                           const std::vector<double>& sigmas) const {
   if (points1.size() != points2.size()) {
     return BadInput(fmt::format("{} points of image 1 and {} of image 2 are no matches; give as many of both",
                                 points1.size(), points2.size()));
@@ -137,6 +139,7 @@ TwoViewMotion TwoViewInitializer::Estimate(const std::vector<cv::Point2f>& point
     MotionProblem problem{{}, setup_->camera1, setup_->camera2, setup_->sigma_px};
     for (size_t i = 0; i < points1.size(); ++i)
       problem.matches.push_back({{points1[i].x, points1[i].y}, {points2[i].x, points2[i].y}});
+    problem.noise_scale = NoiseScaleOf(sigmas);
     RandomStream rng({.seed = setup_->seed});
     return MotionFrom(problem, setup_->estimator->Estimate(problem, rng),
                       setup_->greatest_failure_probability);

@@ -76,8 +76,11 @@ class TwoViewInitializer {
 
   // points1[i] is matched with points2[i]. Never throws for what a front end may give: lists of different
   // length, few matches, points that are not finite.
-  TwoViewMotion Estimate(const std::vector<cv::Point2f>& points1,
-                         const std::vector<cv::Point2f>& points2) const;
+  //
+  // sigmas: each match's own standard deviation, where the front end knows which are noisier (a key point's
+  // grows with the scale it is found at). Only their relation counts, in any unit; empty: all alike.
+  TwoViewMotion Estimate(const std::vector<cv::Point2f>& points1, const std::vector<cv::Point2f>& points2,
+                         const std::vector<double>& sigmas = {}) const;
 
   // As ORB-SLAM2's initialiser is called: matches12[i] is the key point of image 2 that is matched with key
   // point i of image 1, or -1. The lists of the answer have one entry per key point of image 1.

@@ -7,6 +7,7 @@
 #include "estimator/calibrated/candidates.h"
 #include "estimator/calibrated/explanation.h"
 #include "estimator/calibrated/hypothesis_search.h"
+#include "estimator/noise_scale.h"
 
 namespace rcme {
 namespace {
@@ -35,10 +36,7 @@ void Leave(const std::vector<size_t>& only, MatchMask* mask) {
 // candidates refined at a wider one, where a compromise between two motions would win.
 std::optional<Mode> MotionOf(const MotionProblem& problem, const MatchBlocks& matches,
                              const MixturePrior& fixed, const std::vector<size_t>& some, RandomStream& rng) {
-  MotionProblem part = problem;
-  part.matches.clear();
-  for (const size_t i : some) part.matches.push_back(problem.matches[i]);
-  const MatchBlocks blocks(part);
+  const MatchBlocks blocks(PartOf(problem, some));
   CalibratedOptions options;
   options.max_samples = kMostSamples;
   options.num_candidates = kCandidates;

@@ -15,6 +15,7 @@
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
 #include "estimator/calibrated/weigh_modes.h"
+#include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
 
@@ -32,11 +33,7 @@ MotionProblem Shuffled(const MotionProblem& problem, RandomStream& rng, std::vec
   order->resize(problem.matches.size());
   std::iota(order->begin(), order->end(), 0);
   rng.Shuffle(std::span<int>(*order));
-  MotionProblem shuffled = problem;
-  for (size_t i = 0; i < order->size(); ++i) {
-    shuffled.matches[i] = problem.matches[static_cast<size_t>((*order)[i])];
-  }
-  return shuffled;
+  return PartOf(problem, *order);
 }
 
 MixturePrior PriorOf(const MotionProblem& problem, const CalibratedOptions& options) {

@@ -6,6 +6,7 @@
 
 #include "estimator/calibrated/match_terms.h"
 #include "estimator/model_choice/two_view_models.h"
+#include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "experiments/data/data_source.h"
 #include "experiments/truth_free/twin.h"
@@ -17,13 +18,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kLevel = 0.001;
-
-MotionProblem InliersAlone(const MotionProblem& problem, const MotionEstimate& estimate) {
-  MotionProblem inliers = problem;
-  inliers.matches.clear();
-  for (const int i : estimate.inliers) inliers.matches.push_back(problem.matches[static_cast<size_t>(i)]);
-  return inliers;
-}
 
 // Of n normal residuals the median of the sizes has an asymptotic efficiency of 0.37: sd / sigma =
 // 1 / sqrt(2 * 0.37 n).
@@ -54,7 +48,7 @@ bool MotionEvidence::DoesNoiseDisagree() const {
 }
 
 MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& estimate) {
-  MotionProblem inliers = InliersAlone(problem, estimate);
+  MotionProblem inliers = PartOf(problem, estimate.inliers);
   MotionEvidence evidence;
   evidence.num_matches = static_cast<int>(problem.matches.size());
   evidence.num_inliers = static_cast<int>(inliers.matches.size());

@@ -38,6 +38,7 @@ double SecondsOf(const std::function<void()>& work) {
 MotionProblem FirstMatches(const MotionProblem& problem, double count) {
   MotionProblem part = problem;
   part.matches.resize(static_cast<size_t>(count));
+  if (!part.noise_scale.empty()) part.noise_scale.resize(part.matches.size());
   return part;
 }
 

@@ -67,6 +67,7 @@ void KeepTrueMatches(TrialData* data, size_t num_matches) {
     values->resize(num_kept);
   };
   keep(&data->problem.matches);
+  keep(&data->problem.noise_scale);
   keep(&data->truth.is_inlier_true);
   keep(&data->truth.is_undetectable);
   keep(&data->scene_point);

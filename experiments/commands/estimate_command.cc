@@ -94,9 +94,9 @@ class Answerer {
     MatchFile file = is_input ? ReadMatchesFromInput(given_) : ReadMatchFile(path, given_);
     TrialData data;
     data.origin = file.path;
-    data.problem = {std::move(file.matches), file.camera1, file.camera2, arguments_.sigma_px};
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.sd = file.truth_sd;
+    data.problem = ProblemOf(std::move(file), arguments_.sigma_px);
     return data;
   }
 

@@ -18,7 +18,7 @@ void AddMatchCommand(CLI::App& app) {
   command->footer(
       "Every match carries the sigma that its key points' sizes stand for (sigma_px, "
       "experiments/data/features.h):\n"
-      "kept in the file, used by no estimator.");
+      "how noisy it is beside the others.");
   auto arguments = std::make_shared<MatchImagesOptions>();
   auto out = std::make_shared<std::string>();
   command

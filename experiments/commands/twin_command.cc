@@ -48,6 +48,7 @@ void WriteTemplates(const TwinSource& source, const std::filesystem::path& folde
     file.image1 = one.image1;
     file.image2 = one.image2;
     file.matches = one.exact->problem.matches;
+    file.sigma_px = one.exact->problem.noise_scale;  // only their relation counts
     file.camera1 = one.exact->problem.camera1;
     file.camera2 = one.exact->problem.camera2;
     file.cam2_from_cam1_true = one.exact->truth.cam2_from_cam1_true;

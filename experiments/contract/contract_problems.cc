@@ -54,6 +54,13 @@ Change SetSigma(double sigma_px) {
   return [sigma_px](MotionProblem& problem) { problem.sigma_px = sigma_px; };
 }
 
+Change SetScale(double scale, size_t at = 3) {
+  return [scale, at](MotionProblem& problem) {
+    problem.noise_scale.assign(problem.matches.size(), 1.0);
+    problem.noise_scale.at(at) = scale;
+  };
+}
+
 template <typename Work>
 Change ForEachMatch(Work work) {
   return [work](MotionProblem& problem) {
@@ -96,6 +103,18 @@ std::vector<Spoiling> Spoilings() {
       {"negative sigma", SetSigma(-0.5), true},
       {"sigma NaN", SetSigma(kNaN), true},
       {"infinite sigma", SetSigma(kInfinity), true},
+      {"fewer noise scales than matches", [](P& p) { p.noise_scale.assign(p.matches.size() - 1, 1.0); },
+       true},
+      {"more noise scales than matches", [](P& p) { p.noise_scale.assign(p.matches.size() + 1, 1.0); }, true},
+      {"a noise scale of 0", SetScale(0.0), true},
+      {"a negative noise scale", SetScale(-1.0), true},
+      {"a noise scale that is NaN", SetScale(kNaN, 0), true},
+      {"an infinite noise scale", SetScale(kInfinity), true},
+      {"noise scales of 1e-6 and 1e6",
+       [](P& p) {
+         for (size_t i = 0; i < p.matches.size(); ++i) p.noise_scale.push_back(i % 2 == 0 ? 1e-6 : 1e6);
+       },
+       false},
       {"sigma 1e-300", SetSigma(1e-300), false},
       {"sigma 1e300", SetSigma(1e300), false},
   };

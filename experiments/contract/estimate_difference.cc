@@ -66,6 +66,8 @@ Numbers NumbersOf(const MotionEstimate& e) {
 Numbers NumbersOf(const MotionProblem& problem) {
   Numbers numbers = {{"sigma_px", problem.sigma_px},
                      {"number of matches", static_cast<double>(problem.matches.size())}};
+  numbers.emplace_back("number of noise scales", static_cast<double>(problem.noise_scale.size()));
+  for (const double scale : problem.noise_scale) numbers.emplace_back("a noise scale", scale);
   for (const Camera& c : {problem.camera1, problem.camera2}) {
     for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height})
       numbers.emplace_back("a number of a camera", x);

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "experiments/base/file_output.h"
 #include "experiments/data/gzip_lines.h"
@@ -288,6 +289,11 @@ MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given) {
 
 MatchFile ReadMatchesFromInput(const GivenCameras& given) {
   return ReadMatches("standard input", GzipLines::OfStandardInput(), given);
+}
+
+MotionProblem ProblemOf(MatchFile file, double sigma_px) {
+  return {std::move(file.matches), file.camera1, file.camera2, sigma_px,
+          NoiseScaleOf(std::move(file.sigma_px))};
 }
 
 void WriteMatchFile(const MatchFile& file, const std::string& path) {

@@ -61,6 +61,7 @@ std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64
     for (const double x : pose->t) add(x);
     add(is_direction_known ? 1.0 : 0.0);
   }
+  for (const double x : file.sigma_px) add(x);
   if (file.truth_sd) {
     for (const double x : file.truth_sd->rotation_rad) add(x);
     for (const double x : file.truth_sd->translation) add(x);
@@ -158,7 +159,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     data.truth.sd = file.truth_sd;
     group.num_with_truth_sd += file.truth_sd.has_value();
     group.digest = Digest(file, data.truth.is_direction_known, group.digest);
-    data.problem = {std::move(file.matches), file.camera1, file.camera2, settings.sigma_px};
+    data.problem = ProblemOf(std::move(file), settings.sigma_px);
     if (redraw.IsOn()) Redraw::Label(&data);
     group.pairs.push_back(std::move(data));
   }

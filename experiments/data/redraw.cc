@@ -105,11 +105,14 @@ TrialData Redraw::Draw(const TrialData& exact, const StreamName& trial_name) con
   const std::vector<bool>& is_right = drawn.truth.is_inlier_true;
   std::vector<Correspondence> right;
   std::vector<Eigen::Vector2d> second_points;  // of the wrong ones
+  std::vector<double> right_scale;             // of their noise, where the pair states it
   for (size_t i = 0; i < matches.size(); ++i) {
-    if (is_right[i])
-      right.push_back(matches[i]);
-    else
+    if (!is_right[i]) {
       second_points.push_back(matches[i].x2_px);
+      continue;
+    }
+    right.push_back(matches[i]);
+    if (!exact.problem.noise_scale.empty()) right_scale.push_back(exact.problem.noise_scale[i]);
   }
   RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise),
                wrong_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
@@ -123,8 +126,10 @@ TrialData Redraw::Draw(const TrialData& exact, const StreamName& trial_name) con
       noisy[k].x2_px += moved[k].x2_px - right[k].x2_px;
     }
   }
-  for (size_t k = 0; k < right.size() && settings_.student_dof > 0; ++k) {
-    const double scale = StudentScale(settings_.student_dof, noise_rng);
+  for (size_t k = 0; k < right.size(); ++k) {
+    double scale = right_scale.empty() ? 1.0 : right_scale[k];
+    if (settings_.student_dof > 0) scale *= StudentScale(settings_.student_dof, noise_rng);
+    if (scale == 1.0) continue;
     noisy[k].x1_px = right[k].x1_px + scale * (noisy[k].x1_px - right[k].x1_px);
     noisy[k].x2_px = right[k].x2_px + scale * (noisy[k].x2_px - right[k].x2_px);
   }

@@ -19,7 +19,9 @@ enum class WrongMatches { kKept, kShuffled };
 // What a `data:` block says of it. The noise of a key point has the variance noise_px^2, of which a share is
 // that of its near neighbours (one point found twice), a share that of far ones (one piece of texture), and
 // the rest its own. It is normal, or Student's t: then all four coordinates of a match, whose key points are
-// precise or not, are large together, by the root of (m - 2) / chi-square with m degrees of freedom.
+// precise or not, are large together, by the root of (m - 2) / chi-square with m degrees of freedom. Where a
+// pair states how noisy its matches are, each one's noise is as many times as large
+// (MotionProblem::noise_scale).
 struct RedrawSettings {
   double noise_px = 0.0;  // 0: nothing is drawn, matches are those of the files
   int student_dof = 0;    // 0: normal; else 3 or more

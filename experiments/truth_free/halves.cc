@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "estimator/noise_scale.h"
 #include "experiments/data/data_source.h"
 #include "experiments/trial/answer_check.h"
 #include "stats/consistency.h"
@@ -48,11 +49,11 @@ std::optional<double> DifferenceOfHalves(const MotionProblem& problem, const Mot
   const std::vector<bool> is_first = FirstHalf(problem, whole, split, name);
   std::vector<MotionEstimate> answers;
   for (const bool first : {true, false}) {
-    MotionProblem half = problem;
-    half.matches.clear();
+    std::vector<size_t> members;
     for (size_t i = 0; i < is_first.size(); ++i) {
-      if (is_first[i] == first) half.matches.push_back(problem.matches[i]);
+      if (is_first[i] == first) members.push_back(i);
     }
+    const MotionProblem half = PartOf(problem, members);
     if (half.matches.size() < kLeastMatches) return std::nullopt;
     RandomStream rng = StreamFor(name, first ? StreamPurpose::kSampling : StreamPurpose::kMonteCarlo);
     answers.push_back(Judged(estimator.Estimate(half, rng), half.matches.size()));

@@ -16,10 +16,9 @@ std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px
     MatchFile file = ReadMatchFile(path.string());
     PairSet& set = sets[file.scene];
     set.name = file.scene;
-    set.pairs.push_back({path.filename().string(),
-                         file.image1,
-                         file.image2,
-                         {std::move(file.matches), file.camera1, file.camera2, sigma_px}});
+    NamedPair pair{path.filename().string(), file.image1, file.image2, {}};
+    pair.problem = ProblemOf(std::move(file), sigma_px);
+    set.pairs.push_back(std::move(pair));
   }
   std::vector<PairSet> all;
   for (auto& [scene, set] : sets) all.push_back(std::move(set));

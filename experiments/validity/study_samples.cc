@@ -65,6 +65,8 @@ MapSample SampleOf(const Case& made, int num_points) {
   const TrialData& data = made.data;
   MapSample sample{made.pose_true(), {data.problem, data.problem.matches[n]}, {data.problem, {}}, 0.0};
   sample.observed.problem.matches.resize(n);
+  sample.observed.problem.noise_scale.clear();  // a map is of what first-order theory says of equal noise
+  sample.exact.problem.noise_scale.clear();
   sample.exact.problem.matches.clear();
   const auto point = [&](size_t k) { return made.scene.points_in_cam1[data.scene_point[k]]; };
   for (size_t k = 0; k < n; ++k) sample.exact.problem.matches.push_back(ExactMatch(made.scene, point(k)));

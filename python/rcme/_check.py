@@ -13,6 +13,7 @@ from rcme import _rcme
 
 MAX_COORDINATE_PX = 1e6
 MAX_MATCHES = 1_000_000
+MAX_NOISE_SCALE = 1e6
 # How many parameters each model has, with the places of fx, fy, cx and cy among them.
 CAMERA_MODELS = {"PINHOLE": (4, (0, 1, 2, 3)), "SIMPLE_PINHOLE": (3, (0, 0, 1, 2))}
 
@@ -64,6 +65,17 @@ def points(name: str, value: Any) -> np.ndarray:
         raise ValueError(f"{name}: row {bad[0]} is {array[bad[0]].tolist()}, of shape {array.shape}; expected {expected}, "
                          f"each a finite number in [-{MAX_COORDINATE_PX:g}, {MAX_COORDINATE_PX:g}]")
     return array
+
+
+def scales(name: str, value: Any, count: int) -> list[float]:
+    """One positive number per match, or none at all."""
+    if value is None:
+        return []
+    array = shaped(name, value, (count,), "a number for each match")
+    if not ((array >= 1.0 / MAX_NOISE_SCALE) & (array <= MAX_NOISE_SCALE)).all():
+        raise ValueError(f"{name}: holds {array.min():g} to {array.max():g}; expected numbers in "
+                         f"[{1.0 / MAX_NOISE_SCALE:g}, {MAX_NOISE_SCALE:g}]")
+    return array.tolist()
 
 
 def whole(name: str, value: Any, least: int, most: int) -> int:

@@ -30,7 +30,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         its principal point in its centre.
     options : dict
         estimator (its name; default rcme_calibrated) or estimator_file (a path); sigma_px, the standard deviation of the
-        noise of a coordinate in each image (default 0.5); seed of the random samples (default 1); and any option of the
+        noise of a coordinate in each image (default 0.5); noise_scale, N positive numbers: how many times as great each match's
+        noise is (only `rcme.estimators()` that say so use it; default: all alike); seed of the random samples (default 1); and any option of the
         estimator: `rcme.estimators()` lists them.
 
     Returns
@@ -57,10 +58,10 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     if len(x1) != len(x2):
         raise ValueError(f"x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
     cameras = _check.camera("camera1", camera1), _check.camera("camera2", camera2)
-    chosen = _options(options)
+    chosen = _options(options, len(x1))
     try:
-        answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["estimator"], chosen["estimator_file"],
-                                chosen["options"], chosen["seed"])
+        answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
+                                chosen["estimator_file"], chosen["options"], chosen["seed"])
     except ValueError as error:
         raise ValueError(f"options: {error}") from None
     return _pose_and_info(answer, len(x1))
@@ -73,7 +74,7 @@ def estimators() -> dict[str, dict[str, Any]]:
             for name, doc, options in _rcme.estimators() if name != "python"}
 
 
-def _options(options: Optional[Mapping[str, Any]]) -> dict[str, Any]:
+def _options(options: Optional[Mapping[str, Any]], num_matches: int) -> dict[str, Any]:
     """Those of the call apart from those of the estimator."""
     if options is None:
         options = {}
@@ -84,6 +85,7 @@ def _options(options: Optional[Mapping[str, Any]]) -> dict[str, Any]:
     if name is not None and file is not None:
         raise ValueError("options: estimator and estimator_file are both there; expected one of them")
     return {"sigma_px": _check.number("options['sigma_px']", rest.pop("sigma_px", 0.5), 1e-9, 1000.0),
+            "noise_scale": _check.scales("options['noise_scale']", rest.pop("noise_scale", None), num_matches),
             "seed": _check.whole("options['seed']", rest.pop("seed", 1), 0, 2**63 - 1),
             "estimator": _check.plain("options['estimator']", "rcme_calibrated" if name is None else name),
             "estimator_file": "" if file is None else _check.existing("options['estimator_file']", file, "an estimator file"),

@@ -22,10 +22,13 @@ def estimator_of(function: Callable[..., Any]) -> Callable[..., dict[str, Any]]:
     """The function as the C++ half calls it: never raises, returns the fields of an answer."""
 
     def call(x1: np.ndarray, x2: np.ndarray, camera1: dict[str, Any], camera2: dict[str, Any], sigma_px: float,
-             seed: int) -> dict[str, Any]:
+             noise_scale: np.ndarray | None, seed: int) -> dict[str, Any]:
         num_matches = len(x1)
+        options = {"sigma_px": sigma_px, "seed": seed}
+        if noise_scale is not None:
+            options["noise_scale"] = noise_scale
         try:
-            result = function(x1, x2, camera1, camera2, {"sigma_px": sigma_px, "seed": seed})
+            result = function(x1, x2, camera1, camera2, options)
         except BaseException as error:  # noqa: BLE001 (also SystemExit: the run is not the function's to end)
             return {"status": "library_error", "message": _in_words(error)}
         try:

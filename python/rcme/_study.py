@@ -49,7 +49,7 @@ def simulate(study: Study, condition: int = 0, trial: int = 0, *, overrides: Opt
     Returns
     -------
     dict with x1, x2 (N, 2; px), camera1, camera2 (dicts as `estimate_relative_pose` takes them), sigma_px (what estimators
-    assume), levels (of the factors, as text), severity (how hard the problem is, by name), origin, weight, condition, trial,
+    assume), noise_scale (N, how noisy they are told each match is beside the others; None: they are told nothing), levels (of the factors, as text), severity (how hard the problem is, by name), origin, weight, condition, trial,
     and truth: R (3, 3), t (3; None where nobody knows it), inliers (bool, N; None for real pairs) and undetectable (bool, N:
     wrong matches on their true epipolar line; None where there are none known).
 
@@ -72,7 +72,8 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
     study : path of a study file (YAML), or a dict with the same keys
     estimators : dict {label: estimator}, added to those of the study. An estimator is
         - a function (x1, x2, camera1, camera2, options) -> (pose, info), as `estimate_relative_pose` itself: x1, x2 (N, 2;
-          px), cameras as dicts, options {"sigma_px": float, "seed": int}. The truth is not among them. It returns a pose ((R,
+          px), cameras as dicts, options {"sigma_px": float, "seed": int}, and "noise_scale" (N, 1 in
+          the median) where the data state how noisy each match is. The truth is not among them. It returns a pose ((R,
           t), a dict, an object with R and t, or a 3 x 4 matrix; t of any length) alone or with a dict: pose_cov (6, 6) of
           [w, dt], inliers (mask or indices), p_failure, sigma, inlier_probabilities, status, message, each of which may be
           left out; or None where it finds no motion. Without pose_cov it is given the first-order covariance of its inliers;

@@ -1,5 +1,6 @@
 #include "estimator/problem_check.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -62,6 +63,20 @@ TEST(RefuseUnsolvable, BadNoiseLevel) {
     MotionProblem problem = OrdinaryProblem(20);
     problem.sigma_px = bad;
     ExpectRefusal(problem, MotionStatus::kInvalidInput, "sigma_px");
+  }
+}
+
+TEST(RefuseUnsolvable, NoiseScalesAreOnePerMatchFiniteAndPositive) {
+  MotionProblem problem = OrdinaryProblem(20);
+  problem.noise_scale.assign(20, 2.0);
+  EXPECT_FALSE(RefuseUnsolvable(problem, 8));
+  for (const double bad : {0.0, -1.0, kNan, kInfinity, 1e-7, 1e7}) {
+    problem.noise_scale[7] = bad;
+    ExpectRefusal(problem, MotionStatus::kInvalidInput, "noise_scale of match 7 is ");
+  }
+  for (const size_t count : {1u, 19u, 21u}) {
+    problem.noise_scale.assign(count, 1.0);
+    ExpectRefusal(problem, MotionStatus::kInvalidInput, fmt::format("{} entries for 20 matches", count));
   }
 }
 

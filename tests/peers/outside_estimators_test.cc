@@ -98,6 +98,11 @@ TEST(AnswerJson, ProblemsAreReadBackBitForBit) {
   MotionProblem other = problem;
   other.matches[3].x2_px.y() = std::nextafter(other.matches[3].x2_px.y(), 1e9);
   EXPECT_NE(ProblemId(problem, 7), ProblemId(other, 7));
+  EXPECT_THAT(line, Not(HasSubstr("noise_scale")));
+  other = problem;
+  other.noise_scale.assign(20, 0.75);
+  EXPECT_THAT(ProblemAsJson(other, 7), HasSubstr("\"noise_scale\":[0.75,0.75,"));
+  EXPECT_NE(ProblemId(problem, 7), ProblemId(other, 7));
 }
 
 TEST(AnswerJson, WhatIsNoAnswerHasAFault) {

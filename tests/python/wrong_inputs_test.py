@@ -56,6 +56,8 @@ WRONG = {
         ("x1", dict(x1=X[0])), ("x1", dict(x1=X.reshape(2, 20))), ("x1", dict(x1="points")), ("x1", dict(x1=None)),
         ("x1", dict(x1=X.astype(complex))), ("x1", dict(x1=X * np.nan)), ("x1", dict(x1=X * 1e9)),
         ("x1", dict(x1=[[1, 2], [3]])), ("x2", dict(x2=X[:7])), ("x2", dict(x2=X[:, :, None])),
+        ("noise_scale", dict(options={"noise_scale": np.ones(19)})), ("noise_scale", dict(options={"noise_scale": np.zeros(20)})),
+        ("noise_scale", dict(options={"noise_scale": 1.0})), ("noise_scale", dict(options={"noise_scale": [np.nan] * 20})),
         ("camera1", dict(camera1=7)), ("camera1", dict(camera1=np.eye(4))), ("camera1", dict(camera1=np.zeros((3, 3)))),
         ("camera1", dict(camera1=[[700.0, 5, 320], [0, 700, 240], [0, 0, 1]])), ("camera1", dict(camera1=np.diag([-700.0, 700, 1]))),
         ("camera2", dict(camera2={})), ("camera2", dict(camera2=camera(model="OPENCV"))),

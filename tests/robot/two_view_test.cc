@@ -79,6 +79,19 @@ TEST(TwoViewInitializer, GivesTheEstimatorsOwnAnswer) {
   EXPECT_LT(AngleBetween(own.cam2_from_cam1.t, kT), 0.05);
 }
 
+TEST(TwoViewInitializer, SigmasAreOnePerMatchInAnyUnit) {
+  const Matches m = MatchesOf(100);
+  const TwoViewInitializer initializer(Options());
+  std::vector<double> sigmas(m.points1.size(), 3.0);
+  EXPECT_EQ(cv::norm(initializer.Estimate(m.points1, m.points2, sigmas).R,
+                     initializer.Estimate(m.points1, m.points2).R),
+            0.0);
+  sigmas.pop_back();
+  const TwoViewMotion motion = initializer.Estimate(m.points1, m.points2, sigmas);
+  EXPECT_EQ(motion.verdict, TwoViewVerdict::kBadInput);
+  EXPECT_NE(motion.message.find("99 entries for 100 matches"), std::string::npos) << motion.message;
+}
+
 // A point of a right match in camera 1's frame projects onto its key point: within three pixels.
 TEST(TwoViewInitializer, TriangulatesWhatAgrees) {
   const Matches m = MatchesOf(200);

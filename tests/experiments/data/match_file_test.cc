@@ -145,6 +145,16 @@ TEST_F(MatchFileTest, AColumnMayGiveEachMatchItsOwnSigma) {
       Refuses(MatchHeader() + "x1,y1,x2,y2,sigma_px,sigma_px\n", {":5: column sigma_px stands twice"}));
 }
 
+// Each over their median; how large they are all together is not passed on.
+TEST_F(MatchFileTest, EstimatorsAreToldHowTheSigmasCompare) {
+  EXPECT_TRUE(ProblemOf(Read(FullText()), 0.7).noise_scale.empty());
+  const std::string rows = MatchHeader() + "x1,y1,x2,y2,sigma_px\n1,2,3,4,0.5\n5,6,7,8,4\n9,1,2,3,2\n";
+  const MotionProblem problem = ProblemOf(Read(rows), 0.7);
+  EXPECT_EQ(problem.noise_scale, (std::vector<double>{0.25, 2.0, 1.0}));
+  EXPECT_EQ(problem.sigma_px, 0.7);
+  EXPECT_EQ(problem.matches.size(), 3u);
+}
+
 TEST_F(MatchFileTest, NoMatchesIsAnAnswerNotAnError) { EXPECT_TRUE(Read(MatchHeader()).matches.empty()); }
 
 TEST_F(MatchFileTest, TruePoseIsMadeUnitLength) {

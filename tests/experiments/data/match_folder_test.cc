@@ -13,6 +13,7 @@
 #include "experiments/study/run_description.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/truth_free/pair_set.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
@@ -57,6 +58,19 @@ TEST_F(MatchFolderTest, HowGoodTheTruthIsCountsAndIsSaid) {
   EXPECT_EQ(TruthQualityInWords("a simulation"), "");
   EXPECT_THAT(TruthQualityInWords("# condition 0: 2 files, digest 00ff, truth_sd in 2\n"),
               testing::HasSubstr("all 2 pairs state"));
+}
+
+TEST_F(MatchFolderTest, EachMatchsOwnSigmaIsPassedOnAndPartOfTheIdentity) {
+  const std::string text = "# scene: c\n" + MatchHeader() + "x1,y1,x2,y2,sigma_px\n";
+  folder_.Write("c_000.csv", text + "1,2,3,4,1\n5,6,7,8,2\n9,1,2,3,4\n");
+  const StudyPlan plan = MakePlan(FolderStudy());
+  EXPECT_TRUE(plan.conditions[0].source->Make({1, 0, 0, 0}).problem.noise_scale.empty());
+  EXPECT_EQ(plan.conditions[2].source->Make({1, 0, 0, 0}).problem.noise_scale,
+            (std::vector<double>{0.5, 1.0, 2.0}));
+  const std::vector<PairSet> sets = PairSetsOfFolder(folder_.path(), 0.7);
+  EXPECT_EQ(sets[2].pairs[0].problem.noise_scale, (std::vector<double>{0.5, 1.0, 2.0}));
+  folder_.Write("c_000.csv", text + "1,2,3,4,1\n5,6,7,8,2\n9,1,2,3,3\n");
+  EXPECT_NE(Describe(MakePlan(FolderStudy())).identity, Describe(plan).identity);
 }
 
 TEST_F(MatchFolderTest, GroupsByScene) {

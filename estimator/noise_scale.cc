@@ -1,0 +1,13 @@
+#include "estimator/noise_scale.h"
+
+#include "stats/median_ratio.h"
+
+namespace rcme {
+
+std::vector<double> NoiseScaleOf(std::vector<double> sigmas) {
+  const double median = MedianOf(sigmas);
+  for (double& sigma : sigmas) sigma /= median;
+  return sigmas;
+}
+
+}  // namespace rcme
