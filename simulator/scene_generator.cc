@@ -16,6 +16,7 @@
 #include "simulator/scene_registry.h"
 #include "simulator/severity/parallax.h"
 #include "simulator/split_by_shares.h"
+#include "stats/order_statistic.h"
 
 namespace rcme {
 namespace {

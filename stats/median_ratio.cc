@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/order_statistic.h"
+
 namespace rcme {
 namespace {
 
@@ -22,10 +24,11 @@ double RatioIn(std::span<const UnitValues* const> units) {
 
 double MedianOf(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+  const size_t half = values.size() / 2;
+  const double middle = ValueOfRank(half, &values);
+  if (values.size() % 2 == 1) return middle;
+  return 0.5 *
+         (middle + *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(half)));
 }
 
 ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confidence, int num_resamples,

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "stats/order_statistic.h"
+
 namespace rcme {
 namespace {
 
@@ -68,11 +70,9 @@ Parts PartsOf(const Eigen::Vector3d& direction, const Displacement& match) {
   return parts;
 }
 
-double Quantile(double share, std::vector<double>* values) {
+double UpperQuantile(double share, std::vector<double>* values) {
   if (values->empty()) return 0.0;
-  const auto at = values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size()));
-  std::ranges::nth_element(*values, at);
-  return *at;
+  return ValueOfRank(static_cast<size_t>(share * static_cast<double>(values->size())), values);
 }
 
 // The logarithm of a product of factors of at least one, without a logarithm of each.
@@ -104,9 +104,9 @@ AxisFit FirstFit(const std::vector<Parts>& parts) {
   AxisFit fit;
   std::vector<double> values;
   for (const Parts& p : parts) values.push_back(p.along / p.sin);
-  fit.x(3) = Quantile(0.5, &values);
+  fit.x(3) = UpperQuantile(0.5, &values);
   for (double& value : values) value = std::abs(value - fit.x(3));
-  fit.variance = std::pow(1.4826 * Quantile(0.5, &values), 2);
+  fit.variance = std::pow(1.4826 * UpperQuantile(0.5, &values), 2);
   return fit;
 }
 
@@ -214,7 +214,7 @@ double UsualDepthInNoise(const Explanation& explanation) {
   for (size_t i = 0; i < explanation.probability.size(); ++i) {
     if (explanation.probability[i] > 0.5) depths.push_back(explanation.terms.depth[i]);
   }
-  return Quantile(0.8, &depths);
+  return UpperQuantile(0.8, &depths);
 }
 
 DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const ExplainedMode& mode,

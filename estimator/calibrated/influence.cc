@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/order_statistic.h"
+
 namespace rcme {
 namespace {
 
@@ -23,14 +25,13 @@ std::vector<double> WrongByInfluence(const Mode& mode, const Explanation& explan
     if (explanation.probability[i] > 0.5) leverages.push_back(explanation.leverage[i]);
   }
   if (leverages.empty()) return wrong;
-  const auto twentieth = leverages.begin() + static_cast<std::ptrdiff_t>(19 * leverages.size() / 20);
-  std::ranges::nth_element(leverages, twentieth);
+  const double twentieth = ValueOfRank(19 * leverages.size() / 20, &leverages);
   const MixtureParameters& m = mode.mixture;
   const double outlier = (1.0 - m.inlier_ratio) * m.outlier_density;
   for (size_t i = 0; i < wrong.size(); ++i) {
     if (!(explanation.probability[i] > 0.5)) continue;
     const double by_residual = outlier / (m.inlier_ratio * explanation.left_out_density[i] + outlier);
-    wrong[i] = ProbabilityWrong(by_residual, explanation.leverage[i], *twentieth);
+    wrong[i] = ProbabilityWrong(by_residual, explanation.leverage[i], twentieth);
   }
   return wrong;
 }

@@ -9,6 +9,7 @@
 #include "estimator/refinement/sampson_equations.h"
 #include "estimator/robust_covariance/clustered_covariance.h"
 #include "estimator/uncertainty/motion_covariance.h"
+#include "stats/order_statistic.h"
 
 namespace rcme {
 namespace {
@@ -31,9 +32,7 @@ double SigmaOfResiduals(const MotionProblem& problem, std::span<const int> inlie
   std::vector<double> sizes;
   for (const int i : inliers)
     sizes.push_back(std::abs(model.Evaluate(problem.matches[static_cast<size_t>(i)]).r));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return problem.sigma_px * *middle / kNormalQuartile;
+  return problem.sigma_px * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
 }
 
 std::vector<int> FittedOf(const MotionProblem& problem, const RelativePose& pose,

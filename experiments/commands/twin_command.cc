@@ -10,7 +10,7 @@
 #include "experiments/commands/twin_commands.h"
 #include "experiments/data/match_folder.h"
 #include "experiments/study/study_file.h"
-#include "experiments/truth_free/twin_report.h"
+#include "experiments/truth_free/twin_output.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

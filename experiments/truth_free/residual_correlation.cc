@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
+#include "experiments/truth_free/twin.h"
 
 namespace rcme {
 namespace {
@@ -15,8 +16,7 @@ struct PlacedResidual {
 
 // From left to right.
 std::vector<PlacedResidual> ResidualsOf(const MotionProblem& problem, const MotionEstimate& estimate) {
-  const Eigen::Matrix3d F =
-      FundamentalFromEssential(EssentialFromPose(estimate.cam2_from_cam1), problem.camera1, problem.camera2);
+  const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
   std::vector<PlacedResidual> residuals;
   for (const int i : estimate.inliers) {
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];

@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 
-Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose) {
-  return FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
-}
-
 // A key point's stream: by its image and place (FNV-1a, folded to 48 bits).
 std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
   std::uint64_t hash = 0xcbf29ce484222325;
@@ -27,6 +23,10 @@ std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose) {
+  return FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
+}
 
 std::uint64_t StreamKeyOf(const std::string& name) {
   std::uint64_t hash = 0xcbf29ce484222325;

@@ -1,144 +1,24 @@
 #include "experiments/truth_free/twin_report.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
-#include "estimator/geometry/essential_matrix.h"
-#include "estimator/geometry/sampson.h"
-#include "experiments/base/columns.h"
-#include "experiments/base/field_text.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/data/make_data.h"
-#include "experiments/trial/answer_check.h"
-#include "experiments/trial/trial.h"
-#include "experiments/truth_free/halves.h"
-#include "experiments/truth_free/residual_correlation.h"
 #include "experiments/truth_free/twin.h"
+#include "experiments/truth_free/twin_quantities.h"
+#include "experiments/truth_free/twin_settings.h"
 #include "parameters/input_error.h"
-#include "stats/distributions.h"
 #include "stats/shared_members.h"
 
 namespace rcme {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegPerRad = 57.29577951308232;
-constexpr double kLeastProducts = 20.0;  // of residuals, for the correlation of a pair
-constexpr double kTailSigmas = 2.0;
 constexpr std::int64_t kLeastPairs = 3;  // for a mean to be compared
-
-enum Quantity : size_t {
-  kRefusal,
-  kFailure,
-  kStatedFailure,
-  kSigma,
-  kAcceptedShare,
-  kInlierTest,
-  kTailShare,
-  kRotationSd,
-  kDirectionSd,
-  kSpatialHalves,
-  kRandomHalves,
-  kNearCorrelation,
-  kFarCorrelation,
-  kNumQuantities
-};
-struct QuantityText {
-  const char* name;
-  bool is_rate;
-  const char* words;
-  const char* missing;  // what simulation may lack where it is not met
-};
-constexpr std::array<QuantityText, kNumQuantities> kTexts = {{
-    {"refusal", true, "no motion, of all pairs",
-     "scenes near what the estimator refuses: planes, little parallax"},
-    {"failure", true, "motion beyond 3 deg or 15 deg, of pairs whose motion is known",
-     "wrong matches that agree with each other, or a given truth that is wrong"},
-    {"stated_failure", false, "stated probability of failure, mean",
-     "wrong matches that agree with each other"},
-    {"sigma_px", false, "noise estimated from the residuals (px), mean",
-     "noise that differs from pair to pair"},
-    {"accepted_share", false, "matches accepted, of all, mean", "wrong matches near the epipolar lines"},
-    {"inlier_test", false,
-     "accepted matches over those within 4 estimated sigma of their epipolar lines, mean",
-     "tails of the noise, or matches with noise of their own (key-point size)"},
-    {"tail_share", false, "accepted residuals beyond 2 estimated sigma, mean", "tails of the noise"},
-    {"rotation_sd_deg", false, "stated standard deviation of the rotation (deg), geometric mean",
-     "noise that differs from pair to pair"},
-    {"direction_sd_deg", false, "stated standard deviation of the direction (deg), geometric mean",
-     "noise that differs from pair to pair"},
-    {"spatial_halves", true, "left/right and upper/lower halves within the 95 % region of their difference",
-     "errors common to a part of the image: calibration, distortion, rolling shutter, texture"},
-    {"random_halves", true, "random halves within the 95 % region of their difference",
-     "wrong matches among the accepted, several motions"},
-    {"near_correlation", false, "correlation of residuals up to 1 px apart, mean",
-     "points that were found twice"},
-    {"far_correlation", false, "correlation of residuals 4 to 16 px apart, mean",
-     "errors common to neighbours: texture, distortion"},
-}};
-
-// The values of one pair, or of one twin: none, one or several of each quantity.
-using Values = std::array<std::vector<double>, kNumQuantities>;
-
-void AddHalves(const MotionProblem& problem, const MotionEstimate& whole, const MotionEstimator& estimator,
-               StreamName name, Values* values) {
-  static const double bound = ChiSquareQuantile(5, 0.95);
-  const auto add = [&](Split split, Quantity quantity) {
-    ++name.trial;
-    const std::optional<double> difference = DifferenceOfHalves(problem, whole, split, estimator, name);
-    if (difference) (*values)[quantity].push_back(*difference <= bound);
-  };
-  for (const Split split : kSpatialSplits) add(split, kSpatialHalves);
-  for (const Split split : kRandomSplits) add(split, kRandomHalves);
-}
-
-void AddResiduals(const MotionProblem& problem, const MotionEstimate& estimate, Values* values) {
-  const Eigen::Matrix3d F =
-      FundamentalFromEssential(EssentialFromPose(estimate.cam2_from_cam1), problem.camera1, problem.camera2);
-  const double sigma_px = NoiseOf(problem, estimate);
-  (*values)[kSigma].push_back(sigma_px);
-  double num_beyond = 0.0;
-  for (const int i : estimate.inliers) {
-    const double squared = SquaredSampsonDistance(F, problem.matches[static_cast<size_t>(i)]);
-    num_beyond += squared > kTailSigmas * sigma_px * kTailSigmas * sigma_px;
-  }
-  double num_near = 0.0;
-  for (const Correspondence& match : problem.matches)
-    num_near += SquaredSampsonDistance(F, match) <= kRightWithin * sigma_px * kRightWithin * sigma_px;
-  const double num_inliers = static_cast<double>(estimate.inliers.size());
-  if (num_near > 0.0) (*values)[kInlierTest].push_back(num_inliers / num_near);
-  (*values)[kTailShare].push_back(num_beyond / num_inliers);
-  (*values)[kAcceptedShare].push_back(num_inliers / static_cast<double>(problem.matches.size()));
-  const ResidualProducts products = ProductsOf(problem, estimate);
-  for (const auto& [quantity, distance] :
-       {std::pair{kNearCorrelation, size_t{0}}, {kFarCorrelation, size_t{2}}}) {
-    if (products.counts[distance] >= kLeastProducts)
-      (*values)[quantity].push_back(products.Correlation(distance));
-  }
-}
-
-Values ValuesOf(const TrialData& trial, const MotionEstimate& estimate, const MotionEstimator& estimator,
-                const StreamName& name) {
-  Values values;
-  const TrialRecord record = Score(estimate, trial, 0.0);
-  values[kRefusal].push_back(HasRefused(record));
-  if (trial.truth.cam2_from_cam1_true) values[kFailure].push_back(HasFailed(record, FailureBounds()));
-  if (estimate.status != MotionStatus::kOk || estimate.inliers.empty()) return values;
-  if (std::isfinite(estimate.failure_probability))
-    values[kStatedFailure].push_back(estimate.failure_probability);
-  AddResiduals(trial.problem, estimate, &values);
-  const Vector5d variances = estimate.pose_cov.diagonal();
-  values[kRotationSd].push_back(std::log(kDegPerRad * std::sqrt(variances.head<3>().sum())));
-  values[kDirectionSd].push_back(std::log(kDegPerRad * std::sqrt(variances.tail<2>().sum())));
-  AddHalves(trial.problem, estimate, estimator, name, &values);
-  return values;
-}
 
 double MeanOf(const std::vector<double>& values) {
   double sum = 0.0;
@@ -188,7 +68,7 @@ double PredictionOf(const std::vector<ComparedPair>& pairs, size_t quantity, boo
 
 std::optional<TwinComparison> Compared(const std::vector<ComparedPair>& pairs, size_t quantity,
                                        const std::string& twin, double confidence) {
-  const QuantityText& text = kTexts[quantity];
+  const QuantityText& text = kQuantityTexts[quantity];
   const bool is_paired = twin == "semi_real" && !text.is_rate;
   TwinComparison compared{text.name, twin, text.is_rate, 0, kNaN, PredictionOf(pairs, quantity, is_paired),
                           {}};
@@ -232,9 +112,7 @@ Values Joined(Values a, const Values& b) {
 constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
 
 Values TwinValues(const TrialData& twin, const MotionEstimator& estimator, const StreamName& name) {
-  RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
-  const MotionEstimate estimate = Judged(estimator.Estimate(twin.problem, rng), twin.problem.matches.size());
-  return ValuesOf(twin, estimate, estimator, name);
+  return ValuesOf(twin, Answered(twin.problem, estimator, name), estimator, name);
 }
 
 std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstimator& estimator,
@@ -256,82 +134,7 @@ std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstim
   return pairs;
 }
 
-std::string NumberText(const TwinComparison& c, double x) {
-  return c.is_rate ? fmt::format("{:.1f} %", 100.0 * x) : fmt::format("{:.3g}", x);
-}
-
-std::string NoiseInWords(const RedrawSettings& noise) {
-  std::string text = fmt::format("{:.3g} px", noise.noise_px);
-  text += noise.student_dof == 0 ? ", normal" : fmt::format(", Student's t of {}", noise.student_dof);
-  if (noise.near_share >= 0.005)
-    text += fmt::format(", {:.0f} % common within 1 px", 100.0 * noise.near_share);
-  if (noise.far_share >= 0.005)
-    text += fmt::format(", {:.0f} % within {:g} px", 100.0 * noise.far_share, noise.far_length_px);
-  return text;
-}
-
-std::string FitInWords(const TwinReport& report) {
-  const TwinFit& fit = report.fit;
-  return fmt::format(
-      "{}: {} pairs, {} with a geometry to resemble\n  noise {}; {} matches, {:.0f} % wrong ({:.0f} % of "
-      "those move "
-      "as a neighbour)\n  rotation {:.2g} deg, parallax {:.2g} deg, |t_z| {:.2f}, depths {:.2g} to {:.2g} "
-      "baselines, one plane explains {:.0f} %, Clark-Evans {:.2f}\n",
-      report.scene, report.num_pairs, fit.num_templates, NoiseInWords(fit.noise), fit.num_matches,
-      100.0 * fit.wrong_share, 100.0 * fit.wrong_agreeing_share, fit.rotation_deg, fit.parallax_deg,
-      fit.forwardness, fit.nearest, fit.farthest, 100.0 * fit.homography_share, fit.clark_evans);
-}
-
-const TwinComparison* Find(const TwinReport& report, const std::string& quantity, const std::string& twin) {
-  for (const TwinComparison& c : report.comparisons) {
-    if (c.quantity == quantity && c.twin == twin) return &c;
-  }
-  return nullptr;
-}
-
-std::string ReportAsText(const TwinReport& report) {
-  std::vector<std::vector<std::string>> rows = {
-      {"quantity", "n", "semi-real", "observed [joint 95 %]", "", "simulated", "observed [joint 95 %]", ""}};
-  std::string missed;
-  for (const QuantityText& text : kTexts) {
-    std::vector<std::string> row = {text.name, ""};
-    for (const char* twin : {"semi_real", "simulated"}) {
-      const TwinComparison* c = Find(report, text.name, twin);
-      if (c == nullptr) {
-        row.insert(row.end(), {"-", "-", ""});
-        continue;
-      }
-      row[1] = fmt::format("{}", c->n);
-      row.insert(row.end(), {NumberText(*c, c->predicted),
-                             fmt::format("{} [{}, {}]", NumberText(*c, c->observed),
-                                         NumberText(*c, c->joint.lower), NumberText(*c, c->joint.upper)),
-                             c->IsWithin() ? "within" : "NOT"});
-      if (!c->IsWithin() && c->twin == "semi_real")
-        missed += fmt::format("  not explained: {}: {}\n", text.words, text.missing);
-    }
-    if (row[1].empty()) continue;
-    rows.push_back(row);
-  }
-  std::string text = FitInWords(report) + FormatColumns(rows);
-  text += fmt::format("  within: semi-real {} of {}", report.NumWithin("semi_real"),
-                      report.NumCompared("semi_real"));
-  text += report.simulated.empty() ? fmt::format("; no simulated scene: {}\n", report.why_not_simulated)
-                                   : fmt::format(", simulated {} of {}\n", report.NumWithin("simulated"),
-                                                 report.NumCompared("simulated"));
-  return text + missed + "\n";
-}
-
 }  // namespace
-
-std::string TwinQuantityInWords(const std::string& quantity) {
-  return std::ranges::find(kTexts, quantity, [](const QuantityText& t) { return std::string(t.name); })
-      ->words;
-}
-
-std::string WhatMayBeMissing(const std::string& quantity) {
-  return std::ranges::find(kTexts, quantity, [](const QuantityText& t) { return std::string(t.name); })
-      ->missing;
-}
 
 int TwinReport::NumCompared(const std::string& twin) const {
   return static_cast<int>(std::ranges::count(comparisons, twin, &TwinComparison::twin));
@@ -382,34 +185,6 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
     report.why_not_simulated = error.what();
   }
   return report;
-}
-
-std::string TwinsAsText(const std::vector<TwinReport>& reports) {
-  std::string text;
-  for (const TwinReport& report : reports) text += ReportAsText(report);
-  text +=
-      "semi-real: the key points of the pairs, put where the estimated geometry has them, with noise drawn "
-      "anew and "
-      "wrong\nmatches dealt out again; simulated: a scene of the simulator fitted to the numbers above. "
-      "Observed "
-      "intervals hold for all\nquantities of a scene together and respect images that pairs share. "
-      "Quantities:\n";
-  for (const QuantityText& quantity : kTexts)
-    text += fmt::format("  {:<18}{}\n", quantity.name, quantity.words);
-  return text;
-}
-
-std::string TwinsAsCsv(const std::vector<TwinReport>& reports) {
-  std::string text = "scene,pairs,twin,quantity,kind,observed,lower,upper,n,predicted,within\n";
-  for (const TwinReport& report : reports) {
-    for (const TwinComparison& c : report.comparisons) {
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", CsvField(report.scene), report.num_pairs,
-                          c.twin, c.quantity, c.is_rate ? "rate" : "mean", CsvNumber(c.observed),
-                          CsvFinite(c.joint.lower), CsvFinite(c.joint.upper), c.n, CsvNumber(c.predicted),
-                          c.IsWithin() ? "yes" : "no");
-    }
-  }
-  return text;
 }
 
 }  // namespace rcme

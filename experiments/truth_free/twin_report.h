@@ -24,10 +24,6 @@ struct TwinComparison {
   bool IsWithin() const { return joint.Contains(predicted); }
 };
 
-// The words for a quantity, and what a simulation that misses it may lack.
-std::string TwinQuantityInWords(const std::string& quantity);
-std::string WhatMayBeMissing(const std::string& quantity);
-
 struct TwinReport {
   std::string scene;
   int num_pairs = 0;
@@ -46,9 +42,5 @@ struct TwinReport {
 TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estimator,
                           const std::string& folder, double assumed_sigma_px, std::uint64_t seed,
                           int num_twins);
-
-// Tables for people; a row per scene, twin and quantity.
-std::string TwinsAsText(const std::vector<TwinReport>& reports);
-std::string TwinsAsCsv(const std::vector<TwinReport>& reports);
 
 }  // namespace rcme

@@ -1,7 +1,5 @@
 #include "simulator/severity/parallax.h"
 
-#include <algorithm>
-#include <limits>
 #include <numbers>
 
 namespace rcme {
@@ -15,14 +13,6 @@ std::vector<double> ParallaxesDeg(const ViewPair& view, const std::vector<Eigen:
                          AngleBetween(view.cam2_from_cam1_true.R * point, view.InCamera2(point)));
   }
   return angles_deg;
-}
-
-double QuantileOf(std::vector<double>& values, double probability) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(probability * (static_cast<double>(values.size()) - 1));
-  std::ranges::nth_element(values, at);
-  return *at;
 }
 
 }  // namespace rcme

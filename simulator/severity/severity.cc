@@ -11,6 +11,7 @@
 #include "simulator/severity/parallax.h"
 #include "simulator/severity/point_information.h"
 #include "stats/moments.h"
+#include "stats/order_statistic.h"
 #include "stats/spatial_pattern.h"
 
 namespace rcme {

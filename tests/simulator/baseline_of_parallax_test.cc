@@ -12,6 +12,7 @@
 #include "simulator/scene_registry.h"
 #include "simulator/severity/parallax.h"
 #include "stats/moments.h"
+#include "stats/order_statistic.h"
 #include "tests/test_support/expect_input_error.h"
 
 namespace rcme {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stats/order_statistic.h"
 #include "stats/random.h"
 #include "tests/test_support/coverage_count.h"
 
@@ -147,6 +149,20 @@ TEST(Quantile, BadInput) {
   EXPECT_THROW(MeasureQuantile({1.0, std::nan("")}, 0.5), std::invalid_argument);
   EXPECT_THROW(MeasureQuantile({1.0}, 0.0), std::invalid_argument);
   EXPECT_THROW(MeasureQuantile({1.0}, 0.5, 1.0), std::invalid_argument);
+}
+
+TEST(OrderStatistic, IsThatOfTheSortedList) {
+  RandomStream rng({.seed = 1, .purpose = 9});
+  std::vector<double> values;
+  for (int i = 0; i < 37; ++i) values.push_back(rng.Uniform());
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  for (const size_t rank : {0, 1, 18, 36}) EXPECT_EQ(ValueOfRank(rank, &values), sorted[rank]);
+  EXPECT_EQ(QuantileOf(values, 0.0), sorted[0]);
+  EXPECT_EQ(QuantileOf(values, 0.99), sorted[35]);  // rank 35.64
+  EXPECT_EQ(QuantileOf(values, 1.0), sorted[36]);
+  std::vector<double> none;
+  EXPECT_TRUE(std::isnan(QuantileOf(none, 0.5)));
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// What the residuals of some pairs have in common: their size, their tails, their correlation.
+#pragma once
+
+#include <vector>
+
+#include "experiments/truth_free/residual_correlation.h"
+
+namespace rcme {
+
+struct ResidualPattern {
+  double sigma_px = 0.0;    // median
+  double tail_ratio = 0.0;  // 95 % point over the median of |r| / sigma, all pairs together
+  ResidualProducts products;
+};
+
+// Of the answers to some pairs, one after the other; refusals are skipped.
+class PatternSum {
+ public:
+  void Add(const MotionProblem& problem, const MotionEstimate& estimate);
+  ResidualPattern Take() const;
+
+ private:
+  std::vector<double> sigmas_, sizes_;
+  ResidualProducts products_;
+};
+
+}  // namespace rcme

@@ -1,0 +1,107 @@
+#include "experiments/truth_free/twin_output.h"
+
+#include <fmt/format.h>
+
+#include "experiments/base/columns.h"
+#include "experiments/base/field_text.h"
+#include "experiments/truth_free/twin_quantities.h"
+
+namespace rcme {
+namespace {
+
+std::string NumberText(const TwinComparison& c, double x) {
+  return c.is_rate ? fmt::format("{:.1f} %", 100.0 * x) : fmt::format("{:.3g}", x);
+}
+
+std::string NoiseInWords(const RedrawSettings& noise) {
+  std::string text = fmt::format("{:.3g} px", noise.noise_px);
+  text += noise.student_dof == 0 ? ", normal" : fmt::format(", Student's t of {}", noise.student_dof);
+  if (noise.near_share >= 0.005)
+    text += fmt::format(", {:.0f} % common within 1 px", 100.0 * noise.near_share);
+  if (noise.far_share >= 0.005)
+    text += fmt::format(", {:.0f} % within {:g} px", 100.0 * noise.far_share, noise.far_length_px);
+  return text;
+}
+
+std::string FitInWords(const TwinReport& report) {
+  const TwinFit& fit = report.fit;
+  return fmt::format(
+      "{}: {} pairs, {} with a geometry to resemble\n  noise {}; {} matches, {:.0f} % wrong ({:.0f} % of "
+      "those move "
+      "as a neighbour)\n  rotation {:.2g} deg, parallax {:.2g} deg, |t_z| {:.2f}, depths {:.2g} to {:.2g} "
+      "baselines, one plane explains {:.0f} %, Clark-Evans {:.2f}\n",
+      report.scene, report.num_pairs, fit.num_templates, NoiseInWords(fit.noise), fit.num_matches,
+      100.0 * fit.wrong_share, 100.0 * fit.wrong_agreeing_share, fit.rotation_deg, fit.parallax_deg,
+      fit.forwardness, fit.nearest, fit.farthest, 100.0 * fit.homography_share, fit.clark_evans);
+}
+
+const TwinComparison* Find(const TwinReport& report, const std::string& quantity, const std::string& twin) {
+  for (const TwinComparison& c : report.comparisons) {
+    if (c.quantity == quantity && c.twin == twin) return &c;
+  }
+  return nullptr;
+}
+
+std::string ReportAsText(const TwinReport& report) {
+  std::vector<std::vector<std::string>> rows = {
+      {"quantity", "n", "semi-real", "observed [joint 95 %]", "", "simulated", "observed [joint 95 %]", ""}};
+  std::string missed;
+  for (const QuantityText& text : kQuantityTexts) {
+    std::vector<std::string> row = {text.name, ""};
+    for (const char* twin : {"semi_real", "simulated"}) {
+      const TwinComparison* c = Find(report, text.name, twin);
+      if (c == nullptr) {
+        row.insert(row.end(), {"-", "-", ""});
+        continue;
+      }
+      row[1] = fmt::format("{}", c->n);
+      row.insert(row.end(), {NumberText(*c, c->predicted),
+                             fmt::format("{} [{}, {}]", NumberText(*c, c->observed),
+                                         NumberText(*c, c->joint.lower), NumberText(*c, c->joint.upper)),
+                             c->IsWithin() ? "within" : "NOT"});
+      if (!c->IsWithin() && c->twin == "semi_real")
+        missed += fmt::format("  not explained: {}: {}\n", text.words, text.missing);
+    }
+    if (row[1].empty()) continue;
+    rows.push_back(row);
+  }
+  std::string text = FitInWords(report) + FormatColumns(rows);
+  text += fmt::format("  within: semi-real {} of {}", report.NumWithin("semi_real"),
+                      report.NumCompared("semi_real"));
+  text += report.simulated.empty() ? fmt::format("; no simulated scene: {}\n", report.why_not_simulated)
+                                   : fmt::format(", simulated {} of {}\n", report.NumWithin("simulated"),
+                                                 report.NumCompared("simulated"));
+  return text + missed + "\n";
+}
+
+}  // namespace
+
+std::string TwinsAsText(const std::vector<TwinReport>& reports) {
+  std::string text;
+  for (const TwinReport& report : reports) text += ReportAsText(report);
+  text +=
+      "semi-real: the key points of the pairs, put where the estimated geometry has them, with noise drawn "
+      "anew and "
+      "wrong\nmatches dealt out again; simulated: a scene of the simulator fitted to the numbers above. "
+      "Observed "
+      "intervals hold for all\nquantities of a scene together and respect images that pairs share. "
+      "Quantities:\n";
+  for (const QuantityText& quantity : kQuantityTexts)
+    text += fmt::format("  {:<18}{}\n", quantity.name, quantity.words);
+  return text;
+}
+
+std::string TwinsAsCsv(const std::vector<TwinReport>& reports) {
+  std::string text = "scene,pairs,twin,quantity,kind,observed,lower,upper,n,predicted,within\n";
+  for (const TwinReport& report : reports) {
+    for (const TwinComparison& c : report.comparisons) {
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", CsvField(report.scene), report.num_pairs,
+                          c.twin, c.quantity, c.is_rate ? "rate" : "mean", CsvNumber(c.observed),
+                          CsvFinite(c.joint.lower), CsvFinite(c.joint.upper), c.n, CsvNumber(c.predicted),
+                          c.IsWithin() ? "yes" : "no");
+    }
+  }
+  return text;
+}
+
+}  // namespace rcme

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/truth_free/twin_report.h"
+
+namespace rcme {
+
+// Tables for people; a row per scene, twin and quantity.
+std::string TwinsAsText(const std::vector<TwinReport>& reports);
+std::string TwinsAsCsv(const std::vector<TwinReport>& reports);
+
+}  // namespace rcme

@@ -1,0 +1,72 @@
+#include "experiments/truth_free/twin_source.h"
+
+#include <tuple>
+
+#include "estimator/geometry/sampson.h"
+#include "estimator/geometry/triangulation.h"
+#include "experiments/base/stop_request.h"
+#include "experiments/trial/answer_check.h"
+#include "experiments/trial/trial.h"
+#include "experiments/truth_free/twin.h"
+
+namespace rcme {
+namespace {
+
+bool IsWrong(const MotionEstimate& estimate, const TrialData& pair) {
+  return HasFailed(Score(estimate, pair, 0.0), FailureBounds());
+}
+
+std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& estimate) {
+  const bool takes_answer = estimate.status == MotionStatus::kOk && !IsWrong(estimate, pair);
+  if (!takes_answer && !pair.truth.cam2_from_cam1_true) return std::nullopt;
+  TrialData exact = pair;
+  exact.truth = Truth();
+  exact.truth.cam2_from_cam1_true = takes_answer ? estimate.cam2_from_cam1 : *pair.truth.cam2_from_cam1_true;
+  const RelativePose& pose = *exact.truth.cam2_from_cam1_true;
+  const double sigma_px = takes_answer ? NoiseOf(pair.problem, estimate) : pair.problem.sigma_px;
+  const Eigen::Matrix3d F = FundamentalOf(pair.problem, pose);
+  // What the answer accepts may lie behind a camera by noise: far points.
+  std::vector<bool> is_accepted(exact.problem.matches.size());
+  for (const int i : estimate.inliers) is_accepted[static_cast<size_t>(i)] = takes_answer;
+  size_t num_right = 0;
+  for (size_t i = 0; i < is_accepted.size(); ++i) {
+    Correspondence& match = exact.problem.matches[i];
+    const double squared = SquaredSampsonDistance(F, match);
+    if (!is_accepted[i] && (squared > kRightWithin * sigma_px * kRightWithin * sigma_px ||
+                            !IsInFrontOfBothCameras(pose, pair.problem.camera1.Ray(match.x1_px),
+                                                    pair.problem.camera2.Ray(match.x2_px))))
+      continue;
+    match = Snapped(F, match);
+    num_right += SquaredSampsonDistance(F, match) < kExactPx * kExactPx;
+  }
+  if (num_right < kLeastRight) return std::nullopt;
+  Redraw::Label(&exact);
+  return exact;
+}
+
+}  // namespace
+
+MotionEstimate Answered(const MotionProblem& problem, const MotionEstimator& estimator,
+                        const StreamName& name) {
+  RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
+  return Judged(estimator.Estimate(problem, rng), problem.matches.size());
+}
+
+TwinSource AnswerScene(const std::string& scene, const DataSource& data, const ImageNames& images,
+                       const MotionEstimator& estimator, std::uint64_t seed) {
+  TwinSource source{scene, {}};
+  const auto num_pairs = static_cast<std::uint32_t>(data.NumTrials(1));
+  for (std::uint32_t number = 0; number < num_pairs; ++number) {
+    if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
+    AnsweredTrial answered{data.Make({seed, 0, number, 0}), {}, {}, {}, std::nullopt};
+    const auto named = images.find(answered.pair.origin);
+    if (named != images.end()) std::tie(answered.image1, answered.image2) = named->second;
+    answered.estimate =
+        Answered(answered.pair.problem, estimator, {seed, StreamKeyOf(answered.pair.origin), 0, 0});
+    answered.exact = ExactOf(answered.pair, answered.estimate);
+    source.pairs.push_back(std::move(answered));
+  }
+  return source;
+}
+
+}  // namespace rcme
