@@ -24,7 +24,11 @@ std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
       Parameter::Text("folder", &settings.folder, "a folder of match files",
                       "folder with *.csv or *.csv.gz, seen from the study's folder"),
       Parameter::Real("sigma_px", &settings.sigma_px, {1e-9, 1000.0}, "px",
-                      "noise standard deviation that the estimators assume")};
+                      "noise standard deviation that the estimators assume"),
+      Parameter::Real("truth_rotation_sd_deg", &settings.truth.rotation_deg, {0.0, 90.0}, "deg",
+                      "error of each true pose about each axis, for files without truth_sd"),
+      Parameter::Real("truth_position_sd", &settings.truth.position, {0.0, 1e6}, "",
+                      "error of each true position along each axis, in the unit of the files' baselines")};
   const std::vector<Parameter> of_redraw = Parameters(settings.redraw);
   all.insert(all.end(), of_redraw.begin(), of_redraw.end());
   return all;

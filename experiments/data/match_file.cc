@@ -26,9 +26,9 @@ constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
 constexpr std::string_view kSigmaColumn = "sigma_px";
 constexpr size_t kMaxColumns = 1000;
 constexpr size_t kMaxSceneBytes = 200;
-constexpr std::array<std::string_view, 10> kHeaderKeys = {
-    "size1",  "size2",    "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor",
-    "t_unit", "truth_sd", "image1",         "image2",         "scene"};
+constexpr std::array<std::string_view, 11> kHeaderKeys = {
+    "size1",    "size2",    "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit",
+    "truth_sd", "baseline", "image1",         "image2",         "scene"};
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 std::string_view Trim(std::string_view text) {
@@ -173,6 +173,15 @@ std::optional<TruthSd> TruthSdFrom(const Header& header) {
   return TruthSd{kRadPerDeg * Eigen::Vector3d(sd[0], sd[1], sd[2]), {sd[3], sd[4], sd[5]}};
 }
 
+// The number that stands first; NaN without one that is positive.
+double BaselineFrom(const Header& header) {
+  double baseline = 0.0;
+  if (!header.Has("baseline")) return MatchFile().baseline;
+  const std::vector<std::string> words = SplitAtBlanks(header.Text("baseline"));
+  if (words.empty() || !ParseReal(words.front(), &baseline) || baseline <= 0.0) return MatchFile().baseline;
+  return baseline;
+}
+
 bool AreColumnNames(const std::vector<std::string>& fields) {
   return std::ranges::find_first_of(fields, kColumns) != fields.end();
 }
@@ -275,6 +284,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
       CameraFrom(header, "2", given ? &given->back() : nullptr, file.matches, &Correspondence::x2_px);
   file.cam2_from_cam1_true = TruePoseFrom(header);
   file.truth_sd = TruthSdFrom(header);
+  file.baseline = BaselineFrom(header);
   file.scene = SceneFrom(header);
   if (header.Has("image1")) file.image1 = header.Text("image1");
   if (header.Has("image2")) file.image2 = header.Text("image2");
@@ -316,6 +326,7 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
     text += fmt::format("# truth_sd: {} {} {} {} {} {}\n", rotation_deg.x(), rotation_deg.y(),
                         rotation_deg.z(), sd->translation.x(), sd->translation.y(), sd->translation.z());
   }
+  if (file.baseline > 0.0) text += fmt::format("# baseline: {}\n", file.baseline);
   const bool has_sigma = !file.sigma_px.empty();
   text +=
       fmt::format("{}{}{}\n", fmt::join(kColumns, ","), has_sigma ? "," : "", has_sigma ? kSigmaColumn : "");

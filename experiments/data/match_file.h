@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,8 @@ namespace rcme {
 //   # truth_sd: 0.01 0.01 0.01 2e-3 2e-3 2e-3   optional: that motion's own standard deviations, along the
 //                                          axes of camera 2: rotation in degrees, translation over the
 //                                          baseline
+//   # baseline: 1.628 m                    optional: length of the true translation in the data set's unit,
+//                                          which may follow it
 //   # image1: frames/0001.png                optional, with image2: pairs of one scene
 //   # image2: frames/0002.png                that share an image say so
 //   # scene: name                            optional, groups pairs in a study
@@ -40,6 +43,7 @@ struct MatchFile {
   std::optional<TruthSd> truth_sd;
   std::string image1, image2;    // empty: not said
   std::vector<double> sigma_px;  // per match; empty: the file has no such column
+  double baseline = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;

@@ -69,6 +69,20 @@ std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64
   return hash;
 }
 
+// Whether the study says how good the file's truth is, and not the file.
+bool IsTruthAssumed(const MatchFile& file, const PoseSd& truth) {
+  return !truth.IsZero() && file.cam2_from_cam1_true && !file.truth_sd;
+}
+
+TruthSd AssumedSd(const MatchFile& file, const PoseSd& truth) {
+  if (truth.position == 0.0) return SdOfMotion(truth, 1.0);
+  if (file.baseline > 0.0) return SdOfMotion(truth, file.baseline);
+  throw InputError(
+      fmt::format("{}: header key '# baseline: ...', a length > 0, is missing; the study gives true "
+                  "positions an error (truth_position_sd), which needs it",
+                  file.path));
+}
+
 }  // namespace
 
 std::string PairIdOf(const fs::path& match_file) {
@@ -137,7 +151,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   struct Group {
     std::vector<TrialData> pairs;
     std::uint64_t digest = 0xcbf29ce484222325ULL;
-    int num_with_truth_sd = 0;
+    int num_with_truth_sd = 0, num_assumed = 0;
   };
   const std::vector<fs::path> paths = MatchFilesIn(settings.folder);
   const std::set<std::string> weak = PairsWithWeakDirection(settings.folder, paths);
@@ -156,8 +170,13 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     data.origin = path.filename().string();
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.is_direction_known = weak.count(PairIdOf(path)) == 0;
-    data.truth.sd = file.truth_sd;
     group.num_with_truth_sd += file.truth_sd.has_value();
+    if (IsTruthAssumed(file, settings.truth)) {
+      file.truth_sd = AssumedSd(file, settings.truth);
+      data.truth.is_direction_known &= !settings.truth.IsDirectionWeak(file.baseline);
+      ++group.num_assumed;
+    }
+    data.truth.sd = file.truth_sd;
     group.digest = Digest(file, data.truth.is_direction_known, group.digest);
     data.problem = ProblemOf(std::move(file), settings.sigma_px);
     if (redraw.IsOn()) Redraw::Label(&data);
@@ -167,6 +186,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   for (auto& [scene, group] : groups) {
     std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
     if (group.num_with_truth_sd > 0) identity += fmt::format(", truth_sd in {}", group.num_with_truth_sd);
+    if (group.num_assumed > 0) identity += fmt::format(", truth_sd assumed in {}", group.num_assumed);
     sources.emplace_back(scene,
                          std::make_shared<MatchFolderData>(scene, std::move(group.pairs), identity, redraw));
   }

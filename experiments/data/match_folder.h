@@ -18,6 +18,7 @@ namespace rcme {
 struct MatchFolderSettings {
   std::string folder;     // relative to the working directory
   double sigma_px = 0.5;  // the noise level that the estimators assume
+  PoseSd truth = {};      // of the poses behind the true motions of files without truth_sd
   RedrawSettings redraw = {};
 };
 

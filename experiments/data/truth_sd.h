@@ -17,4 +17,19 @@ struct TruthSd {
   Matrix5d CovarianceAt(const RelativePose& pose) const;
 };
 
+// Standard deviations of a data set's own poses, per axis.
+struct PoseSd {
+  double rotation_deg = 0.0;
+  double position = 0.0;  // in the data set's unit
+
+  bool IsZero() const { return rotation_deg == 0.0 && position == 0.0; }
+  // A baseline below three standard deviations of the difference of two positions has no known direction.
+  bool IsDirectionWeak(double baseline) const;
+};
+
+// The truth's own error of a motion between two poses with independent errors: their rotations' and
+// positions' variances add, and an error of the second one's rotation turns the translation too. That it
+// turns both is left out. baseline > 0, in the data set's unit.
+TruthSd SdOfMotion(const PoseSd& pose, double baseline);
+
 }  // namespace rcme

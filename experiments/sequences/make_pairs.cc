@@ -32,10 +32,8 @@ void StopIfRequested(const PairJournal& journal) {
         fmt::format("stopped after {} pairs; the same command goes on from here", journal.rows().size()));
 }
 
-// A direction from poses whose own error is a third of the baseline or more says nothing.
 bool IsDirectionWeak(const PairsOptions& options, double baseline) {
-  const double sd = options.truth_sd ? options.truth_sd->position : 0.0;
-  return baseline <= 3.0 * std::sqrt(2.0) * sd;
+  return options.truth_sd.value_or(PoseSd()).IsDirectionWeak(baseline);
 }
 
 // Judges a pair, writes its file if it is kept, enters it.
@@ -50,6 +48,7 @@ void Decide(MatchFile file, PairRow row, const PairsOptions& options, PairJourna
   if (file.cam2_from_cam1_true) {
     row.rotation_deg =
         RotationAngleBetween(file.cam2_from_cam1_true->R, Eigen::Matrix3d::Identity()) / kRadPerDegOfPose;
+    file.baseline = row.baseline;
     if (options.truth_sd && !std::isnan(row.baseline) && row.baseline > 0.0)
       file.truth_sd = SdOfMotion(*options.truth_sd, row.baseline);
   }
@@ -183,12 +182,6 @@ class SequencePairs {
 };
 
 }  // namespace
-
-TruthSd SdOfMotion(const PoseSd& pose, double baseline) {
-  const double rotation_rad = kRadPerDegOfPose * pose.rotation_deg;
-  const double translation = std::hypot(std::sqrt(2.0) * pose.position / baseline, rotation_rad);
-  return {Eigen::Vector3d::Constant(std::sqrt(2.0) * rotation_rad), Eigen::Vector3d::Constant(translation)};
-}
 
 void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOptions& options,
                        PairJournal* journal) {

@@ -15,12 +15,6 @@
 
 namespace rcme {
 
-// Standard deviations of a data set's own poses, per axis.
-struct PoseSd {
-  double rotation_deg = 0.0;
-  double position = 0.0;  // in the data set's unit
-};
-
 struct PairsOptions {
   std::string out, cache;
   DetectorOptions detector;
@@ -44,10 +38,5 @@ void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJourna
 // INDEX.csv and pairs.txt of the folder, whole; returns the text of the latter.
 std::string WritePairTables(const PairJournal& journal, const std::vector<std::string>& notes,
                             const std::string& out);
-
-// The truth's own error (truth_sd.h) of a motion between two poses with independent errors: their rotations'
-// and positions' variances add, and an error of the second one's rotation turns the translation too. That it
-// turns both is left out.
-TruthSd SdOfMotion(const PoseSd& pose, double baseline);
 
 }  // namespace rcme

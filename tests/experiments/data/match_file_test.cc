@@ -164,8 +164,11 @@ TEST_F(MatchFileTest, TruePoseIsMadeUnitLength) {
 
 TEST_F(MatchFileTest, TheTruthMayStateItsOwnErrorAndTheImagesTheirNames) {
   EXPECT_FALSE(Read(FullText()).truth_sd.has_value());
+  EXPECT_TRUE(std::isnan(Read(FullText()).baseline));
+  EXPECT_TRUE(std::isnan(Read("# baseline: -1\n" + FullText()).baseline));
   const std::string more =
-      "# truth_sd: 0.9 1.8 0 0.01 0.02 0.03\n# image1: a/0001.png\n# image2: a/0002.png\n";
+      "# baseline: 1.25 (m)\n# truth_sd: 0.9 1.8 0 0.01 0.02 0.03\n# image1: a/0001.png\n# image2: "
+      "a/0002.png\n";
   const MatchFile file = Read(more + FullText());
   ASSERT_TRUE(file.truth_sd.has_value());
   EXPECT_NEAR(file.truth_sd->rotation_rad.x(), 0.005 * std::numbers::pi, 1e-15);
@@ -181,6 +184,8 @@ TEST_F(MatchFileTest, TheTruthMayStateItsOwnErrorAndTheImagesTheirNames) {
   EXPECT_NEAR((again.truth_sd->rotation_rad - file.truth_sd->rotation_rad).norm(), 0.0, 1e-15);
   EXPECT_EQ(again.truth_sd->translation, file.truth_sd->translation);
   EXPECT_EQ(again.image2, file.image2);
+  EXPECT_EQ(file.baseline, 1.25);
+  EXPECT_EQ(again.baseline, 1.25);
 }
 
 TEST_F(MatchFileTest, TruthSdThatCannotBe) {

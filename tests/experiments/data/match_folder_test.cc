@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,30 @@ TEST_F(MatchFolderTest, EachMatchsOwnSigmaIsPassedOnAndPartOfTheIdentity) {
   EXPECT_EQ(sets[2].pairs[0].problem.noise_scale, (std::vector<double>{0.5, 1.0, 2.0}));
   folder_.Write("c_000.csv", text + "1,2,3,4,1\n5,6,7,8,2\n9,1,2,3,3\n");
   EXPECT_NE(Describe(MakePlan(FolderStudy())).identity, Describe(plan).identity);
+}
+
+// One pair states its error, one has a truth and a baseline; one has no truth.
+TEST_F(MatchFolderTest, AStudyMayGiveTheTruthAnError) {
+  const std::string known = MatchHeader() + TruePoseHeader();
+  const std::string stated = "# truth_sd: 0.01 0.01 0.01 1e-3 1e-3 1e-3\n";
+  folder_.Write("a_000.csv.gz", Gzip("# scene: a\n" + known + stated + MatchRows(12, 1)));
+  folder_.Write("a_001.csv", "# scene: a\n" + known + "# baseline: 0.5 m\n" + MatchRows(12, 2));
+  Study study = FolderStudy();
+  study.data.emplace_back("truth_rotation_sd_deg", "0.03");
+  study.data.emplace_back("truth_position_sd", "0.012");
+  const StudyPlan plan = MakePlan(study);
+  const auto sd_of = [&](std::uint32_t trial) {
+    return plan.conditions[0].source->Make({1, 0, trial, 0}).truth.sd.value();
+  };
+  EXPECT_NEAR(sd_of(0).translation.x(), 1e-3, 1e-12);
+  EXPECT_NEAR(sd_of(1).rotation_rad.x(), std::sqrt(2.0) * 0.03 * std::numbers::pi / 180.0, 1e-12);
+  EXPECT_NEAR(sd_of(1).translation.x(), SdOfMotion({0.03, 0.012}, 0.5).translation.x(), 1e-12);
+  EXPECT_THAT(
+      TruthQualityInWords("# condition 0: 2 files, digest 00ff, truth_sd in 1, truth_sd assumed in 1\n"),
+      testing::HasSubstr("the study's assumption for 1 of 2 pairs"));
+
+  folder_.Write("a_001.csv", "# scene: a\n" + known + "# baseline: short\n" + MatchRows(12, 2));
+  EXPECT_TRUE(ThrowsInputError([&] { MakePlan(study); }, {"a_001.csv", "baseline", "truth_position_sd"}));
 }
 
 TEST_F(MatchFolderTest, GroupsByScene) {
