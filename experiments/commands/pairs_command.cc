@@ -139,7 +139,7 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
   command->add_option("dataset", arguments->dataset.folder, "the data set's folder (colmap: or its database)")
       ->required();
   command->add_option("--layout", arguments->layout, "how it lies there, see below")
-      ->check(CLI::IsMember(LayoutNames()))
+      ->check(OneOf(LayoutNames()))
       ->required();
   command
       ->add_option("-o,--out", arguments->pairs.out,
@@ -160,7 +160,7 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
       ->transform(NumberIn())
       ->expected(4);
   command->add_option("--lens", arguments->lens, "images, tum: the distortion of --K; default: pinhole")
-      ->check(CLI::IsMember({"pinhole", "radtan", "fisheye"}));
+      ->check(OneOf({"pinhole", "radtan", "fisheye"}));
   command
       ->add_option("--distortion", arguments->dataset.distortion,
                    "its coefficients as OpenCV's: radtan k1 k2 p1 p2 [k3 [k4 k5 k6]], fisheye k1 k2 k3 k4")
@@ -180,7 +180,7 @@ void AddGateOptions(CLI::App* command, PairsArguments* arguments) {
   command
       ->add_option("--gate", arguments->gate,
                    "what pairs have to pass; off: all are kept; default: orb_slam2")
-      ->check(CLI::IsMember(GateNames()));
+      ->check(OneOf(GateNames()));
   command->add_option("--least-matches", gate.least_matches, "gate: fewer are too few")
       ->transform(WholeNumberIn(8, 1'000'000))
       ->capture_default_str();
@@ -216,7 +216,9 @@ void AddPairsCommand(CLI::App& app) {
       "  tum      NAME/{rgb.txt, rgb/*.png, groundtruth.txt}   TUM RGB-D; the camera by freiburg1, 2, 3 in "
       "the name, or --K\n"
       "  images   *.png, *.jpg, ... of one folder, by name; needs --K\n"
-      "  colmap   database.db {cameras, images, keypoints, matches}, and sparse/0 as truth if it is there\n"
+      "  colmap   database.db {cameras, images, keypoints, matches}, and sparse/0, if it is there, as truth "
+      "and for "
+      "the cameras\n"
       "  matches  match files, judged again and indexed\n"
       "\n"
       "An image waits as the first of a pair until a later one makes a pair with it that the gate keeps, and "

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "experiments/base/file_output.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/commands/twin_commands.h"
 #include "experiments/paper_table/paper_table_output.h"
 
@@ -66,7 +67,7 @@ void AddPaperTableCommand(CLI::App& app) {
   command
       ->add_option("--clusters", arguments->clusters,
                    "what makes pairs dependent: images that they share, or all of a sequence")
-      ->check(CLI::IsMember({"images", "sequences"}))
+      ->check(OneOf({"images", "sequences"}))
       ->capture_default_str();
   command->callback([arguments] { RunPaperTable(*arguments); });
 }

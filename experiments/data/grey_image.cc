@@ -57,8 +57,9 @@ GreyImage UnpackImage(std::string bytes, const std::string& path) {
   CheckIsWhole(bytes, path);
   cv::Mat image;
   try {
-    image =
-        cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()), cv::IMREAD_GRAYSCALE);
+    // As the sensor has it, which is what K is of: not turned as the camera was held.
+    image = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()),
+                         cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
     throw InputError(fmt::format("{}: the image is damaged ({})", path, error.err));
   }

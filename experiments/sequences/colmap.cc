@@ -10,6 +10,7 @@
 
 #include "experiments/data/features.h"
 #include "experiments/result_file/database.h"
+#include "experiments/sequences/colmap_camera.h"
 #include "experiments/sequences/colmap_model.h"
 #include "experiments/sequences/layout_files.h"
 #include "experiments/sequences/listed_pairs.h"
@@ -23,31 +24,7 @@ namespace fs = std::filesystem;
 
 // pair_id = kMaxImages id1 + id2, id1 < id2.
 constexpr std::int64_t kMaxImages = 2147483647;
-constexpr double kHalfPixel = 0.5;
 constexpr std::int64_t kMaxRows = 1'000'000;
-
-// COLMAP's numbers of camera models, and where their parameters lie.
-struct ColmapModel {
-  const char* name;
-  size_t num_parameters;
-  bool has_one_focal_length;
-  LensModel lens;
-  std::vector<int> coefficient_at;  // per coefficient of ours the parameter, -1: zero
-};
-const ColmapModel* FindModel(std::int64_t number) {
-  static const std::map<std::int64_t, ColmapModel> models = {
-      {0, {"SIMPLE_PINHOLE", 3, true, LensModel::kPinhole, {}}},
-      {1, {"PINHOLE", 4, false, LensModel::kPinhole, {}}},
-      {2, {"SIMPLE_RADIAL", 4, true, LensModel::kRadtan, {3, -1, -1, -1}}},
-      {3, {"RADIAL", 5, true, LensModel::kRadtan, {3, 4, -1, -1}}},
-      {4, {"OPENCV", 8, false, LensModel::kRadtan, {4, 5, 6, 7}}},
-      {5, {"OPENCV_FISHEYE", 8, false, LensModel::kFisheye, {4, 5, 6, 7}}},
-      {6, {"FULL_OPENCV", 12, false, LensModel::kRadtan, {4, 5, 6, 7, 8, 9, 10, 11}}},
-      {8, {"SIMPLE_RADIAL_FISHEYE", 4, true, LensModel::kFisheye, {3, -1, -1, -1}}},
-      {9, {"RADIAL_FISHEYE", 5, true, LensModel::kFisheye, {3, 4, -1, -1}}}};
-  const auto found = models.find(number);
-  return found == models.end() ? nullptr : &found->second;
-}
 
 // SQLite's errors as sentences that name the file.
 template <typename Action>
@@ -101,7 +78,7 @@ class ColmapPairs : public ListedPairs {
     ReadCameras();
     ReadImages();
     ReadPairIds();
-    ReadPoses(path.parent_path(), options);
+    ReadReconstruction(path.parent_path(), options);
   }
 
   size_t size() const override { return pair_ids_.size(); }
@@ -123,26 +100,13 @@ class ColmapPairs : public ListedPairs {
     while (rows.executeStep()) {
       const std::int64_t id = WholeIn(rows.getColumn(0), path_ + ": cameras");
       const std::string place = Place("camera", id);
-      const std::int64_t number = WholeIn(rows.getColumn(1), place);
-      const ColmapModel* model = FindModel(number);
-      if (!model)
-        throw InputError(
-            fmt::format("{}: model {} is not supported; SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, "
-                        "OPENCV, FULL_OPENCV and the fisheye ones of OPENCV and RADIAL are",
-                        place, number));
-      const std::vector<double> p = NumbersIn<double>(rows.getColumn(4), model->num_parameters, place);
-      const std::int64_t width = WholeIn(rows.getColumn(2), place),
-                         height = WholeIn(rows.getColumn(3), place);
-      if (width < 1 || height < 1 || width > 1'000'000 || height > 1'000'000)
-        throw InputError(
-            fmt::format("{}: an image of {} x {} px; 1 to 1,000,000 are allowed", place, width, height));
-      const size_t c = model->has_one_focal_length ? 1 : 2;
-      std::vector<double> coefficients;
-      for (const int at : model->coefficient_at)
-        coefficients.push_back(at < 0 ? 0.0 : p[static_cast<size_t>(at)]);
-      cameras_[id] = MakeLens({p[0], p[c - 1], p[c] - kHalfPixel, p[c + 1] - kHalfPixel,
-                               static_cast<int>(width), static_cast<int>(height)},
-                              model->lens, coefficients, place);
+      ColmapCamera camera{WholeIn(rows.getColumn(1), place),
+                          WholeIn(rows.getColumn(2), place),
+                          WholeIn(rows.getColumn(3), place),
+                          {}};
+      camera.parameters =
+          NumbersIn<double>(rows.getColumn(4), NumColmapParameters(camera.model, place), place);
+      cameras_[id] = LensOfColmapCamera(camera, place);
     }
   }
 
@@ -178,17 +142,33 @@ class ColmapPairs : public ListedPairs {
           fmt::format("{}: its table matches is empty; run one of colmap's matchers first", path_));
   }
 
-  void ReadPoses(const fs::path& beside, const DatasetOptions& options) {
+  void ReadReconstruction(const fs::path& beside, const DatasetOptions& options) {
     const fs::path folder = options.model.empty() ? beside / "sparse" / "0" : fs::path(options.model);
     if (options.model.empty() && !fs::exists(folder)) {
       note_ = fmt::format("no truth: {} is not there, and no --model was given", folder.string());
       return;
     }
-    poses_ = ReadColmapPoses(folder);
+    views_ = ReadColmapModel(folder);
     size_t num_known = 0;
-    for (const auto& [id, image] : images_) num_known += poses_.contains(image.name);
-    note_ =
-        fmt::format("truth: {} of {} images have a pose in {}", num_known, images_.size(), folder.string());
+    for (const auto& [id, image] : images_) {
+      const auto view = views_.find(image.name);
+      if (view == views_.end()) continue;
+      ++num_known;
+      const Camera &now = view->second.lens.camera, &before = cameras_.at(image.camera).camera;
+      if (now.width != before.width || now.height != before.height)
+        throw InputError(fmt::format(
+            "{}: {} is of {} x {} px in the reconstruction, of {} x {} in {}; key "
+            "points of one are not those of the other",
+            folder.string(), Quoted(image.name), now.width, now.height, before.width, before.height, path_));
+    }
+    note_ = fmt::format("truth: {} of {} images have a pose in {}, and their cameras are those of there",
+                        num_known, images_.size(), folder.string());
+  }
+
+  // What the image was taken through, as well as is known.
+  const Lens& LensOf(std::int64_t image) const {
+    const auto view = views_.find(images_.at(image).name);
+    return view == views_.end() ? cameras_.at(images_.at(image).camera) : view->second.lens;
   }
 
   const ColmapKeyPoints& KeyPointsOf(std::int64_t image) {
@@ -205,10 +185,10 @@ class ColmapPairs : public ListedPairs {
     const auto width = static_cast<size_t>(num_columns);
     const std::vector<float> data =
         NumbersIn<float>(row.getColumn(2), static_cast<size_t>(num_rows) * width, place);
-    const Lens& lens = cameras_.at(images_.at(image).camera);
+    const Lens& lens = LensOf(image);
     ColmapKeyPoints points;
     for (size_t at = 0; at < data.size(); at += width) {
-      const Eigen::Vector2d x_px(data[at] - kHalfPixel, data[at + 1] - kHalfPixel);
+      const Eigen::Vector2d x_px(data[at] - kColmapHalfPixel, data[at + 1] - kColmapHalfPixel);
       if (!x_px.allFinite()) throw InputError(fmt::format("{}: a coordinate is not finite", place));
       points.x_px.push_back(Undistort(lens, x_px));
       points.key_points.push_back({data[at], data[at + 1], Diameter(&data[at], width)});
@@ -231,8 +211,8 @@ class ColmapPairs : public ListedPairs {
     file.scene = scene_;
     file.image1 = images_.at(id1).name;
     file.image2 = images_.at(id2).name;
-    file.camera1 = cameras_.at(images_.at(id1).camera).camera;
-    file.camera2 = cameras_.at(images_.at(id2).camera).camera;
+    file.camera1 = LensOf(id1).camera;
+    file.camera2 = LensOf(id2).camera;
     // Pairs come in the order of their first images: what is neither of this pair's is forgotten.
     std::erase_if(key_points_, [&](const auto& entry) { return entry.first != id1 && entry.first != id2; });
     const ColmapKeyPoints &points1 = KeyPointsOf(id1), &points2 = KeyPointsOf(id2);
@@ -256,9 +236,9 @@ class ColmapPairs : public ListedPairs {
         file.sigma_px.push_back(SigmaOfMatch(Detector::kSift, p1, p2));
     }
     if (file.sigma_px.size() != file.matches.size()) file.sigma_px.clear();
-    const auto pose1 = poses_.find(file.image1), pose2 = poses_.find(file.image2);
-    if (pose1 != poses_.end() && pose2 != poses_.end()) {
-      const TrueMotion12 motion = MotionBetween(pose1->second, pose2->second);
+    const auto view1 = views_.find(file.image1), view2 = views_.find(file.image2);
+    if (view1 != views_.end() && view2 != views_.end()) {
+      const TrueMotion12 motion = MotionBetween(view1->second.pose, view2->second.pose);
       file.cam2_from_cam1_true = motion.cam2_from_cam1;
       listed.baseline = motion.baseline;
     }
@@ -271,7 +251,7 @@ class ColmapPairs : public ListedPairs {
   std::map<std::int64_t, ColmapImage> images_;
   std::map<std::int64_t, ColmapKeyPoints> key_points_;
   std::vector<std::int64_t> pair_ids_;
-  std::map<std::string, CameraPose> poses_;
+  std::map<std::string, ColmapView> views_;
 };
 
 }  // namespace

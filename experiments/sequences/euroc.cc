@@ -6,6 +6,7 @@
 #include "experiments/base/yaml_input.h"
 #include "experiments/sequences/layout_files.h"
 #include "experiments/sequences/layouts.h"
+#include "experiments/sequences/timed_frames.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The truth is at 200 Hz.
-constexpr double kMaxEurocGapS = 0.1;
+constexpr double kLongestEurocGapS = 0.1;
 
 struct EurocSensor {
   Lens lens;
@@ -80,43 +81,24 @@ EurocSensor ReadSensor(const fs::path& path) {
   return sensor;
 }
 
-// Rows: time in ns, position, quaternion w x y z, ... of the body.
-Trajectory ReadBody(const fs::path& path, const CameraPose& body_from_cam) {
-  Trajectory trajectory;
-  for (TableFile table(path, "", TableFile::Separator::kComma); table.Next();) {
-    table.Need(8, "timestamp, p_x, p_y, p_z, q_w, q_x, q_y, q_z, ...");
-    const Eigen::Matrix3d R = RotationFromFields(table, 4, 5, 6, 7);
-    const Eigen::Vector3d p(table.Number(1), table.Number(2), table.Number(3));
-    if (!trajectory.Add(1e-9 * table.Number(0),
-                        {R * body_from_cam.R_world_from_cam, R * body_from_cam.center + p}))
-      table.Fail("the time is not after that of the row before; times must grow");
-  }
-  return trajectory;
-}
-
 Sequence EurocSequence(const DatasetOptions& options, const fs::path& folder) {
-  const fs::path cam0 = folder / "mav0" / "cam0",
-                 truth = folder / "mav0" / "state_groundtruth_estimate0" / "data.csv";
+  const fs::path cam0 = folder / "mav0" / "cam0";
   const EurocSensor sensor = ReadSensor(cam0 / "sensor.yaml");
   Sequence sequence;
   sequence.name = options.name + FolderName(folder);
   sequence.lens = sensor.lens;
-  Trajectory trajectory;
-  if (fs::exists(truth)) {
-    trajectory = ReadBody(truth, sensor.body_from_cam);
-  } else {
-    sequence.note = fmt::format("no truth: {} is not there", truth.string());
-  }
-  for (TableFile table(cam0 / "data.csv", "it names the images with their times",
-                       TableFile::Separator::kComma);
-       table.Next();) {
-    table.Need(2, "timestamp, filename");
-    const double time_s = 1e-9 * table.Number(0);
-    const std::string name = table.fields()[1];
-    sequence.frames.push_back(
-        {name, (cam0 / "data" / name).string(), time_s, trajectory.At(time_s, kMaxEurocGapS)});
-  }
-  FinishSequence(options, cam0 / "data.csv", &sequence);
+  TimedFiles files;
+  files.separator = TableFile::Separator::kComma;
+  files.seconds_per_unit = 1e-9;
+  files.images = cam0 / "data.csv";
+  files.images_origin = "it names the images with their times";
+  files.images_folder = cam0 / "data";
+  files.truth = folder / "mav0" / "state_groundtruth_estimate0" / "data.csv";
+  files.truth_fields = "timestamp, p_x, p_y, p_z, q_w, q_x, q_y, q_z, ...";
+  files.wxyz = {4, 5, 6, 7};
+  files.body_from_cam = sensor.body_from_cam;
+  files.longest_gap_s = kLongestEurocGapS;
+  AddTimedFrames(options, files, &sequence);
   return sequence;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "experiments/base/regular_file.h"
+#include "experiments/data/grey_image.h"
 #include "experiments/data/image_header.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSpaces = " \t\r";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors put it first
 
 std::vector<std::string> WordsOf(std::string_view line) {
   std::vector<std::string> words;
@@ -49,11 +51,14 @@ const fs::path& CheckedPath(const fs::path& path, const std::string& origin) {
   return path;
 }
 
-// The image is there; its size by its header, {0, 0} where that does not say it.
+// The image is there; its size by its header, {0, 0} where that does not say it. A camera's JPEG has its
+// preview before the frame header, and a TIFF its directory often at the end: then all of it is read.
 ImageHeader HeaderOfImage(const Frame& frame, const std::string& sequence) {
   constexpr size_t kHeaderBytes = size_t{64} << 10;
   CheckIsThere(frame.path, fmt::format("it is an image of sequence {}", sequence));
   ImageHeader header = ReadImageHeader(RegularFile(frame.path, {"image", "an image"}).Read(kHeaderBytes));
+  if (!header.format.empty() && (header.width < 1 || header.height < 1))
+    header = ReadImageHeader(ReadImageBytes(frame.path));
   if (header.width < 1 || header.height < 1) header.width = header.height = 0;
   return header;
 }
@@ -99,6 +104,8 @@ TableFile::TableFile(const fs::path& path, const std::string& origin, Separator 
 
 bool TableFile::Next() {
   for (std::string_view line; lines_.Next(&line);) {
+    if (lines_.line_number() == 1 && line.starts_with(kByteOrderMark))
+      line.remove_prefix(kByteOrderMark.size());
     const size_t begin = line.find_first_not_of(kSpaces);
     if (begin == std::string_view::npos || line[begin] == '#') continue;
     fields_ = separator_ == Separator::kComma ? FieldsOf(line) : WordsOf(line);

@@ -27,8 +27,9 @@ class ListedPairs {
 
 // The database of COLMAP (SQLite: cameras, images, keypoints, matches), or the folder of a database.db.
 // Matches are those of the table `matches`, before COLMAP's own verification. The poses of a reconstruction
-// (images.txt or images.bin) are taken as the truth. COLMAP's pixel (0.5, 0.5) is the centre of the top-left
-// one; half a pixel is taken from key points and principal point.
+// (images.txt or images.bin) are taken as the truth, and with them its cameras, which were adjusted together
+// with the poses: those of the database are guesses from before. COLMAP's pixel (0.5, 0.5) is the centre of
+// the top-left one; half a pixel is taken from key points and principal point.
 std::unique_ptr<ListedPairs> OpenColmap(const DatasetOptions& options);
 
 // A folder of match files (match_file.h).

@@ -4,6 +4,7 @@
 
 #include "experiments/sequences/layout_files.h"
 #include "experiments/sequences/layouts.h"
+#include "experiments/sequences/timed_frames.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -12,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The truth is at 100 Hz and has gaps where the markers were not seen.
-constexpr double kMaxTumGapS = 0.05;
+constexpr double kLongestTumGapS = 0.05;
 
 // The page "File Formats: Intrinsic Camera Calibration of the Kinect" of the benchmark, ROS's own
 // calibrations of the colour cameras; those of freiburg3 are of images that were undistorted already.
@@ -46,35 +47,18 @@ Lens TumLens(const DatasetOptions& options, const fs::path& folder) {
                   folder.string()));
 }
 
-Trajectory ReadTumPoses(const fs::path& path) {
-  Trajectory trajectory;
-  for (TableFile table(path, "", TableFile::Separator::kSpace); table.Next();) {
-    table.Need(8, "timestamp tx ty tz qx qy qz qw");
-    if (!trajectory.Add(table.Number(0), {RotationFromFields(table, 7, 4, 5, 6),
-                                          {table.Number(1), table.Number(2), table.Number(3)}}))
-      table.Fail("the time is not after that of the row before; times must grow");
-  }
-  return trajectory;
-}
-
 Sequence TumSequence(const DatasetOptions& options, const fs::path& folder) {
-  const fs::path images = folder / "rgb.txt", truth = folder / "groundtruth.txt";
   Sequence sequence;
   sequence.name = options.name + FolderName(folder);
   sequence.lens = TumLens(options, folder);
-  Trajectory trajectory;
-  if (fs::exists(truth)) {
-    trajectory = ReadTumPoses(truth);
-  } else {
-    sequence.note = fmt::format("no truth: {} is not there", truth.string());
-  }
-  for (TableFile table(images, "", TableFile::Separator::kSpace); table.Next();) {
-    table.Need(2, "timestamp filename");
-    const double time_s = table.Number(0);
-    const std::string name = table.fields()[1];
-    sequence.frames.push_back({name, (folder / name).string(), time_s, trajectory.At(time_s, kMaxTumGapS)});
-  }
-  FinishSequence(options, images, &sequence);
+  TimedFiles files;
+  files.images = folder / "rgb.txt";
+  files.images_folder = folder;
+  files.truth = folder / "groundtruth.txt";
+  files.truth_fields = "timestamp tx ty tz qx qy qz qw";
+  files.wxyz = {7, 4, 5, 6};
+  files.longest_gap_s = kLongestTumGapS;
+  AddTimedFrames(options, files, &sequence);
   return sequence;
 }
 

@@ -63,6 +63,9 @@ TEST(PairsProgram, EndsWithTwoAndThePathWhereSomethingIsWrong) {
   };
   EXPECT_TRUE(IsRefused(pairs({}), {"--layout"}));
   EXPECT_TRUE(IsRefused(pairs({"--layout", "hpatches"}), {"--layout"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "kiti"}), {"'kiti'", "did you mean 'kitti'?"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "kitti", "--gate", "orbslam2"}), {"did you mean 'orb_slam2'?"}));
+  EXPECT_TRUE(IsRefused(pairs({"--layout", "images", "--lens", "fisheyes"}), {"did you mean 'fisheye'?"}));
   EXPECT_TRUE(IsRefused(pairs({"--layout", "euroc"}), {dataset + "/mav0: is not there"}));
   EXPECT_TRUE(IsRefused(pairs({"--layout", "tum"}), {dataset + "/rgb.txt: is not there"}));
   EXPECT_TRUE(IsRefused(pairs({"--layout", "colmap"}), {dataset + "/database.db: is not there"}));

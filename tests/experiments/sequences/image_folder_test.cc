@@ -1,0 +1,77 @@
+// A folder of images, rendered.
+#include "tests/test_support/dataset_checks.h"
+
+namespace rcme {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageFolder : public DatasetTest {
+ protected:
+  ImageFolder()
+      : DatasetTest("corridor", [](const std::string& folder) {
+          WriteImageFolder(folder, kNumRenderedFrames, FisheyeCamera());
+        }) {}
+  static DatasetOptions WithCamera(const std::string& folder) {
+    const Camera camera = RenderedCamera().camera;
+    DatasetOptions options = OptionsOf(folder, {camera.fx, camera.fy, camera.cx, camera.cy});
+    options.lens = LensModel::kFisheye;
+    options.distortion = FisheyeCamera().fisheye;
+    return options;
+  }
+};
+
+TEST_F(ImageFolder, GivesTheRenderedMotions) {
+  const std::string out = folder_.Path("out");
+  const std::vector<PairRow> rows = MakePairsInto(out, ReadImageFolder(WithCamera(Folder())));
+  ExpectTheRenderedMotions(rows, out);
+  for (const fs::path& file : MatchFilesIn(out))
+    EXPECT_FALSE(ReadMatchFile(file.string()).cam2_from_cam1_true.has_value());
+}
+
+// The segments that a camera puts before the frame header of a JPEG: which way it was held (6: a quarter
+// turn), and a preview of more than 64 KiB.
+std::string WithCameraSegments(const std::string& jpeg) {
+  using namespace std::string_literals;
+  const std::string exif = "Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0"s;
+  std::string segments = "\xFF\xE1\0"s;
+  segments += static_cast<char>(exif.size() + 2);
+  segments += exif;
+  for (int i = 0; i < 2; ++i) segments += "\xFF\xE2\xFF\xFF"s + std::string(0xFFFF - 2, 'p');
+  return jpeg.substr(0, 2) + segments + jpeg.substr(2);
+}
+
+TEST_F(ImageFolder, PhotographsOfACameraAreReadAsTheSensorHasThem) {
+  const std::string plain = folder_.Path("plain"), camera = folder_.Path("camera");
+  fs::create_directories(plain);
+  fs::create_directories(camera);
+  for (const int i : {0, 2}) {
+    const std::string name = "/" + std::to_string(i) + ".jpg";
+    WriteImage(plain + name, RenderedCamera().camera, RenderHall(FisheyeCamera(), PoseOnWalk(i)));
+    Overwrite(camera + name, WithCameraSegments(ReadBytes(plain + name)));
+  }
+  for (const std::string& folder : {plain, camera}) {
+    const std::vector<Sequence> read = ReadImageFolder(WithCamera(folder));
+    EXPECT_EQ(read[0].lens.camera.width, 320);
+    DatasetOptions options = WithCamera(folder);
+    options.name = "photographs";
+    MakePairsInto(folder + "/out", ReadImageFolder(options));
+  }
+  const std::string file = "/out/photographs_000000_000001.csv";
+  EXPECT_GT(ReadMatchFile(plain + file).matches.size(), 100u);
+  EXPECT_EQ(ReadBytes(camera + file), ReadBytes(plain + file));
+}
+
+TEST_F(ImageFolder, WhatIsBrokenIsNamedByPath) {
+  DatasetOptions images = WithCamera(Folder());
+  images.distortion.pop_back();
+  EXPECT_TRUE(ThrowsInputError([&] { ReadImageFolder(images); },
+                               {"3 distortion coefficients; radtan has 4, 5 or 8"}));
+  images.K.clear();
+  EXPECT_TRUE(ThrowsInputError([&] { ReadImageFolder(images); }, {"--K: fx fy cx cy"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ReadImageFolder(WithCamera(folder_.path())); }, {"names 0 images"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ReadImageFolder(WithCamera("/nowhere")); }, {"/nowhere: is not there"}));
+}
+
+}  // namespace
+}  // namespace rcme
