@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Draws what `rcme validate` found, as PNG and PDF: for each scene by what its covariances are too small, test by test,
-with the range that is nominal; beside it how alike residuals are at each distance.
+with the range that is nominal; beside it how alike residuals are at each distance, and what is wrong with the camera, in units of
+what is nominal.
 It draws what the file says and computes nothing: ratios, intervals and verdicts are those of the program.
 """
 
@@ -23,10 +24,15 @@ draws validation.png and validation.pdf.
 """
 FORMAT = "rcme validation 1"
 CAPTION = ("In brackets: pairs of the scene; bars: intervals; grey: what counts as nominal; correlation of neighbouring residuals "
-           "minus that of the simulated twin.")
-TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "closure"}
+           "minus that of the simulated twin; camera faults over what is nominal (below 1), linear up to there.")
+TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "rotations around loops",
+         "directions": "directions around three"}
+FAULTS = {"focal_length": ("focal length", "o", "tab:blue"), "principal_point_x": ("principal point, x", "s", "tab:orange"),
+          "principal_point_y": ("principal point, y", "D", "tab:olive"), "distortion": ("distortion", "^", "tab:purple"),
+          "readout_time": ("readout time", "v", "tab:brown")}
+FARTHEST_FAULT = 300  # of what is nominal: farther says nothing
 COLORS = {"holds": "tab:green", "too small": "tab:red", "too large": "tab:purple", "undecided": "0.45"}
-MARKERS = {"spatial_halves": "o", "random_halves": "s", "closure": "^"}
+MARKERS = {"spatial_halves": "o", "random_halves": "s", "closure": "^", "directions": "v"}
 
 
 def drawn_tests(one_set):
@@ -48,7 +54,7 @@ def draw_ratios(axes, sets):
     axes.axvline(1, color="0.6", linewidth=0.8, zorder=1)
     for row, one_set in enumerate(sets):
         for number, test in enumerate(drawn_tests(one_set)):
-            y = row + 0.22 * (number - 1)
+            y = row + 0.2 * (number - 1)
             lower, upper = (x if x is not None and x > 0 else test["ratio"] for x in test["interval"])
             color = COLORS.get(test["verdict"], "0.45")
             axes.plot([lower, upper], [y, y], color=color, linewidth=1.6)
@@ -60,6 +66,35 @@ def draw_ratios(axes, sets):
     handles = [Line2D([], [], linestyle="none", marker=MARKERS[test], color="0.45", label=words) for test, words in TESTS.items()]
     if sheet.current().width is None:
         axes.legend(handles=handles, loc="upper right", fontsize=7, frameon=False)
+    return handles
+
+
+def draw_faults(axes, sets):
+    """Each fault with its interval, as multiples of what is nominal; hollow where it is undecided."""
+    axes.axvspan(-1, 1, color="0.92", zorder=0)
+    axes.axvline(0, color="0.6", linewidth=0.8, zorder=1)
+    for row, one_set in enumerate(sets):
+        for number, fault in enumerate(one_set["camera_faults"]):
+            found = fault["beside_others"]
+            if found["value"] is None or found["interval"][0] is None:
+                continue
+            _, marker, color = FAULTS[fault["fault"]]
+            value, lower, upper = (min(max(x / fault["nominal"], -FARTHEST_FAULT), FARTHEST_FAULT)
+                                   for x in (found["value"], *found["interval"]))
+            y = row + 0.16 * (number - 2)
+            axes.plot([lower, upper], [y, y], color=color, linewidth=1.2)
+            axes.plot([value], [y], marker, color=color, markersize=4, fillstyle="none" if fault["verdict"] == "undecided" else "full")
+    axes.set_xscale("symlog", linthresh=1, linscale=0.6)
+    axes.set_xlim(-FARTHEST_FAULT, FARTHEST_FAULT)
+    axes.set_xticks([-100, -10, -1, 0, 1, 10, 100])
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set_yticks(range(len(sets)), [style.label_of(s["name"]) for s in sets])
+    axes.set_ylim(len(sets) - 0.5, -0.5)
+    axes.set_xlabel("camera faults over nominal")
+    handles = [Line2D([], [], linestyle="none", marker=marker, color=color, label=words) for words, marker, color in FAULTS.values()]
+    if sheet.current().width is None:
+        axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=6, frameon=False)
     return handles
 
 
@@ -81,16 +116,17 @@ def draw_correlations(axes, sets):
 def draw(validation):
     sets = validation["sets"]
     width, height = sheet.current().width, 1.4 + 0.45 * len(sets)
-    if width is not None and style.panels_abreast(2) == 1:
-        figure = Figure(figsize=(width, height + 2.6), layout="constrained")
-        ratios, correlations = figure.subplots(2, 1, height_ratios=[height, 2.6])
+    if width is not None and style.panels_abreast(3) < 3:
+        figure = Figure(figsize=(width, 2 * height + 2.6), layout="constrained")
+        ratios, correlations, faults = figure.subplots(3, 1, height_ratios=[height, 2.6, height])
     else:
-        figure = Figure(figsize=(width or 9, height), layout="constrained")
-        ratios, correlations = figure.subplots(1, 2, width_ratios=[1.3, 1])
+        figure = Figure(figsize=(width or 13, height), layout="constrained")
+        ratios, correlations, faults = figure.subplots(1, 3, width_ratios=[1.3, 1, 1.2])
     FigureCanvasAgg(figure)
     ratios.nominal = validation["nominal_variance"]
     handles = draw_ratios(ratios, sets)
     draw_correlations(correlations, sets)
+    handles += draw_faults(faults, sets)
     if width is not None:
         style.add_legend_and_caption(figure, handles, CAPTION)
     return figure

@@ -1,6 +1,7 @@
 #include "experiments/truth_free/closure.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -12,93 +13,150 @@
 namespace rcme {
 namespace {
 
-// The moves of the closure that the residuals of single matches make, 3x1 each, of three pairs in one row;
-// and which matches share key points.
+using LoopCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
+using LoopJacobian = Eigen::Matrix<double, Eigen::Dynamic, 5, 0, 3, 5>;
+
+Eigen::Matrix3d RotationOf(const AnsweredStep& step) {
+  const Eigen::Matrix3d& R = step.estimate->cam2_from_cam1.R;
+  return step.is_forward ? R : Eigen::Matrix3d(R.transpose());
+}
+
+// The direction between the two centres, in the frame of the image where the step begins or ends.
+Eigen::Vector3d DirectionIn(const AnsweredStep& step, bool at_begin) {
+  const RelativePose& pose = step.estimate->cam2_from_cam1;
+  const bool in_image1 = step.is_forward == at_begin;
+  return in_image1 ? Eigen::Vector3d(pose.R.transpose() * pose.t) : pose.t;
+}
+
+// dc/dq of one step, by central differences.
+LoopJacobian JacobianOf(AnsweredLoop loop, size_t k, LoopErrorOf error_of) {
+  constexpr double kStep = 1e-6;
+  std::vector<AnsweredStep> moved(loop.begin(), loop.end());
+  MotionEstimate estimate = *loop[k].estimate;
+  moved[k].estimate = &estimate;
+  const auto error_at = [&](Eigen::Index j, double by) {
+    estimate.cam2_from_cam1 = Retract(loop[k].estimate->cam2_from_cam1, by * Vector5d::Unit(j));
+    return error_of(moved);
+  };
+  LoopJacobian jacobian(error_of(loop).size(), 5);
+  for (Eigen::Index j = 0; j < 5; ++j)
+    jacobian.col(j) = (error_at(j, kStep) - error_at(j, -kStep)) / (2.0 * kStep);
+  return jacobian;
+}
+
+// The moves of the closure that the residuals of single matches make, of all pairs of a loop in one row; and
+// which matches share key points.
 class Moves {
  public:
   // `image1`, `image2`: numbers of the pair's images.
-  void Add(const AnsweredPair& answered, const Eigen::Matrix3d& to_closure, int image1, int image2) {
-    const MotionProblem& problem = answered.pair->problem;
-    const std::vector<int>& inliers = answered.estimate->inliers;
-    const MatchScores scores = ScoreFitted(problem, inliers, answered.estimate->cam2_from_cam1);
+  void Add(const AnsweredStep& step, const LoopJacobian& jacobian, size_t image1, size_t image2) {
+    const MotionProblem& problem = step.pair->problem;
+    const std::vector<int>& inliers = step.estimate->inliers;
+    const MatchScores scores = ScoreFitted(problem, inliers, step.estimate->cam2_from_cam1);
     const Eigen::LDLT<Matrix5d> ldlt(scores.information);
     for (size_t k = 0; k < inliers.size(); ++k) {
       const Correspondence& match = problem.matches[static_cast<size_t>(inliers[k])];
       const Vector5d gain = ldlt.solve(scores.rows[k]);
       const double kept = std::max(1.0 - gain.dot(scores.rows[k]), 0.05);
-      moves_.emplace_back(to_closure * gain.head<3>() * (scores.residuals[k] / kept));
+      moves_.emplace_back(jacobian * gain * (scores.residuals[k] / kept));
       places_.push_back({image1, match.x1_px.x(), match.x1_px.y()});
       places_.push_back({image2, match.x2_px.x(), match.x2_px.y()});
     }
   }
 
-  Eigen::Matrix3d OfSingleMatches() const {
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const Eigen::Vector3d& move : moves_) sum += move * move.transpose();
-    return sum;
-  }
-  Eigen::Matrix3d OfSharedKeyPoints() const {
+  LoopCovariance OfSingleMatches() const { return SumOfProducts(moves_); }
+  LoopCovariance OfSharedKeyPoints() const {
     DisjointSets sets(moves_.size());
-    std::map<std::tuple<int, double, double>, size_t> first_at;
+    std::map<std::tuple<size_t, double, double>, size_t> first_at;
     for (size_t k = 0; k < places_.size(); ++k)
       sets.Unite(k / 2, first_at.try_emplace(places_[k], k / 2).first->second);
-    std::vector<Eigen::Vector3d> sums(moves_.size(), Eigen::Vector3d::Zero());
+    std::vector<LoopError> sums(moves_.size(), LoopError::Zero(moves_.front().size()));
     for (size_t k = 0; k < moves_.size(); ++k) sums[sets.Find(k)] += moves_[k];
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (const Eigen::Vector3d& move : sums) sum += move * move.transpose();
+    return SumOfProducts(sums);
+  }
+  bool IsEmpty() const { return moves_.empty(); }
+
+ private:
+  static LoopCovariance SumOfProducts(const std::vector<LoopError>& moves) {
+    LoopCovariance sum = LoopCovariance::Zero(moves.front().size(), moves.front().size());
+    for (const LoopError& move : moves) sum += move * move.transpose();
     return sum;
   }
 
- private:
-  std::vector<Eigen::Vector3d> moves_;
-  std::vector<std::tuple<int, double, double>>
+  std::vector<LoopError> moves_;
+  std::vector<std::tuple<size_t, double, double>>
       places_;  // of both key points of each, with the number of the image
 };
 
 }  // namespace
 
-std::vector<Triple> FindTriples(const std::vector<NamedPair>& pairs) {
-  std::map<std::pair<std::string, std::string>, size_t> number_of;
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    if (!pairs[i].image1.empty() && !pairs[i].image2.empty())
-      number_of.try_emplace({pairs[i].image1, pairs[i].image2}, i);
-  }
-  std::vector<Triple> triples;
-  for (const auto& [first, ab] : number_of) {
-    for (const auto& [second, bc] : number_of) {
-      if (second.first != first.second) continue;
-      const auto third = number_of.find({first.first, second.second});
-      if (third != number_of.end()) triples.push_back({ab, bc, third->second});
-    }
-  }
-  return triples;
+LoopError RotationClosure(AnsweredLoop loop) {
+  Eigen::Matrix3d around = Eigen::Matrix3d::Identity();
+  for (const AnsweredStep& step : loop) around = RotationOf(step) * around;
+  return VectorFromRotation(around);
 }
 
-Eigen::Vector3d ClosureOf(const MotionEstimate& ab, const MotionEstimate& bc, const MotionEstimate& ac) {
-  return VectorFromRotation(ac.cam2_from_cam1.R.transpose() * bc.cam2_from_cam1.R * ab.cam2_from_cam1.R);
+LoopError DirectionClosure(AnsweredLoop triple) {
+  const Eigen::Vector3d first = DirectionIn(triple[0], true),
+                        second = RotationOf(triple[0]).transpose() * DirectionIn(triple[1], true),
+                        last = DirectionIn(triple[2], false);
+  return LoopError::Constant(1, first.dot(second.cross(last)));
 }
 
-std::optional<double> NormalizedClosure(const AnsweredPair& ab, const AnsweredPair& bc,
-                                        const AnsweredPair& ac, const Eigen::Vector3d& expected) {
-  const Eigen::Matrix3d to_ab = ab.estimate->cam2_from_cam1.R.transpose(),
-                        to_bc = ac.estimate->cam2_from_cam1.R.transpose(), to_ac = -to_bc;
-  Eigen::Matrix3d sigma = Eigen::Matrix3d::Zero();
-  for (const auto& [answered, M] : {std::pair{&ab, &to_ab}, {&bc, &to_bc}, {&ac, &to_ac}})
-    sigma += *M * answered->estimate->pose_cov.topLeftCorner<3, 3>() * M->transpose();
+std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of, const LoopError& expected) {
+  LoopCovariance sigma = LoopCovariance::Zero(expected.size(), expected.size());
   Moves moves;
-  moves.Add(ab, to_ab, 0, 1);
-  moves.Add(bc, to_bc, 1, 2);
-  moves.Add(ac, to_ac, 0, 2);
-  const Eigen::LLT<Eigen::Matrix3d> llt(sigma), llt_single(moves.OfSingleMatches());
+  for (size_t k = 0; k < loop.size(); ++k) {
+    const LoopJacobian jacobian = JacobianOf(loop, k, error_of);
+    sigma += jacobian * loop[k].estimate->pose_cov * jacobian.transpose();
+    const size_t next = (k + 1) % loop.size();
+    moves.Add(loop[k], jacobian, loop[k].is_forward ? k : next, loop[k].is_forward ? next : k);
+  }
+  if (moves.IsEmpty()) return std::nullopt;
+  const Eigen::LLT<LoopCovariance> llt(sigma), llt_single(moves.OfSingleMatches());
   if (llt.info() != Eigen::Success || llt_single.info() != Eigen::Success) return std::nullopt;
-  const Eigen::Matrix3d shared = moves.OfSharedKeyPoints();
-  const Eigen::Matrix3d half = llt_single.matrixL().solve(shared);
-  const Eigen::Matrix3d ratio = llt_single.matrixL().solve(half.transpose());
-  const Eigen::Vector3d c = ClosureOf(*ab.estimate, *bc.estimate, *ac.estimate) - expected;
-  const Eigen::LLT<Eigen::Matrix3d> llt_ratio(ratio);
+  const LoopCovariance half = llt_single.matrixL().solve(moves.OfSharedKeyPoints());
+  const LoopCovariance half_turned = half.transpose();
+  const LoopCovariance ratio = llt_single.matrixL().solve(half_turned);
+  const Eigen::LLT<LoopCovariance> llt_ratio(ratio);
   if (llt_ratio.info() != Eigen::Success) return std::nullopt;
-  const Eigen::Vector3d whitened = llt.matrixL().solve(c);
+  const LoopError whitened = llt.matrixL().solve(LoopError(error_of(loop) - expected));
   return whitened.dot(llt_ratio.solve(whitened));
+}
+
+std::vector<UnitValues> ClosuresOf(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
+                                   LoopErrorOf error_of) {
+  std::vector<UnitValues> closures;
+  for (const Loop& loop : loops) {
+    if (error_of == DirectionClosure && loop.size() != 3) continue;
+    // Of the pairs themselves, or of their twins of one number; empty where one is not answered.
+    const auto steps_of = [&](const auto& choose) {
+      std::vector<AnsweredStep> steps;
+      for (const LoopStep& step : loop) {
+        const Answered* answered = choose(answers[step.pair]);
+        if (!answered || !answered->IsOk()) return std::vector<AnsweredStep>();
+        steps.push_back({&answered->pair, &answered->estimate, step.is_forward});
+      }
+      return steps;
+    };
+    const std::vector<AnsweredStep> steps = steps_of([](const PairAnswers& pair) { return &pair.whole; });
+    if (steps.empty()) continue;
+    UnitValues values;
+    const LoopError truth_of_twins = error_of(steps);
+    const auto add = [&](const std::vector<AnsweredStep>& of, const LoopError& expected,
+                         std::vector<double>* to) {
+      if (of.empty()) return;
+      const std::optional<double> closure = NormalizedClosure(of, error_of, expected);
+      if (closure) to->push_back(*closure);
+    };
+    add(steps, LoopError::Zero(truth_of_twins.size()), &values.observed);
+    for (size_t k = 0; k < answers[loop.front().pair].twins.size(); ++k) {
+      add(steps_of([k](const PairAnswers& pair) { return k < pair.twins.size() ? &pair.twins[k] : nullptr; }),
+          truth_of_twins, &values.null);
+    }
+    closures.push_back(std::move(values));
+  }
+  return closures;
 }
 
 }  // namespace rcme

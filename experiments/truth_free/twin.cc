@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
+#include "estimator/noise_scale.h"
 #include "experiments/data/data_source.h"
 #include "stats/median_ratio.h"
 
@@ -56,10 +57,10 @@ NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uin
                  std::uint32_t twin) {
   const Eigen::Matrix3d F = FundamentalOf(pair.problem, estimate.cam2_from_cam1);
   const double sigma_px = NoiseOf(pair.problem, estimate);
-  const auto noise_of = [&](const std::string& image, const Eigen::Vector2d& x_px) {
+  const auto noise_of = [&](const std::string& image, const Eigen::Vector2d& x_px, double scale) {
     RandomStream rng = StreamFor({seed, KeyOf(image, x_px), twin, 0}, StreamPurpose::kNoise);
     const double x = rng.Normal(), y = rng.Normal();
-    return Eigen::Vector2d(sigma_px * x, sigma_px * y);
+    return Eigen::Vector2d(scale * sigma_px * x, scale * sigma_px * y);
   };
   const std::string image1 = pair.image1.empty() ? pair.name + "/1" : pair.image1;
   const std::string image2 = pair.image2.empty() ? pair.name + "/2" : pair.image2;
@@ -67,9 +68,10 @@ NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uin
   for (const int i : estimate.inliers) {
     Correspondence& match = made.problem.matches[static_cast<size_t>(i)];
     const Correspondence observed = match;
+    const double scale = NoiseScaleAt(pair.problem, static_cast<size_t>(i));
     match = Snapped(F, match);
-    match.x1_px += noise_of(image1, observed.x1_px);
-    match.x2_px += noise_of(image2, observed.x2_px);
+    match.x1_px += noise_of(image1, observed.x1_px, scale);
+    match.x2_px += noise_of(image2, observed.x2_px, scale);
   }
   return made;
 }

@@ -23,8 +23,9 @@ Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match);
 double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate);
 
 // The inliers of an answer at the nearest points that satisfy it, with independent normal noise of its
-// standard deviation anew; all other matches as they are. The noise is each key point's own: matches that
-// share one, of this or another pair of the image, share its noise. `twin`: the number of the twin.
+// standard deviation, times each match's noise_scale, anew; all other matches as they are. The noise is each
+// key point's own: matches that share one, of this or another pair of the image, share its noise. `twin`: the
+// number of the twin.
 NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
                  std::uint32_t twin);
 

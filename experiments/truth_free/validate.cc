@@ -1,7 +1,5 @@
 #include "experiments/truth_free/validate.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +7,7 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/data/data_source.h"
 #include "experiments/trial/answer_check.h"
+#include "experiments/truth_free/advice.h"
 #include "experiments/truth_free/closure.h"
 #include "experiments/truth_free/halves.h"
 #include "experiments/truth_free/residual_correlation.h"
@@ -23,13 +22,6 @@ constexpr int kResamples = 1000;
 constexpr double kLeastProducts = 100.0;  // of residuals, for a correlation
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// A pair, or a twin of it, with its answer.
-struct Answered {
-  NamedPair pair;
-  MotionEstimate estimate;
-  bool IsOk() const { return estimate.status == MotionStatus::kOk; }
-};
-
 Answered Ask(NamedPair pair, const MotionEstimator& estimator, const StreamName& name) {
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
   MotionEstimate estimate = Judged(estimator.Estimate(pair.problem, rng), pair.problem.matches.size());
@@ -38,8 +30,6 @@ Answered Ask(NamedPair pair, const MotionEstimator& estimator, const StreamName&
 
 // What is computed of each pair and its twins.
 struct PairResults {
-  Answered whole;
-  std::vector<Answered> twins;
   UnitValues spatial, random;
   ResidualProducts products, twin_products;
 };
@@ -56,47 +46,37 @@ void AddHalves(const Answered& answered, const MotionEstimator& estimator, Strea
   for (const Split split : kRandomSplits) add(split, random);
 }
 
+// Answers a pair and its twins too.
 PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
-                      const ValidationOptions& options) {
+                      const ValidationOptions& options, PairAnswers* answers) {
   constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
   StreamName name{options.seed, StreamKeyOf(pair.name), 0, 0};
-  PairResults results{Ask(pair, estimator, name), {}, {}, {}, {}, {}};
-  if (!results.whole.IsOk()) return results;
-  AddHalves(results.whole, estimator, name, &results.spatial.observed, &results.random.observed);
-  results.products = ProductsOf(pair.problem, results.whole.estimate);
+  PairResults results;
+  answers->whole = Ask(pair, estimator, name);
+  const Answered& whole = answers->whole;
+  if (!whole.IsOk()) return results;
+  AddHalves(whole, estimator, name, &results.spatial.observed, &results.random.observed);
+  results.products = ProductsOf(pair.problem, whole.estimate);
   for (int k = 1; k <= options.num_twins; ++k) {
-    const auto twin = static_cast<std::uint32_t>(k);
-    name.trial = twin * kCallsOfOne;
-    results.twins.push_back(Ask(TwinOf(pair, results.whole.estimate, options.seed, twin), estimator, name));
-    if (!results.twins.back().IsOk()) continue;
-    AddHalves(results.twins.back(), estimator, name, &results.spatial.null, &results.random.null);
-    results.twin_products += ProductsOf(results.twins.back().pair.problem, results.twins.back().estimate);
+    const auto number = static_cast<std::uint32_t>(k);
+    name.trial = number * kCallsOfOne;
+    answers->twins.push_back(Ask(TwinOf(pair, whole.estimate, options.seed, number), estimator, name));
+    const Answered& twin = answers->twins.back();
+    if (!twin.IsOk()) continue;
+    AddHalves(twin, estimator, name, &results.spatial.null, &results.random.null);
+    results.twin_products += ProductsOf(twin.pair.problem, twin.estimate);
   }
   return results;
 }
 
-// Of each triple its closure and those of its twins. A pair that is in several triples makes these dependent.
-std::vector<UnitValues> Closures(const std::vector<PairResults>& results, const std::vector<Triple>& triples,
-                                 int num_twins) {
-  std::vector<UnitValues> closures;
-  for (const Triple& triple : triples) {
-    const PairResults &ab = results[triple.ab], &bc = results[triple.bc], &ac = results[triple.ac];
-    if (!ab.whole.IsOk() || !bc.whole.IsOk() || !ac.whole.IsOk()) continue;
-    UnitValues values;
-    const auto add = [](const Answered& a, const Answered& b, const Answered& c,
-                        const Eigen::Vector3d& expected, std::vector<double>* to) {
-      if (!a.IsOk() || !b.IsOk() || !c.IsOk()) return;
-      const std::optional<double> closure =
-          NormalizedClosure({&a.pair, &a.estimate}, {&b.pair, &b.estimate}, {&c.pair, &c.estimate}, expected);
-      if (closure) to->push_back(*closure);
-    };
-    add(ab.whole, bc.whole, ac.whole, Eigen::Vector3d::Zero(), &values.observed);
-    const Eigen::Vector3d of_truth = ClosureOf(ab.whole.estimate, bc.whole.estimate, ac.whole.estimate);
-    for (size_t k = 0; k < static_cast<size_t>(num_twins); ++k)
-      add(ab.twins[k], bc.twins[k], ac.twins[k], of_truth, &values.null);
-    closures.push_back(std::move(values));
+std::map<size_t, int> CountLoops(const std::vector<Loop>& loops, const std::vector<PairAnswers>& answers) {
+  std::map<size_t, int> counts;
+  for (const Loop& loop : loops) {
+    const bool is_answered =
+        std::ranges::all_of(loop, [&](const LoopStep& step) { return answers[step.pair].whole.IsOk(); });
+    if (is_answered) ++counts[loop.size()];
   }
-  return closures;
+  return counts;
 }
 
 double ShareWithin(std::span<const UnitValues> units, std::vector<double> UnitValues::*list, double bound) {
@@ -166,97 +146,47 @@ std::vector<DistanceCorrelation> CorrelationsOf(const std::vector<PairResults>& 
   return all;
 }
 
-ComparedMedians SigmaOf(const std::vector<PairResults>& results, RandomStream& rng) {
+ComparedMedians SigmaOf(const std::vector<PairAnswers>& answers, RandomStream& rng) {
   std::vector<UnitValues> units;
-  for (const PairResults& one : results) {
-    if (one.whole.IsOk()) units.push_back({{NoiseOf(one.whole.pair.problem, one.whole.estimate)}, {1.0}});
+  for (const auto& [whole, twins] : answers) {
+    if (whole.IsOk()) units.push_back({{NoiseOf(whole.pair.problem, whole.estimate)}, {1.0}});
   }
   return RatioOfMedians(units, kConfidence, kResamples, rng);
-}
-
-const TruthFreeTest& Named(const SetReport& report, const std::string& name) {
-  return *std::ranges::find(report.tests, name, &TruthFreeTest::name);
-}
-
-std::vector<std::string> AdviceOn(const SetReport& report) {
-  std::vector<std::string> advice;
-  const auto is_small = [&](const char* name) {
-    return Named(report, name).verdict == TruthFreeVerdict::kTooSmall;
-  };
-  const bool is_correlated_far = std::ranges::any_of(report.correlations, [](const DistanceCorrelation& c) {
-    return c.from_px >= 1.0 && c.difference.lower > kNominalCorrelation;
-  });
-  if (is_small("random_halves"))
-    advice.emplace_back(
-        "random halves differ more than independent errors explain: wrong matches among the inliers, or an "
-        "assumed "
-        "sigma that is too small (an estimator that estimates it, covariance=robust)");
-  if (report.correlations.front().difference.lower > kNominalCorrelation)
-    advice.emplace_back(
-        "points within 1 px of each other err alike: one point found twice; covariance=robust counts it "
-        "once");
-  if (is_correlated_far)
-    advice.emplace_back("neighbours err alike: covariance=robust widens by what image blocks show");
-  if (is_small("spatial_halves") && !is_small("random_halves"))
-    advice.push_back(fmt::format(
-        "halves of the image disagree: with covariance=robust, covariance_factor={:.2g} times its present "
-        "value; {}",
-        Named(report, "spatial_halves").ratio.value,
-        is_correlated_far ? "neighbours' errors are part of it"
-                          : "no correlation up to 64 px: look at calibration, distortion, rolling shutter "
-                            "(focal_sd, principal_point_sd_px, distortion_sd)"));
-  if (Named(report, "random_halves").verdict == TruthFreeVerdict::kTooLarge &&
-      Named(report, "spatial_halves").verdict != TruthFreeVerdict::kTooLarge)
-    advice.emplace_back(
-        "random halves differ less than the covariances say, halves of the image do not: what neighbours' "
-        "errors have "
-        "in common is in both random halves and cancels; no reason to narrow the covariances");
-  if (is_small("closure"))
-    advice.push_back(
-        fmt::format("rotations around three images do not close: too small by {:.2g} in variance; if "
-                    "halves hold, an error that is common to a whole image, as of its calibration",
-                    Named(report, "closure").ratio.value));
-  if (report.sigma_px.interval.upper < 0.8 * report.assumed_sigma_px ||
-      report.sigma_px.interval.lower > 1.25 * report.assumed_sigma_px)
-    advice.push_back(fmt::format("assumed sigma {:g} px, the residuals say {:.2g}: assume that (--sigma)",
-                                 report.assumed_sigma_px, report.sigma_px.value));
-  return advice;
 }
 
 }  // namespace
 
 TruthFreeVerdict VerdictOn(const ComparedMedians& ratio) {
   if (std::isnan(ratio.value)) return TruthFreeVerdict::kNoData;
-  const Interval& interval = ratio.interval;
-  if (interval.lower >= 1.0 / kNominalVariance && interval.upper <= kNominalVariance)
-    return TruthFreeVerdict::kHolds;
-  if (interval.lower > 1.0) return TruthFreeVerdict::kTooSmall;
-  if (interval.upper < 1.0) return TruthFreeVerdict::kTooLarge;
-  return TruthFreeVerdict::kUndecided;
+  const Interval of_covariances = {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower};
+  return VerdictOnInterval(of_covariances, 1.0, {1.0 / kNominalVariance, kNominalVariance});
 }
 
 SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options) {
   SetReport report;
   report.name = set.name;
   report.num_pairs = static_cast<int>(set.pairs.size());
+  std::vector<PairAnswers> answers;
   std::vector<PairResults> results;
   std::vector<UnitValues> spatial, random;
   for (const NamedPair& pair : set.pairs) {
     if (IsStopRequested()) throw Stopped("stopped; nothing is written");
-    results.push_back(ResultsOf(pair, estimator, options));
-    report.num_answered += results.back().whole.IsOk();
+    results.push_back(ResultsOf(pair, estimator, options, &answers.emplace_back()));
+    report.num_answered += answers.back().whole.IsOk();
     spatial.push_back(results.back().spatial);
     random.push_back(results.back().random);
   }
-  const std::vector<Triple> triples = FindTriples(set.pairs);
-  const std::vector<UnitValues> closures = Closures(results, triples, options.num_twins);
-  report.num_triples = static_cast<int>(closures.size());
+  const std::vector<Loop> loops = FindLoops(set.pairs);
+  report.num_loops = CountLoops(loops, answers);
   RandomStream rng = StreamFor({options.seed, StreamKeyOf(set.name), 0, 0}, StreamPurpose::kMonteCarlo);
   report.tests = {TestOf("spatial_halves", 5, spatial, rng), TestOf("random_halves", 5, random, rng),
-                  TestOf("closure", 3, closures, rng)};
+                  TestOf("closure", 3, ClosuresOf(answers, loops, RotationClosure), rng),
+                  TestOf("directions", 1, ClosuresOf(answers, loops, DirectionClosure), rng)};
   report.assumed_sigma_px = set.pairs.empty() ? kNaN : set.pairs.front().problem.sigma_px;
-  report.sigma_px = SigmaOf(results, rng);
+  report.sigma_px = SigmaOf(answers, rng);
   report.correlations = CorrelationsOf(results, rng);
+  report.calibration = TestCalibration(answers);
+  report.sizes = TestKeyPointSizes(answers);
   report.advice = AdviceOn(report);
   return report;
 }

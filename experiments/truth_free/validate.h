@@ -1,11 +1,15 @@
 // Whether an estimator's covariances hold on pairs whose true motions nobody knows.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "estimator/motion_estimator.h"
+#include "experiments/truth_free/calibration_test.h"
 #include "experiments/truth_free/pair_set.h"
+#include "experiments/truth_free/size_test.h"
+#include "experiments/truth_free/truth_free_verdict.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
@@ -15,14 +19,12 @@ inline constexpr double kNominalVariance = 1.5;
 // A correlation of residuals below it is nominal.
 inline constexpr double kNominalCorrelation = 0.05;
 
-enum class TruthFreeVerdict { kHolds, kTooSmall, kTooLarge, kUndecided, kNoData };
-// The verdict that an interval of a ratio of variances allows: one of too small and too large if it lies
-// beyond 1 and is not all nominal, "holds" if it is.
+// The verdict that an interval of a ratio of variances allows.
 TruthFreeVerdict VerdictOn(const ComparedMedians& ratio);
 
 // A test of the covariances: normalised squared differences against those of the twins.
 struct TruthFreeTest {
-  std::string name;  // spatial_halves, random_halves, closure
+  std::string name;  // spatial_halves, random_halves, closure, directions
   int degrees_of_freedom = 5;
   int num_values = 0;                          // of the pairs themselves
   double coverage = 0.0, twin_coverage = 0.0;  // share within the 95 % region; NaN: none
@@ -42,11 +44,14 @@ struct DistanceCorrelation {
 
 struct SetReport {
   std::string name;
-  int num_pairs = 0, num_answered = 0, num_triples = 0;
+  int num_pairs = 0, num_answered = 0;
+  std::map<size_t, int> num_loops;  // whose pairs are all answered, by the number of images
   std::vector<TruthFreeTest> tests;
   double assumed_sigma_px = 0.0;
   ComparedMedians sigma_px;  // estimated from residuals, median over pairs
   std::vector<DistanceCorrelation> correlations;
+  CalibrationReport calibration;
+  SizeReport sizes;
   std::vector<std::string> advice;  // what to change, in words
 };
 

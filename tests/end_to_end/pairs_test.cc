@@ -49,7 +49,7 @@ TEST(PairsProgram, FromKittiToARateAndToAValidation) {
   const ProgramResult validated =
       RunRcme({"validate", out, "--out", folder.Path("validation"), "--no-figure", "--twins", "1"});
   EXPECT_EQ(validated.exit_code, 0) << validated.err;
-  EXPECT_EQ(validated.out.find(" 0 triples"), std::string::npos) << validated.out;
+  EXPECT_EQ(validated.out.find(" 0 loops"), std::string::npos) << validated.out;
 }
 
 TEST(PairsProgram, EndsWithTwoAndThePathWhereSomethingIsWrong) {

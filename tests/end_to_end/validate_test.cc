@@ -35,7 +35,7 @@ TEST_F(ValidateProgram, OfAFolderSaysOfEachSceneWhatItFound) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, Written("validation.txt"));
   for (const char* part :
-       {"a: 2 pairs, 2 answered, 0 triples", "b: 1 pairs", "spatial_halves", "closure", "no data"})
+       {"a: 2 pairs, 2 answered, 0 loops", "b: 1 pairs", "spatial_halves", "closure", "no data"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in\n" << result.out;
   EXPECT_NE(Written("validation.csv").find("\na,2,2,spatial_halves,"), std::string::npos);
   EXPECT_NE(Written("validation.json").find("rcme validation 1"), std::string::npos);

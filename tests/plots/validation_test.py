@@ -28,10 +28,13 @@ def fake():
     def correlation(low, high, value):
         bounds = [None, None] if value is None else [value - 0.1, value + 0.1]
         return {"from_px": low, "to_px": high, "correlation": value or 0.0, "twin_correlation": 0.0, "difference_interval": bounds}
-    sets = [{"name": "hall", "pairs": 12, "tests": [test_of("spatial_halves", 2.0, "too small"), test_of("random_halves", 1.0, "holds"),
+    def fault(value, verdict):
+        bounds = [None, None] if value is None else [value - 0.001, value + 0.001]
+        return {"fault": "focal_length", "nominal": 0.002, "verdict": verdict, "beside_others": {"value": value, "interval": bounds}}
+    sets = [{"name": "hall", "camera_faults": [fault(0.004, "wrong")], "pairs": 12, "tests": [test_of("spatial_halves", 2.0, "too small"), test_of("random_halves", 1.0, "holds"),
                                                     test_of("closure", 3.0, "undecided")],
              "correlations": [correlation(0, 1, 0.8), correlation(1, 4, 0.1)]},
-            {"name": "street", "pairs": 3, "tests": [test_of("spatial_halves", 0.5, "too large"), test_of("random_halves", 1.1, "holds"),
+            {"name": "street", "camera_faults": [fault(None, "no data")], "pairs": 3, "tests": [test_of("spatial_halves", 0.5, "too large"), test_of("random_halves", 1.1, "holds"),
                                                      test_of("closure", None, "no data")],
              "correlations": [correlation(0, 1, None), correlation(1, 4, 0.0)]}]
     return {"format": script.FORMAT, "nominal_variance": 1.5, "nominal_correlation": 0.05, "sets": sets}
@@ -56,9 +59,13 @@ class Validation(unittest.TestCase):
             self.assertGreater((self.folder / f"figure.{suffix}").stat().st_size, 1000)
 
     def test_every_test_with_a_ratio_stands_at_it(self):
-        ratios, _ = script.draw(fake()).axes
+        ratios = script.draw(fake()).axes[0]
         markers = [line.get_xdata()[0] for line in ratios.lines if line.get_marker() in "os^" and len(line.get_xdata()) == 1]
         self.assertEqual(markers, [2.0, 1.0, 3.0, 0.5, 1.1])
+
+    def test_every_fault_stands_at_its_multiple_of_what_is_nominal(self):
+        faults = script.draw(fake()).axes[2]
+        self.assertEqual([line.get_xdata()[0] for line in faults.lines if line.get_marker() == "o"], [2.0])
 
     def test_what_is_no_validation_is_refused(self):
         for content in ("{", "[]", {"format": "rcme summary 1", "sets": [1]}, {**fake(), "sets": []}):

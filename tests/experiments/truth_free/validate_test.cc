@@ -9,30 +9,19 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/geometry/sampson.h"
-#include "estimator/refinement/sampson_mle.h"
 #include "experiments/study/study_file.h"
-#include "experiments/truth_free/closure.h"
 #include "experiments/truth_free/halves.h"
+#include "experiments/truth_free/loops.h"
 #include "experiments/truth_free/residual_correlation.h"
 #include "experiments/truth_free/twin.h"
 #include "experiments/truth_free/validate_output.h"
 #include "stats/consistency.h"
+#include "tests/test_support/fit_of.h"
 #include "tests/test_support/paths.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
 namespace {
-
-// The fit to all matches of a scene without wrong ones.
-MotionEstimate FitOf(const MotionProblem& problem, const RelativePose& start) {
-  const RefinedMotion motion = RefineAllBySampson(problem, start);
-  MotionEstimate estimate;
-  estimate.status = MotionStatus::kOk;
-  estimate.cam2_from_cam1 = motion.cam2_from_cam1;
-  estimate.pose_cov = motion.pose_cov;
-  for (int i = 0; i < static_cast<int>(problem.matches.size()); ++i) estimate.inliers.push_back(i);
-  return estimate;
-}
 
 // Two motions drawn about one with covariances of their own, whose directions have different bases: mean of
 // 2,000 normalised differences 5, z-test at 1e-4.
@@ -51,83 +40,6 @@ TEST(NormalizedDifference, IsChiSquareOfTwoIndependentMotions) {
   double sum = 0.0;
   for (int i = 0; i < 2000; ++i) sum += NormalizedDifference(drawn(sd_a), drawn(sd_b));
   EXPECT_NEAR(sum / 2000, 5.0, 3.89 * std::sqrt(10.0 / 2000));
-}
-
-// dc = R_ab' w_ab + R_ac' (w_bc - w_ac), against differences of the closure itself.
-TEST(ClosureOf, MovesWithTheRotationsAsItsCovarianceSays) {
-  MotionEstimate ab, bc, ac;
-  ab.cam2_from_cam1.R = RotationFromVector({0.1, -0.3, 0.2});
-  bc.cam2_from_cam1.R = RotationFromVector({-0.2, 0.1, 0.3});
-  ac.cam2_from_cam1.R = bc.cam2_from_cam1.R * ab.cam2_from_cam1.R;
-  EXPECT_LT(ClosureOf(ab, bc, ac).norm(), 1e-12);
-  const Eigen::Matrix3d to_ab = ab.cam2_from_cam1.R.transpose(), to_bc = ac.cam2_from_cam1.R.transpose();
-  const Eigen::Vector3d w(1e-6, -2e-6, 3e-6);
-  for (const auto& [moved, M] :
-       {std::pair<MotionEstimate*, Eigen::Matrix3d>{&ab, to_ab}, {&bc, to_bc}, {&ac, -to_bc}}) {
-    const Eigen::Matrix3d R = moved->cam2_from_cam1.R;
-    moved->cam2_from_cam1.R = RotationFromVector(w) * R;
-    EXPECT_LT((ClosureOf(ab, bc, ac) - M * w).norm(), 1e-10);
-    moved->cam2_from_cam1.R = R;
-  }
-}
-
-TEST(FindTriples, AreOfImagesThatPairsName) {
-  const auto pair = [](const char* image1, const char* image2) { return NamedPair{"", image1, image2, {}}; };
-  const std::vector<NamedPair> pairs = {pair("1", "2"), pair("2", "3"), pair("1", "3"), pair("3", "4"),
-                                        pair("", ""),   pair("", "2"),  pair("2", "4")};
-  const std::vector<Triple> triples = FindTriples(pairs);
-  ASSERT_EQ(triples.size(), 2u);  // 1 2 3 and 2 3 4
-  EXPECT_EQ(triples[0].ab, 0u);
-  EXPECT_EQ(triples[0].bc, 1u);
-  EXPECT_EQ(triples[0].ac, 2u);
-  EXPECT_EQ(triples[1].ac, 6u);
-}
-
-// Three images of one cloud; every image's key point has one error, which its two pairs share. The mean of
-// 150 closures over 3 lies within four of its standard errors, 0.067, of one; where the pairs are taken to be
-// independent, the same closures seem smaller: power.
-TEST(NormalizedClosure, HasOneVarianceWhereKeyPointsAreShared) {
-  double sum = 0.0, sum_without = 0.0;
-  constexpr int kTrials = 150;
-  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
-    RandomStream rng({.seed = 1, .trial = trial, .purpose = 70});
-    const Camera camera{600.0, 600.0, 319.5, 239.5, 640, 480};
-    const RelativePose b{RotationFromVector({0.02, 0.05, -0.03}), {0.5, 0.1, 0.0}},
-        c{RotationFromVector({-0.03, 0.09, 0.02}), {0.9, -0.2, 0.2}};  // t in metres
-    std::vector<std::array<Eigen::Vector2d, 3>> points;
-    while (points.size() < 150) {
-      const double z = rng.Uniform(3.0, 9.0);
-      const Eigen::Vector3d X(z * rng.Uniform(-0.5, 0.5), z * rng.Uniform(-0.4, 0.4), z);
-      std::array<Eigen::Vector2d, 3> x = {camera.Project(X), camera.Project(b.R * X + b.t),
-                                          camera.Project(c.R * X + c.t)};
-      for (Eigen::Vector2d& x_px : x) {
-        const double dx = rng.Normal(), dy = rng.Normal();
-        x_px += 0.3 * Eigen::Vector2d(dx, dy);
-      }
-      points.push_back(x);
-    }
-    const auto pair_of = [&](size_t i, size_t k) {
-      NamedPair pair{"", std::to_string(i), std::to_string(k), {{}, camera, camera, 0.3}};
-      for (const auto& x : points) pair.problem.matches.push_back({x[i], x[k]});
-      return pair;
-    };
-    const NamedPair ab = pair_of(0, 1), bc = pair_of(1, 2), ac = pair_of(0, 2);
-    const RelativePose of_ab{b.R, b.t.normalized()}, of_ac{c.R, c.t.normalized()};
-    const Eigen::Matrix3d R_bc = c.R * b.R.transpose();
-    const RelativePose of_bc{R_bc, (c.t - R_bc * b.t).normalized()};
-    const MotionEstimate e_ab = FitOf(ab.problem, of_ab), e_bc = FitOf(bc.problem, of_bc),
-                         e_ac = FitOf(ac.problem, of_ac);
-    const auto closure = NormalizedClosure({&ab, &e_ab}, {&bc, &e_bc}, {&ac, &e_ac}, Eigen::Vector3d::Zero());
-    ASSERT_TRUE(closure.has_value());
-    sum += *closure / 3.0;
-    NamedPair apart = ac;  // its key points look like others
-    for (Correspondence& match : apart.problem.matches) match.x1_px.x() += 1e-9, match.x2_px.x() += 1e-9;
-    sum_without += NormalizedClosure({&ab, &e_ab}, {&bc, &e_bc}, {&apart, &e_ac}, Eigen::Vector3d::Zero())
-                       .value_or(0.0) /
-                   3.0;
-  }
-  EXPECT_NEAR(sum / kTrials, 1.0, 4.0 * 0.067);
-  EXPECT_LT(sum_without, 0.95 * sum) << sum / kTrials << " " << sum_without / kTrials;
 }
 
 // Inliers of the twin lie at the answer's geometry with noise of the stated size; a key point that two of
@@ -236,7 +148,7 @@ TEST(Validate, RealScenesNameTheirImages) {
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "needs the real pairs, " << folder;
   for (const PairSet& set : PairSetsOfFolder(folder, 0.5)) {
     if (set.name != "strecha_fountain") continue;
-    EXPECT_GT(FindTriples(set.pairs).size(), 10u);
+    EXPECT_GT(FindLoops(set.pairs, 3).size(), 10u);
   }
 }
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "stats/intervals.h"
+
+namespace rcme {
+
+enum class TruthFreeVerdict { kHolds, kTooSmall, kTooLarge, kUndecided, kNoData };
+
+// The verdict that an interval of a quantity allows whose right value is `right`: "holds" if it lies within
+// `nominal`, one of too small and too large if it does not hold `right`.
+inline TruthFreeVerdict VerdictOnInterval(const Interval& interval, double right, const Interval& nominal) {
+  if (interval.lower >= nominal.lower && interval.upper <= nominal.upper) return TruthFreeVerdict::kHolds;
+  if (interval.lower > right) return TruthFreeVerdict::kTooLarge;
+  if (interval.upper < right) return TruthFreeVerdict::kTooSmall;
+  return TruthFreeVerdict::kUndecided;
+}
+
+}  // namespace rcme

@@ -1,0 +1,149 @@
+#include "stats/pooled_scores.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "stats/distributions.h"
+#include "stats/shared_members.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Of information in units in which every parameter alone has one: below it a combination is not told.
+constexpr double kLeastInformation = 1e-9;
+constexpr double kCommonDegreesOfFreedom = 10.0;  // nu_0, at most
+constexpr PooledParameter kUntold = {kNaN, kNaN, {-kInfinity, kInfinity}, 0.0};
+
+// Symmetric matrices in units in which all units' information has a diagonal of ones.
+struct Scaling {
+  Eigen::VectorXd scale;
+  explicit Scaling(const Eigen::MatrixXd& all) : scale(all.diagonal().cwiseSqrt().cwiseInverse()) {}
+  Eigen::MatrixXd Of(const Eigen::MatrixXd& matrix) const {
+    return scale.asDiagonal() * matrix * scale.asDiagonal();
+  }
+};
+
+// Nothing of a singular matrix.
+std::optional<Eigen::MatrixXd> Invert(const Eigen::MatrixXd& information, const Scaling& scaling) {
+  const Eigen::MatrixXd scaled = scaling.Of(information);
+  if (!scaled.allFinite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  if (!(eigen.eigenvalues()(0) > kLeastInformation)) return std::nullopt;
+  return scaling.Of(eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
+                    eigen.eigenvectors().transpose());
+}
+
+// What the units' scatter says of one parameter.
+struct Jackknife {
+  double variance = 0.0, variance_if_apart = 0.0;
+  std::int64_t num_members = 0;
+};
+Jackknife JackknifeOf(const std::vector<PairValue>& moves) {
+  const SharedMemberMean mean = MeasureSharedMemberMean(moves);
+  const double n = static_cast<double>(moves.size());
+  double squares = 0.0;
+  for (const PairValue& move : moves) squares += (move.value - mean.value) * (move.value - mean.value);
+  return {n * n * mean.standard_error * mean.standard_error, n / (n - 1.0) * squares, mean.num_members};
+}
+
+// How units differ from what all say together.
+struct Scatter {
+  std::vector<std::vector<PairValue>> moves;   // d_u of each parameter
+  double squares = 0.0, squared_shares = 0.0;  // sum e_u' A^-1 e_u; S
+  Eigen::VectorXd squared_shares_of_each;      // sum h_u^2
+};
+// Nothing where a unit alone tells a parameter.
+std::optional<Scatter> ScatterOf(std::span<const UnitScore> units, const Eigen::MatrixXd& A,
+                                 const Eigen::MatrixXd& inverse, const Eigen::VectorXd& theta,
+                                 const Scaling& scaling) {
+  Scatter scatter{std::vector<std::vector<PairValue>>(static_cast<size_t>(theta.size())), 0.0, 0.0,
+                  Eigen::VectorXd::Zero(theta.size())};
+  for (const UnitScore& unit : units) {
+    const Eigen::MatrixXd share = inverse * unit.information;
+    scatter.squared_shares_of_each += share.diagonal().cwiseAbs2();
+    scatter.squared_shares += (share * share).trace();
+    const Eigen::VectorXd rest = unit.score - unit.information * theta;
+    scatter.squares += rest.dot(inverse * rest);
+    const std::optional<Eigen::MatrixXd> others = Invert(A - unit.information, scaling);
+    if (!others) return std::nullopt;
+    const Eigen::VectorXd move = *others * rest;
+    for (Eigen::Index j = 0; j < theta.size(); ++j)
+      scatter.moves[static_cast<size_t>(j)].push_back({unit.member1, unit.member2, move(j)});
+  }
+  if (!(scatter.squared_shares < static_cast<double>(theta.size()))) return std::nullopt;
+  return scatter;
+}
+
+double RatioOrOne(double x, double y) { return y > 0.0 ? x / y : 1.0; }
+
+// Of degrees of freedom that are whole but for rounding.
+int Whole(double x) { return static_cast<int>(std::max(1.0, x + 1e-6)); }
+
+}  // namespace
+
+PooledScores PoolScores(std::span<const UnitScore> units, double confidence) {
+  PooledScores pooled{{}, kNaN, kNaN, {}};
+  if (units.empty()) return pooled;
+  const Eigen::Index k = units.front().score.size();
+  pooled.parameters.assign(static_cast<size_t>(k), kUntold);
+  Eigen::VectorXd score = Eigen::VectorXd::Zero(k);
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(k, k);
+  for (const UnitScore& unit : units) score += unit.score, A += unit.information;
+  const Scaling scaling(A);
+  const std::optional<Eigen::MatrixXd> inverse = Invert(A, scaling);
+  if (!inverse) return pooled;
+  const Eigen::VectorXd theta = *inverse * score;
+  const Eigen::VectorXd one_over_sd = inverse->diagonal().cwiseSqrt().cwiseInverse();
+  pooled.correlations = one_over_sd.asDiagonal() * *inverse * one_over_sd.asDiagonal();
+
+  for (Eigen::Index j = 0; j < k; ++j) pooled.parameters[static_cast<size_t>(j)].value = theta(j);
+  const std::optional<Scatter> scatter = ScatterOf(units, A, *inverse, theta, scaling);
+  if (!scatter) return pooled;
+
+  const double parameters = static_cast<double>(k), of_shares = scatter->squared_shares;
+  pooled.dispersion = scatter->squares / (parameters - of_shares);
+  std::vector<Jackknife> jackknives;
+  double sharing = 0.0;  // c
+  for (const auto& of_parameter : scatter->moves) {
+    jackknives.push_back(JackknifeOf(of_parameter));
+    sharing += RatioOrOne(jackknives.back().variance, jackknives.back().variance_if_apart) / parameters;
+  }
+  const double n = static_cast<double>(units.size());
+  const double common = std::min(kCommonDegreesOfFreedom, n - 1.0);
+  for (Eigen::Index j = 0; j < k; ++j) {
+    PooledParameter& parameter = pooled.parameters[static_cast<size_t>(j)];
+    const Jackknife& own = jackknives[static_cast<size_t>(j)];
+    parameter.effective_n = 1.0 / scatter->squared_shares_of_each(j);
+    const double fewest = std::min({n, static_cast<double>(own.num_members), parameter.effective_n});
+    const double of_own = std::max(1.0, fewest - 1.0);
+    const double moderated =
+        (common * pooled.dispersion * sharing * (*inverse)(j, j) + of_own * own.variance) / (common + of_own);
+    parameter.standard_error = std::sqrt(moderated);
+    const double half =
+        parameter.standard_error * StudentQuantile(Whole(common + of_own), 0.5 * (1.0 + confidence));
+    parameter.interval = {parameter.value - half, parameter.value + half};
+  }
+  if (pooled.dispersion > 0.0) {
+    const double F = theta.dot(A * theta) / (parameters * pooled.dispersion * sharing);
+    pooled.p_value =
+        1.0 - FisherCdf(static_cast<int>(k), Whole((parameters - of_shares) * parameters / of_shares), F);
+  }
+  return pooled;
+}
+
+PooledParameter PoolScoreAlone(std::span<const UnitScore> units, Eigen::Index j, double confidence) {
+  std::vector<UnitScore> alone;
+  for (const UnitScore& unit : units) {
+    alone.push_back(
+        {unit.member1, unit.member2, unit.score.segment(j, 1), unit.information.block(j, j, 1, 1)});
+  }
+  const PooledScores pooled = PoolScores(alone, confidence);
+  return pooled.parameters.empty() ? kUntold : pooled.parameters.front();
+}
+
+}  // namespace rcme
