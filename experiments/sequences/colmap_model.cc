@@ -73,6 +73,8 @@ Views ReadImagesText(const fs::path& path, const Lenses& lenses) {
   std::string_view line;
   while (lines.Next(&line)) {
     if (line.empty() || line == "\r" || line.front() == '#') continue;
+    if (views.size() == size_t{TableFile::kMaxImages})
+      lines.Fail(fmt::format("more than {} images are not read", TableFile::kMaxImages));
     std::array<double, 7> p{};
     char name[kMaxNameBytes + 1];
     unsigned id = 0, camera = 0;

@@ -54,7 +54,9 @@ Sequence KittiSequence(const DatasetOptions& options, const fs::path& root, cons
   sequence.name = (options.name.empty() ? "kitti_" : options.name) + FolderName(folder);
   sequence.lens = KittiLens(folder / "calib.txt");
   const auto image = [](size_t i) { return fmt::format("image_0/{:06}.png", i); };
-  for (TableFile table(times, "it comes with the images", TableFile::Separator::kSpace); table.Next();) {
+  for (TableFile table(times, "it comes with the images", TableFile::Separator::kSpace,
+                       TableFile::kMaxImages);
+       table.Next();) {
     const std::string name = image(sequence.frames.size());
     sequence.frames.push_back({name, (folder / name).string(), table.Number(0), std::nullopt});
   }

@@ -99,8 +99,10 @@ void CheckImages(Sequence* sequence) {
 
 }  // namespace
 
-TableFile::TableFile(const fs::path& path, const std::string& origin, Separator separator)
-    : lines_(CheckedPath(path, origin).string(), {"file", "a file"}), separator_(separator) {}
+TableFile::TableFile(const fs::path& path, const std::string& origin, Separator separator, int max_rows)
+    : lines_(CheckedPath(path, origin).string(), {"file", "a file"}),
+      separator_(separator),
+      rows_left_(max_rows) {}
 
 bool TableFile::Next() {
   for (std::string_view line; lines_.Next(&line);) {
@@ -108,6 +110,7 @@ bool TableFile::Next() {
       line.remove_prefix(kByteOrderMark.size());
     const size_t begin = line.find_first_not_of(kSpaces);
     if (begin == std::string_view::npos || line[begin] == '#') continue;
+    if (rows_left_-- == 0) Fail("the file has more rows than data sets have; give a part of it");
     fields_ = separator_ == Separator::kComma ? FieldsOf(line) : WordsOf(line);
     return true;
   }

@@ -17,9 +17,11 @@ class TableFile {
   // Fields are separated by commas, or by spaces and tabs. Throws InputError as GzipLines does; `origin` says
   // where a missing file comes from.
   enum class Separator { kComma, kSpace };
-  TableFile(const std::filesystem::path& path, const std::string& origin, Separator separator);
+  static constexpr int kMaxImages = 200'000, kMaxRows = 1'000'000;
+  TableFile(const std::filesystem::path& path, const std::string& origin, Separator separator,
+            int max_rows = kMaxRows);
 
-  bool Next();  // false after the last row
+  bool Next();  // false after the last row; throws InputError after max_rows
   const std::vector<std::string>& fields() const { return fields_; }
   // The row has at least this many fields.
   void Need(size_t num_fields, const std::string& what) const;
@@ -30,6 +32,7 @@ class TableFile {
  private:
   GzipLines lines_;
   Separator separator_;
+  int rows_left_;
   std::vector<std::string> fields_;
 };
 

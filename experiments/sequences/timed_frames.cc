@@ -49,7 +49,8 @@ void AddTimedFrames(const DatasetOptions& options, const TimedFiles& files, Sequ
   } else {
     sequence->note = fmt::format("no truth: {} is not there", files.truth.string());
   }
-  for (TableFile table(files.images, files.images_origin, files.separator); table.Next();) {
+  for (TableFile table(files.images, files.images_origin, files.separator, TableFile::kMaxImages);
+       table.Next();) {
     table.Need(2, "timestamp, filename");
     const double time_s = files.seconds_per_unit * table.Number(0);
     const std::string name = table.fields()[1];

@@ -12,6 +12,8 @@
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "tests/fuzz/harness/colmap_tables.h"
+#include "tests/fuzz/harness/dataset_inputs.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/mutated.h"
@@ -169,6 +171,58 @@ TEST(MutatedInput, MatchFiles) {
   std::vector<std::string> packed;
   for (const std::string& input : corpus) packed.push_back(Gzip(input));
   EXPECT_GT(ReadDamaged(packed, words, 3000, read).num_refused, 1000);
+}
+
+// Words of the files that data sets come with.
+const std::vector<std::string>& DatasetWords() {
+  static const std::vector<std::string> words = {"\n",
+                                                 "\r\n",
+                                                 ",",
+                                                 " ",
+                                                 "\t",
+                                                 "#",
+                                                 "nan",
+                                                 "inf",
+                                                 "1e999",
+                                                 "-1",
+                                                 "0",
+                                                 "====",
+                                                 "P0:",
+                                                 "!!opencv-matrix",
+                                                 "[",
+                                                 "]",
+                                                 "{",
+                                                 "%YAML:1.0",
+                                                 "..",
+                                                 "/dev/zero",
+                                                 "\xEF\xBB\xBF",
+                                                 "\x1F\x8B",
+                                                 "OPENCV",
+                                                 "99999999999999999999",
+                                                 std::string(8, '\xFF'),
+                                                 std::string(8, '\0')};
+  return words;
+}
+
+TEST(MutatedInput, Datasets) {
+  struct Reader {
+    const char* corpus;
+    void (*read)(std::string_view);
+  };
+  for (const Reader& reader :
+       {Reader{"euroc", ReadEurocInput}, Reader{"kitti", ReadKittiInput}, Reader{"tum", ReadTumInput},
+        Reader{"colmap_model", ReadColmapBytesInput}, Reader{"colmap_model", ReadColmapTextInput}}) {
+    const std::string corpus = std::string("tests/fuzz/corpus/") + reader.corpus;
+    const Outcomes outcomes = ReadDamaged(Corpus(corpus), DatasetWords(), 1500, reader.read);
+    EXPECT_GT(outcomes.num_read, 20) << reader.corpus;
+    EXPECT_GT(outcomes.num_refused, 500) << reader.corpus;
+  }
+  const Outcomes tables = ReadDamaged(
+      Corpus("tests/fuzz/corpus/colmap_database"), DatasetWords(), 1000, [](const std::string& input) {
+        ReadColmapTablesInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
+      });
+  EXPECT_GT(tables.num_read, 5);
+  EXPECT_GT(tables.num_refused, 200);
 }
 
 TEST(MutatedInput, ImageHeaders) {
