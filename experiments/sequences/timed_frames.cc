@@ -10,14 +10,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Truth {
+struct TimedPoses {
   Trajectory trajectory;
   std::set<double> ambiguous_s;  // times with more than one pose: none of them is used
 };
 
-Truth ReadTruth(const TimedFiles& files) {
+TimedPoses ReadTimedPoses(const TimedFiles& files) {
   const auto& [w, x, y, z] = files.wxyz;
-  Truth truth;
+  TimedPoses truth;
   std::optional<std::pair<double, CameraPose>> last;
   const auto add_last = [&] {
     if (last && !truth.ambiguous_s.contains(last->first)) truth.trajectory.Add(last->first, last->second);
@@ -40,9 +40,9 @@ Truth ReadTruth(const TimedFiles& files) {
 }  // namespace
 
 void AddTimedFrames(const DatasetOptions& options, const TimedFiles& files, Sequence* sequence) {
-  Truth truth;
+  TimedPoses truth;
   if (fs::exists(files.truth)) {
-    truth = ReadTruth(files);
+    truth = ReadTimedPoses(files);
     if (!truth.ambiguous_s.empty())
       sequence->note = fmt::format("{}: {} times stand there more than once; their poses are not used",
                                    files.truth.string(), truth.ambiguous_s.size());
