@@ -88,7 +88,7 @@ TEST(PoolScores, HoldsWhereUnitsScatterMoreThanTheirInformationSays) {
       for (double& x : errors) x = 2.0 * rng.Normal();
       UnitScore unit{i, i + 1, rows.transpose() * errors, rows.transpose() * rows};
       for (double& x : next) x = rng.Normal();
-      unit.score += unit.information.diagonal().cwiseSqrt().cwiseProduct(0.7 * (common + next));
+      unit.score += unit.information.diagonal().cwiseSqrt().cwiseProduct(2.0 * (common + next));
       common = next;
       all += unit.information;
       units.push_back(unit);

@@ -101,27 +101,33 @@ TEST(ResidualByFaults, DoesNotGoWithTheNoise) {
   EXPECT_GT(most_of_naive, 4.0);
 }
 
+// Of pairs `first` to `last` of a set, without twins.
+std::vector<PairAnswers> AnswersOf(const PairSet& set, int first, int last) {
+  const auto estimator = MakeEstimator("rcme_calibrated");
+  std::vector<PairAnswers> answers;
+  for (int i = first; i < last; ++i) {
+    const NamedPair& pair = set.pairs[static_cast<size_t>(i)];
+    RandomStream rng({.seed = 7, .trial = static_cast<std::uint32_t>(i), .purpose = 96});
+    answers.push_back({{pair, estimator->Estimate(pair.problem, rng)}, {}});
+  }
+  return answers;
+}
+
 // Sets of `num_pairs` answered pairs of 400 matches, noise 0.2 px, 5 % of them wrong.
-std::vector<CalibrationReport> ReportsOf(const Settings& data, int num_sets, int num_pairs) {
+PairSet PairsOf(const Settings& data, int num_pairs) {
   Study study = ParseStudy(
       "data: {scene: uniform_volume, num_matches: 400, sigma_px: 0.2, outlier_ratio: 0.05}\n"
       "estimators: [{name: rcme_calibrated}]\nseed: 7\n",
       "study.yaml");
-  study.trials = num_sets * num_pairs;
+  study.trials = num_pairs;
   for (const auto& [key, value] : data) Override(&study, key, value);
-  const std::vector<PairSet> drawn = PairSetsOfStudy(MakePlan(study));
-  const auto estimator = MakeEstimator("rcme_calibrated");
+  return PairSetsOfStudy(MakePlan(study)).front();
+}
+std::vector<CalibrationReport> ReportsOf(const Settings& data, int num_sets, int num_pairs) {
+  const PairSet pairs = PairsOf(data, num_sets * num_pairs);
   std::vector<CalibrationReport> reports;
-  for (int set = 0; set < num_sets; ++set) {
-    std::vector<PairAnswers> answers;
-    for (int i = 0; i < num_pairs; ++i) {
-      const auto number = static_cast<size_t>(set * num_pairs + i);
-      const NamedPair& pair = drawn.front().pairs[number];
-      RandomStream rng({.seed = 7, .trial = static_cast<std::uint32_t>(number), .purpose = 96});
-      answers.push_back({{pair, estimator->Estimate(pair.problem, rng)}, {}});
-    }
-    reports.push_back(TestCalibration(answers));
-  }
+  for (int set = 0; set < num_sets; ++set)
+    reports.push_back(TestCalibration(AnswersOf(pairs, set * num_pairs, (set + 1) * num_pairs)));
   return reports;
 }
 
@@ -172,6 +178,15 @@ TEST(TestCalibration, FindsFaults) {
     }
     EXPECT_LT(std::abs(sum) / 20.0, 5.0 * std::sqrt(squares) / 20.0 + 0.1 * planted) << key;
   }
+}
+
+// What the twins show as well is no fault of the camera.
+TEST(TestCalibration, DecidesNothingThatItsTwinsShowToo) {
+  std::vector<PairAnswers> answers = AnswersOf(PairsOf({{"focal_error", "0.02"}}, 20), 0, 20);
+  const size_t focal = static_cast<size_t>(CameraFault::kFocalLength);
+  EXPECT_EQ(TestCalibration(answers).faults[focal].verdict, TruthFreeVerdict::kTooLarge);
+  for (PairAnswers& pair : answers) pair.twins = {pair.whole};
+  EXPECT_EQ(TestCalibration(answers).faults[focal].verdict, TruthFreeVerdict::kUndecided);
 }
 
 TEST(FaultInWords, ByHand) {
