@@ -15,3 +15,6 @@ find_dependency(nlohmann_json 3.11)
 find_dependency(ZLIB)
 find_dependency(Threads)
 find_package(PoseLib QUIET)  # where it is there
+# The C library, where it is there; Debian keeps it in a folder of its own.
+find_path(RCME_HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial)
+find_library(RCME_HDF5_LIBRARY hdf5 PATH_SUFFIXES hdf5/serial)

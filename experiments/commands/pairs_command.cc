@@ -31,11 +31,12 @@ struct Layout {
   std::vector<Sequence> (*read)(const DatasetOptions&);
   std::unique_ptr<ListedPairs> (*open)(const DatasetOptions&);
 };
-constexpr std::array<Layout, 6> kLayouts = {{{"kitti", ReadKitti, nullptr},
+constexpr std::array<Layout, 7> kLayouts = {{{"kitti", ReadKitti, nullptr},
                                              {"euroc", ReadEuroc, nullptr},
                                              {"tum", ReadTum, nullptr},
                                              {"images", ReadImageFolder, nullptr},
                                              {"colmap", nullptr, OpenColmap},
+                                             {"posebench", nullptr, OpenPosebench},
                                              {"matches", nullptr, OpenMatchFiles}}};
 
 std::vector<std::string> LayoutNames() {
@@ -64,7 +65,7 @@ void CheckApplies(const PairsArguments& arguments) {
   refuse("--K", !dataset.K.empty(), {"tum", "images"});
   refuse("--distortion", !dataset.distortion.empty(), {"tum", "images"});
   refuse("--model", !dataset.model.empty(), {"colmap"});
-  refuse("--name", !dataset.name.empty(), {"kitti", "euroc", "tum", "images", "colmap"});
+  refuse("--name", !dataset.name.empty(), {"kitti", "euroc", "tum", "images", "colmap", "posebench"});
   refuse("--max-frames", dataset.max_frames > 0, images);
   refuse("--every", arguments.pairs.every > 1, images);
   refuse("--neighbours", arguments.pairs.neighbours > 1, images);
@@ -136,7 +137,9 @@ void RunPairs(PairsArguments arguments) {
 }
 
 void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
-  command->add_option("dataset", arguments->dataset.folder, "the data set's folder (colmap: or its database)")
+  command
+      ->add_option("dataset", arguments->dataset.folder,
+                   "the data set's folder (colmap: or its database; posebench: a file)")
       ->required();
   command->add_option("--layout", arguments->layout, "how it lies there, see below")
       ->check(OneOf(LayoutNames()))
@@ -219,6 +222,7 @@ void AddPairsCommand(CLI::App& app) {
       "  colmap   database.db {cameras, images, keypoints, matches}, and sparse/0, if it is there, as truth "
       "and for "
       "the cameras\n"
+      "  posebench  FILE.h5, a group a pair {x1, x2, R, t, camera1, camera2}\n"
       "  matches  match files, judged again and indexed\n"
       "\n"
       "An image waits as the first of a pair until a later one makes a pair with it that the gate keeps, and "

@@ -32,6 +32,11 @@ class ListedPairs {
 // the top-left one; half a pixel is taken from key points and principal point.
 std::unique_ptr<ListedPairs> OpenColmap(const DatasetOptions& options);
 
+// An HDF5 file as posebench keeps pairs, a group each with x1, x2, R, t, camera1, camera2, taken one at a time. Cameras
+// and pixels are COLMAP's. Links out of the file are not followed. The library is not made for files that were
+// damaged on purpose. Throws InputError where the program was built without it.
+std::unique_ptr<ListedPairs> OpenPosebench(const DatasetOptions& options);
+
 // A folder of match files (match_file.h).
 std::unique_ptr<ListedPairs> OpenMatchFiles(const DatasetOptions& options);
 
