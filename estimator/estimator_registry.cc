@@ -22,13 +22,21 @@ namespace {
 // Every estimator can be given a robust covariance and be put behind the gate of model choice.
 std::vector<EstimatorEntry> WithCommonOptions(std::vector<EstimatorEntry> entries) {
   for (EstimatorEntry& entry : entries) {
-    entry.make = [make = std::move(entry.make)] { return WithGate(WithRobustCovariance(make())); };
+    entry.make = [make = std::move(entry.make), uses_scale = entry.uses_noise_scale] {
+      return WithGate(WithRobustCovariance(make(), uses_scale));
+    };
   }
   return entries;
 }
 
+// All end in a fit that uses it.
+std::vector<EstimatorEntry> UsingNoiseScale(std::vector<EstimatorEntry> entries) {
+  for (EstimatorEntry& entry : entries) entry.uses_noise_scale = true;
+  return entries;
+}
+
 std::vector<EstimatorEntry>& Table() {
-  static std::vector<EstimatorEntry> registry = WithCommonOptions({
+  static std::vector<EstimatorEntry> registry = WithCommonOptions(UsingNoiseScale({
       {"standard", "RANSAC by inlier count, then Gold Standard refinement", StandardModel},
       {"prcme", "RCME without the test of the model against its sample",
        [] { return RcmeModel(SampleTest::kOff); }},
@@ -48,7 +56,7 @@ std::vector<EstimatorEntry>& Table() {
        CovRansacModel, false, false},
       {"m_estimator", "M-estimation over all matches (Huber, Tukey) from the best MSAC hypothesis",
        MEstimatorModel, false, false},
-  });
+  }));
   return registry;
 }
 

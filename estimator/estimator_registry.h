@@ -18,6 +18,9 @@ struct EstimatorEntry {
   std::function<std::unique_ptr<EstimatorModel>()> make;  // with default options
   bool is_peer = false;    // another library's: `rcme audit` asks it nothing unless a study names it
   bool is_audited = true;  // of the project's own: whether `rcme audit` asks it without a study that names it
+  // Whether its last fit weighs matches by how noisy they are said to be (MotionProblem::noise_scale), and so
+  // what the robust covariance is of. No search does.
+  bool uses_noise_scale = false;
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 

@@ -28,6 +28,12 @@ class NoiseModel {
   // Adds noise to the exact matches of these points, independent from match to match unless the law says
   // otherwise.
   virtual void AddTo(std::span<Correspondence> matches, RandomStream& rng) const = 0;
+  // The same, and what a detector says of it: each match's standard deviation over sigma_px. Empty: it says
+  // nothing of single matches.
+  virtual std::vector<double> AddAndTell(std::span<Correspondence> matches, RandomStream& rng) const {
+    AddTo(matches, rng);
+    return {};
+  }
 };
 
 // The key sigma_px that every law has.

@@ -27,7 +27,7 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
   noise.DrawPoints(points, noise_rng);
   const std::vector<Correspondence> exact = ExactMatches(scene, points, defects);
   std::vector<Correspondence> matches = exact;
-  noise.AddTo(matches, noise_rng);
+  const std::vector<double> noise_scale = noise.AddAndTell(matches, noise_rng);
 
   // A random order; the first matches in it become wrong, then the list is read in a second random order.
   const OutlierModel::Drawn drawn = outliers.DrawCount(static_cast<int>(n), outlier_rng);
@@ -42,13 +42,14 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
                         {scene, all.subspan(num_outliers), matches, is_undetectable, exact}, outlier_rng);
   outlier_rng.Shuffle(std::span(order));
 
-  Observation observation{
-      std::vector<Correspondence>(n), {}, std::vector<bool>(n), std::vector<bool>(n), drawn.weight};
+  Observation observation{std::vector<Correspondence>(n), {}, std::vector<bool>(n),
+                          std::vector<bool>(n),           {}, drawn.weight};
   for (size_t k = 0; k < n; ++k) {
     observation.matches[k] = matches[order[k]];
     observation.is_inlier_true[k] = is_inlier[order[k]];
     observation.is_undetectable[k] = is_undetectable[order[k]];
     observation.point.push_back(points[order[k]]);
+    if (!noise_scale.empty()) observation.noise_scale.push_back(noise_scale[order[k]]);
   }
   return observation;
 }

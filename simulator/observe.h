@@ -17,6 +17,7 @@ struct Observation {
   std::vector<std::uint32_t> point;  // which point of the scene each match is of, or was of
   std::vector<bool> is_inlier_true;
   std::vector<bool> is_undetectable;  // wrong, but on the true epipolar line: no epipolar test can tell it
+  std::vector<double> noise_scale;    // what the detector says of each (noise_model.h); empty: nothing
   double weight = 1.0;                // of the trial (outlier_model.h)
 };
 

@@ -16,7 +16,7 @@ double ShareAmong(const std::vector<size_t>& set, const Explanation& mode, doubl
     double right = 0.5;
     for (const size_t i : set) {
       const double inlier = share * mode.left_out_density[i];
-      right += inlier / (inlier + (1.0 - share) * background);
+      right += inlier / (inlier + (1.0 - share) * WrongDensity(mode, i, background));
     }
     share = right / (static_cast<double>(set.size()) + 1.0);
   }
@@ -57,8 +57,9 @@ Contrast CompareModes(const Explanation& a, const Explanation& b, double backgro
   }
   const double share_a = ShareAmong(only_one, a, background), share_b = ShareAmong(only_one, b, background);
   for (const size_t i : only_one) {
-    contrast.exclusive += std::log((share_a * a.left_out_density[i] + (1.0 - share_a) * background) /
-                                   (share_b * b.left_out_density[i] + (1.0 - share_b) * background));
+    const double wrong = WrongDensity(a, i, background);
+    contrast.exclusive += std::log((share_a * a.left_out_density[i] + (1.0 - share_a) * wrong) /
+                                   (share_b * b.left_out_density[i] + (1.0 - share_b) * wrong));
   }
   contrast.shared = shared.sum;
   contrast.shared_variance = shared.Scatter();

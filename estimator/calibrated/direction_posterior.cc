@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "estimator/noise_scale.h"
 #include "stats/order_statistic.h"
 
 namespace rcme {
@@ -24,7 +25,7 @@ constexpr double kRootTwoPi = 2.5066282746310002;
 struct Displacement {
   size_t match;           // its index
   Eigen::Vector3d a, d;   // unit ray of camera 1 in camera 2's frame; that of camera 2 less it, across a
-  double noise_variance;  // s^2 over the weight of its residual, rad^2
+  double noise_variance;  // s^2 of this match (noise_scale) over the weight of its residual, rad^2
 };
 
 struct DisplacementSet {
@@ -46,7 +47,8 @@ DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode&
     const Eigen::Vector3d a = mode.mode.pose.R * problem.camera1.Ray(problem.matches[i].x1_px).normalized();
     const Eigen::Vector3d b = problem.camera2.Ray(problem.matches[i].x2_px).normalized();
     const double weight = std::min(NoiseWeight(m.noise, e.terms.residual[i] / m.scale), 1.0);
-    set.matches.push_back({i, a, b - a.dot(b) * a, noise_variance / (weight * e.probability[i])});
+    const double w = NoiseScaleAt(problem, i);
+    set.matches.push_back({i, a, b - a.dot(b) * a, w * w * noise_variance / (weight * e.probability[i])});
   }
   const auto used = static_cast<double>(set.matches.size());
   set.all_over_used = std::max(mode.explanation.num_explained / std::max(used, 1.0), 1.0);

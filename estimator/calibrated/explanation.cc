@@ -23,12 +23,14 @@ Explanation Explain(const MatchBlocks& matches, const Mode& mode) {
   e.probability.resize(n);
   e.leverage.assign(n, 0.0);
   e.left_out_density.resize(n);
-  const double outlier = (1.0 - m.inlier_ratio) * m.outlier_density;
+  for (size_t i = 0; i < n && !matches.noise_scales().empty(); ++i)
+    e.noise_scale.push_back(matches.NoiseScaleAt(i));
   for (size_t i = 0; i < n; ++i) {
     const double u = e.terms.residual[i] / m.scale;
     const double in_front = CheiralityFactor(e.terms.depth[i] / m.scale) / m.scale;
     e.inlier_density[i] = NoiseDensity(m.noise, u) * in_front;
     const double inlier = m.inlier_ratio * e.inlier_density[i];
+    const double outlier = WrongDensity(e, i, (1.0 - m.inlier_ratio) * m.outlier_density);
     e.probability[i] = inlier / (inlier + outlier);
     e.num_explained += e.probability[i] > 0.5;
     e.left_out_density[i] = e.inlier_density[i];

@@ -8,6 +8,7 @@
 
 namespace rcme {
 
+// Residuals are r', and densities those of r' (mixture_parameters.h).
 struct Explanation {
   MatchTermLists terms;
   std::vector<double> inlier_density;  // f(r / s) c(z / s) / s
@@ -18,8 +19,14 @@ struct Explanation {
   // The density of the residual r' that the motion fitted without the match leaves, whose standard deviation
   // is s / sqrt(1 - h): r' = r / (1 - h), or r where the mode does not use the match.
   std::vector<double> left_out_density;
-  int num_explained = 0;  // matches that are right with a probability of more than one half
+  std::vector<double> noise_scale;  // w_i (mixture_parameters.h); empty: all matches are alike
+  int num_explained = 0;            // matches that are right with a probability of more than one half
 };
+
+// The density of r' of match i if it is wrong, `per_sigma` that of r.
+inline double WrongDensity(const Explanation& explanation, size_t i, double per_sigma) {
+  return explanation.noise_scale.empty() ? per_sigma : per_sigma * explanation.noise_scale[i];
+}
 
 // One entry per match.
 Explanation Explain(const MatchBlocks& matches, const Mode& mode);

@@ -27,9 +27,9 @@ std::vector<double> WrongByInfluence(const Mode& mode, const Explanation& explan
   if (leverages.empty()) return wrong;
   const double twentieth = ValueOfRank(19 * leverages.size() / 20, &leverages);
   const MixtureParameters& m = mode.mixture;
-  const double outlier = (1.0 - m.inlier_ratio) * m.outlier_density;
   for (size_t i = 0; i < wrong.size(); ++i) {
     if (!(explanation.probability[i] > 0.5)) continue;
+    const double outlier = WrongDensity(explanation, i, (1.0 - m.inlier_ratio) * m.outlier_density);
     const double by_residual = outlier / (m.inlier_ratio * explanation.left_out_density[i] + outlier);
     wrong[i] = ProbabilityWrong(by_residual, explanation.leverage[i], twentieth);
   }

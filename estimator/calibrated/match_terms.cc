@@ -26,12 +26,12 @@ double ParallaxWithin(const Eigen::Vector3d& ray, const Eigen::Vector3d& t, cons
 
 }  // namespace
 
-MatchTerms EvaluateMatch(const MotionProblem& problem, const RelativePose& pose,
-                         const Correspondence& match) {
+MatchTerms EvaluateMatch(const MotionProblem& problem, const RelativePose& pose, const Correspondence& match,
+                         double noise_scale) {
   const Eigen::Matrix3d F =
       FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
   const EpipolarConstraint c = EvaluateConstraint(F, match);
-  const double length = std::sqrt(c.squared_gradient());
+  const double length = std::sqrt(c.squared_gradient()) * noise_scale;
   MatchTerms terms;
   terms.residual = c.g / (length * problem.sigma_px);
   const std::array<Eigen::Matrix3d, 5> dE = EssentialTangent(pose);
@@ -43,7 +43,7 @@ MatchTerms EvaluateMatch(const MotionProblem& problem, const RelativePose& pose,
   }
   const Eigen::Vector3d a = pose.R * problem.camera1.Ray(match.x1_px);
   const Eigen::Vector3d b = problem.camera2.Ray(match.x2_px);
-  const double noise_rad = std::sqrt(AngleVariance(problem));
+  const double noise_rad = std::sqrt(AngleVariance(problem)) * noise_scale;
   const double depth1 = ParallaxWithin(b, pose.t, a, b) / noise_rad;
   const double depth2 = ParallaxWithin(a, pose.t, a, b) / noise_rad;
   terms.depth = std::min(depth1, depth2);
@@ -51,14 +51,15 @@ MatchTerms EvaluateMatch(const MotionProblem& problem, const RelativePose& pose,
   return terms;
 }
 
-MatchDensity EvaluateDensity(double residual, double depth, const MixtureParameters& parameters) {
+MatchDensity EvaluateDensity(double residual, double depth, const MixtureParameters& parameters,
+                             double noise_scale) {
   const NoiseLaw& noise = parameters.noise;
   const double u = residual / parameters.scale;
   const double law = noise.peak * std::pow(1.0 + u * u / noise.dof(), -noise.power);
   const double inlier =
       parameters.inlier_ratio * law * CheiralityFactor(depth / parameters.scale) / parameters.scale;
   MatchDensity of_match;
-  of_match.density = inlier + (1.0 - parameters.inlier_ratio) * parameters.outlier_density;
+  of_match.density = inlier + (1.0 - parameters.inlier_ratio) * parameters.outlier_density * noise_scale;
   const double p = of_match.right = inlier / of_match.density;
   const double v = of_match.weight = 2.0 * noise.power / (noise.dof() + u * u);
   const double psi = v * u, psi_slope = v * (noise.dof() - u * u) / (noise.dof() + u * u);

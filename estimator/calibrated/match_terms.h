@@ -1,5 +1,6 @@
-// What a motion says of one match, as plain formulas: the scalar twin of kernels/mixture_sums.h,
-// kernels/depth_in_noise-inl.h and kernels/soft_score.h, for tests.
+// What a motion says of one match, which is `noise_scale` times as noisy as the others (r', z', dr' / dp and
+// the density of r' of mixture_parameters.h, in place of those without a stroke), as plain formulas: the
+// scalar twin of kernels/mixture_sums.h, kernels/depth_in_noise-inl.h and kernels/soft_score.h, for tests.
 #pragma once
 
 #include "estimator/calibrated/mixture_parameters.h"
@@ -15,7 +16,8 @@ struct MatchTerms {
   // between two rays: the lesser of the two cameras' (z), and their mean.
   double depth = 0.0, mean_depth = 0.0;
 };
-MatchTerms EvaluateMatch(const MotionProblem& problem, const RelativePose& pose, const Correspondence& match);
+MatchTerms EvaluateMatch(const MotionProblem& problem, const RelativePose& pose, const Correspondence& match,
+                         double noise_scale = 1.0);
 
 // The mixture density of a match and what its optimum needs.
 struct MatchDensity {
@@ -24,7 +26,8 @@ struct MatchDensity {
   double weight = 0.0;     // v = 2k / (2k - 1 + u^2), u = r / s
   double curvature = 0.0;  // max(p psi' - p (1 - p) psi^2, 0.6 p v), psi = v u
 };
-MatchDensity EvaluateDensity(double residual, double depth, const MixtureParameters& parameters);
+MatchDensity EvaluateDensity(double residual, double depth, const MixtureParameters& parameters,
+                             double noise_scale = 1.0);
 
 // v = 1 / (1 + r^2 / s^2)
 double SoftScore(double residual, double scale);

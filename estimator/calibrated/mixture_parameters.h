@@ -9,6 +9,19 @@
 //   s   scale of the right matches' residuals, in units of the assumed sigma
 //   w   share of right matches
 //   q   density of a wrong match's residual near zero, per unit of the assumed sigma
+//
+// Where match i is said to be w_i times as noisy as the others (MotionProblem::noise_scale), its residual and
+// its z have the noise w_i: a right match has r ~ w f(r / (w_i s)) c(z / (w_i s)) / (w_i s), a wrong one q as
+// before, which does not depend on where key points are precise. In r' = r / w_i and z' = z / w_i, a density
+// being multiplied by dr / dr' = w_i,
+//
+//   p(r', z') = w f(r' / s) c(z' / s) / s + (1 - w) q w_i
+//
+// so that everything goes on in r', z' and dr' / dp = (dr / dp) / w_i, with the density q w_i of a wrong
+// match. The log-likelihood of r' exceeds that of r by sum log w_i, the same for every motion and mixture:
+// modes are compared over the same matches. An error of the motion by x moves r' by x / w_i, which is how a
+// precise match gets a weight of 1 / w_i^2 in the Hessian, and a leverage and an effective number
+// accordingly.
 #pragma once
 
 namespace rcme {

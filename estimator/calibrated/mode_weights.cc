@@ -22,8 +22,8 @@ double ModeLogOdds(const Contrast& contrast, double log_det_ratio, double num_ex
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background) {
   double evidence = -kSearchNats;
   const double w = mixture.inlier_ratio;
-  for (const double density : mode.left_out_density)
-    evidence += std::log(w * density / background + (1.0 - w));
+  for (size_t i = 0; i < mode.left_out_density.size(); ++i)
+    evidence += std::log(w * mode.left_out_density[i] / WrongDensity(mode, i, background) + (1.0 - w));
   return evidence;
 }
 

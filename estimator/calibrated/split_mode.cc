@@ -69,7 +69,7 @@ TwoMotions Mix(const Explanation& a, const Explanation& b, double q) {
     mix = {};
     for (size_t i = 0; i < n; ++i) {
       const double of_a = share_a * a.inlier_density[i], of_b = share_b * b.inlier_density[i];
-      const double all = of_a + of_b + (1.0 - share_a - share_b) * q;
+      const double all = of_a + of_b + (1.0 - share_a - share_b) * WrongDensity(a, i, q);
       sum_a += of_a / all;
       sum_b += of_b / all;
       mix.log_likelihood += std::log(all);

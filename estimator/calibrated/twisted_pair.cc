@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimator/geometry/triangulation.h"
+#include "estimator/noise_scale.h"
 
 namespace rcme {
 namespace {
@@ -38,7 +39,8 @@ std::vector<DepthSample> DepthSamples(const MotionProblem& problem, const Relati
     const Eigen::Vector3d ray2 = problem.camera2.Ray(problem.matches[i].x2_px);
     const double gain = ParallaxPerInverseDepth(pose, ray1);
     if (!(gain > 1e-9)) continue;
-    samples.push_back({ray1, InverseDepth(pose, ray1, ray2), noise_rad / gain, probability[i]});
+    const double sd = noise_rad * NoiseScaleAt(problem, i) / gain;
+    samples.push_back({ray1, InverseDepth(pose, ray1, ray2), sd, probability[i]});
   }
   return samples;
 }

@@ -12,15 +12,22 @@ HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
 // Behind a camera, with a parallax that is too large to be noise around a point at infinity (6 sigma).
-HWY_INLINE Mask AreClearlyBehind(const TwoViewPose& pose, const RayScale& scale, const Matches& matches) {
+HWY_INLINE Mask AreClearlyBehind(const TwoViewPose& pose, const RayScale& scale, const Matches& matches,
+                                 Vec noise2) {
   const Sides sides = EvaluateSides(pose, scale, matches);
   const Mask are_in_front = hn::And(sides.inverse_depth > Set(0.0), sides.is_ahead_of_camera2);
   const Vec3& y = sides.ray1_in_cam2;
   const Vec inverse_z = Set(1.0) / y.z;
   const Vec parallax_x = FusedMulSub(y.x, inverse_z, sides.ray2.x) / Set(scale.x2);
   const Vec parallax_y = FusedMulSub(y.y, inverse_z, sides.ray2.y) / Set(scale.y2);
-  const Mask is_far = FusedMulAdd(parallax_x, parallax_x, Square(parallax_y)) > Set(36.0);
+  const Mask is_far = FusedMulAdd(parallax_x, parallax_x, Square(parallax_y)) > Set(36.0) * noise2;
   return hn::AndNot(are_in_front, hn::Or(y.z <= Set(0.0), is_far));
+}
+
+// Squares of how noisy the matches are beside the others.
+HWY_INLINE Vec LoadSquaredNoise(const MatchBlocks& matches, int block, int lane) {
+  if (matches.noise_scales().empty()) return Set(1.0);
+  return Square(Load(matches.noise_scales()[static_cast<size_t>(block)].scale + lane));
 }
 
 void FindAgreeingMatches(const MatchBlocks& matches, const TwoViewPose& pose, const double* F,
@@ -32,11 +39,13 @@ void FindAgreeingMatches(const MatchBlocks& matches, const TwoViewPose& pose, co
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
       const Matches m = LoadMatches(matches[b], lane);
       const RankAwareTerms terms = EvaluateRankAware(F, coefficients, m);
+      const Vec noise2 = LoadSquaredNoise(matches, b, lane), n2 = terms.n2 * noise2;
       const Mask is_fitted = MaskFromBits(static_cast<unsigned>(fitted[static_cast<size_t>(b)]) >> lane);
-      const Vec total = hn::IfThenElse(is_fitted, terms.n2 - terms.variance, terms.n2 + terms.variance);
-      const Mask fits = hn::And(terms.g2 <= limit * total, terms.variance <= max_leverage * terms.n2);
+      const Vec total = hn::IfThenElse(is_fitted, n2 - terms.variance, n2 + terms.variance);
+      const Mask fits = hn::And(terms.g2 <= limit * total, terms.variance <= max_leverage * n2);
       const Mask are_matches = AreMatches(b * kBlockSize + lane, matches.num_matches());
-      bits |= BitsOf(hn::And(are_matches, hn::AndNot(AreClearlyBehind(pose, matches.ray_scale(), m), fits)))
+      bits |= BitsOf(hn::And(are_matches,
+                             hn::AndNot(AreClearlyBehind(pose, matches.ray_scale(), m, noise2), fits)))
               << lane;
     }
     (*agreeing)[static_cast<size_t>(b)] = static_cast<std::uint8_t>(bits);

@@ -15,7 +15,8 @@ struct AgreementBounds {
 };
 
 // The matches with g^2 <= squared_distance * (n2 - v) where fitted, (n2 + v) elsewhere, v the variance that
-// the motion adds to g; leverage v / n2 within its bound; and not clearly behind a camera.
+// the motion adds to g, n2 times the square of the match's noise_scale; leverage v / n2 within its bound; and
+// not clearly behind a camera.
 void FindAgreeing(const MatchBlocks& matches, const RelativePose& pose, const double* F,
                   const VariancePolynomial& variance, const MatchMask& fitted, const AgreementBounds& bounds,
                   MatchMask* agreeing);

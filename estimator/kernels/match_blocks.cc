@@ -18,6 +18,13 @@ MatchBlocks::MatchBlocks(const MotionProblem& problem)
     block.x2[lane] = x2.x();
     block.y2[lane] = x2.y();
   }
+  if (problem.noise_scale.empty()) return;
+  noise_scales_.resize(blocks_.size());
+  for (size_t i = 0; i < blocks_.size() * kBlockSize; ++i) {
+    const double scale = i < problem.matches.size() ? problem.noise_scale[i] : 1.0;
+    noise_scales_[i / kBlockSize].scale[i % kBlockSize] = scale;
+    noise_scales_[i / kBlockSize].inverse[i % kBlockSize] = 1.0 / scale;
+  }
 }
 
 MatchMask MatchBlocks::All() const {

@@ -17,6 +17,12 @@ struct alignas(64) MatchBlock {
   double x1[kBlockSize], y1[kBlockSize], x2[kBlockSize], y2[kBlockSize];
 };
 
+// How noisy eight matches are beside the others (MotionProblem::noise_scale), and one over it; 1 beyond the
+// last match.
+struct alignas(64) ScaleBlock {
+  double scale[kBlockSize], inverse[kBlockSize];
+};
+
 // A set of matches: bit l of byte b is match 8 b + l.
 using MatchMask = std::vector<std::uint8_t>;
 
@@ -28,6 +34,11 @@ class MatchBlocks {
   int num_blocks() const { return static_cast<int>(blocks_.size()); }
   const MatchBlock* data() const { return blocks_.data(); }
   const MatchBlock& operator[](int block) const { return blocks_[static_cast<size_t>(block)]; }
+  // Empty: all matches are alike.
+  const std::vector<ScaleBlock>& noise_scales() const { return noise_scales_; }
+  double NoiseScaleAt(size_t match) const {
+    return noise_scales_.empty() ? 1.0 : noise_scales_[match / kBlockSize].scale[match % kBlockSize];
+  }
   const RayScale& ray_scale() const { return whitening_.ray_scale(); }
   Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E) const {
     return whitening_.FundamentalFromEssential(E);
@@ -38,6 +49,7 @@ class MatchBlocks {
 
  private:
   std::vector<MatchBlock> blocks_;
+  std::vector<ScaleBlock> noise_scales_;
   MatchWhitening whitening_;
   int num_matches_;
 };

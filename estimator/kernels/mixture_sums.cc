@@ -46,7 +46,20 @@ HWY_INLINE Vec SquaredGradient(const Constraint& c) {
   return Greater(Dot4(c.gradient, c.gradient), Set(1e-100));
 }
 
-// The parts of the density at some matches, r = g / n.
+// How noisy matches are beside the others; nothing but ones, of which nothing is left in the machine code,
+// where all are alike.
+struct NoiseScales {
+  Vec scale, inverse;
+};
+template <bool are_scaled>
+HWY_INLINE NoiseScales LoadNoiseScales(const MatchBlocks& matches, int block, int lane) {
+  if constexpr (!are_scaled) return {Set(1.0), Set(1.0)};
+  const ScaleBlock& scales = matches.noise_scales()[static_cast<size_t>(block)];
+  return {Load(scales.scale + lane), Load(scales.inverse + lane)};
+}
+
+// The parts of the density at some matches, r = g / n. A match that is w times as noisy as the others comes
+// with n w for n, and so r' for r.
 struct MixtureTerms {
   Vec inverse_n2, r2;                   // 1 / n^2, r^2
   Vec total, right, weight, curvature;  // density, p, v, p psi' - p (1 - p) psi^2 bounded from below
@@ -54,10 +67,10 @@ struct MixtureTerms {
 // Divisions and roots are what takes time: c(z)^(-1/2) = 1 + min(z / s + 1, 0)^2 is a ratio of polynomials in
 // the depth's `along` and sqrt(square), 1 + u^2 / dof one in g and n^2, and three inverses come from one.
 HWY_INLINE MixtureTerms EvaluateMixture(Vec g, Vec n2, const DepthAngle& depth, double inverse_noise_rad,
-                                        const MixtureParameters& m) {
+                                        const NoiseScales& noise, const MixtureParameters& m) {
   const Vec one = Set(1.0), inverse_s2 = Set(1.0 / (m.scale * m.scale)), g2 = g * g;
-  const Vec beyond =
-      Lesser(FusedMulAdd(depth.along, Set(inverse_noise_rad / m.scale), hn::Sqrt(depth.square)), Set(0.0));
+  const Vec inverse_noise = Set(inverse_noise_rad / m.scale) * noise.inverse;
+  const Vec beyond = Lesser(FusedMulAdd(depth.along, inverse_noise, hn::Sqrt(depth.square)), Set(0.0));
   const Vec e = FusedMulAdd(beyond, beyond, depth.square);                   // square c(z)^(-1/2)
   const Vec q = FusedMulAdd(g2, Set(1.0 / m.noise.dof()) * inverse_s2, n2);  // n^2 (1 + u^2 / dof)
   const Vec qe = q * e, inverse_all = one / (n2 * qe);
@@ -66,7 +79,7 @@ HWY_INLINE MixtureTerms EvaluateMixture(Vec g, Vec n2, const DepthAngle& depth, 
   terms.inverse_n2 = inverse_all * qe;
   terms.r2 = g2 * terms.inverse_n2;
   const Vec inlier = Set(m.inlier_ratio * m.noise.peak / m.scale) * Power(inverse_q, m.noise.power) * (d * d);
-  terms.total = inlier + Set((1.0 - m.inlier_ratio) * m.outlier_density);
+  terms.total = inlier + Set((1.0 - m.inlier_ratio) * m.outlier_density) * noise.scale;
   terms.right = inlier / terms.total;
   terms.weight = Set(2.0 * m.noise.power / m.noise.dof()) * inverse_q;
   // psi' = v (2 / (1 + u^2 / dof) - 1), psi^2 = v^2 u^2
@@ -96,8 +109,9 @@ HWY_INLINE void EvaluateSlopes(const MixtureModel& model, const Matches& m, cons
   }
 }
 
-void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
-                           const MixtureParameters& parameters, double* totals) {
+template <bool are_scaled>
+void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
+                    const MixtureParameters& parameters, double* totals) {
   alignas(64) double partial[kNumMixtureSums][kBlockSize];
   const Vec one = Set(1.0), zero = Set(0.0), inverse_s2 = Set(1.0 / (parameters.scale * parameters.scale));
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
@@ -114,17 +128,19 @@ void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, co
       const Matches m = LoadMatches(matches[b], lane);
       const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
       const DepthAngle depth = Least(EvaluateDepths(model.pose, model.rays, m));
-      const MixtureTerms terms =
-          EvaluateMixture(c.g, SquaredGradient(c), depth, model.inverse_noise_rad, parameters);
+      const NoiseScales noise = LoadNoiseScales<are_scaled>(matches, b, lane);
+      const Vec noise2 = noise.scale * noise.scale;
+      const MixtureTerms terms = EvaluateMixture(c.g, SquaredGradient(c) * noise2, depth,
+                                                 model.inverse_noise_rad, noise, parameters);
       const Vec u = c.g * terms.inverse_n2;
       Vec slopes[5];
-      EvaluateSlopes(model, m, c, u, slopes);
+      EvaluateSlopes(model, m, c, u * noise2, slopes);
       const Vec right = hn::IfThenElseZero(is_used, terms.right);
       product = product * hn::IfThenElse(is_used, terms.total, one);
       const Vec weight = right * terms.weight;
       sums[1] = sums[1] + right;
       sums[2] = FusedMulAdd(weight, terms.r2, sums[2]);
-      const Mask is_near = hn::And(is_used, terms.r2 <= Set(kNearResidual * kNearResidual));
+      const Mask is_near = hn::And(is_used, terms.r2 * noise2 <= Set(kNearResidual * kNearResidual));
       sums[3] = sums[3] + hn::IfThenElseZero(is_near, one - terms.right);
       const Vec pull = weight * u * inverse_s2;
       const Vec curvature = hn::IfThenElseZero(is_used, terms.curvature) * terms.inverse_n2 * inverse_s2;
@@ -142,7 +158,13 @@ void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, co
   for (int i = 0; i < kNumMixtureSums; ++i) totals[i] = SumOfEight(partial[i]);
 }
 
-// `lists`: residual, depth, five derivatives.
+void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
+                           const MixtureParameters& parameters, double* totals) {
+  if (matches.noise_scales().empty()) return SumMixtureOver<false>(matches, mask, model, parameters, totals);
+  SumMixtureOver<true>(matches, mask, model, parameters, totals);
+}
+
+// `lists`: residual, depth, five derivatives; as if all matches were alike.
 void ListTerms(const MatchBlocks& matches, const MixtureModel& model, double* const* lists) {
   for (int b = 0; b < matches.num_blocks(); ++b) {
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
@@ -160,8 +182,9 @@ void ListTerms(const MatchBlocks& matches, const MixtureModel& model, double* co
   }
 }
 
-double SumCheiralityOverMatches(const MatchBlocks& matches, int num_blocks, const MixtureModel& model,
-                                double scale) {
+template <bool are_scaled>
+double SumCheiralityOver(const MatchBlocks& matches, int num_blocks, const MixtureModel& model,
+                         double scale) {
   alignas(64) double partial[kBlockSize];
   const Vec one = Set(1.0), inverse_s2 = Set(1.0 / (scale * scale));
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
@@ -169,10 +192,12 @@ double SumCheiralityOverMatches(const MatchBlocks& matches, int num_blocks, cons
     for (int b = 0; b < num_blocks; ++b) {
       const Matches m = LoadMatches(matches[b], lane);
       const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
-      const Vec n2 = Dot4(c.gradient, c.gradient);
+      const NoiseScales noise = LoadNoiseScales<are_scaled>(matches, b, lane);
+      const Vec n2 = Dot4(c.gradient, c.gradient) * (noise.scale * noise.scale);
       const Vec v = n2 / FusedMulAdd(c.g * c.g, inverse_s2, n2);
       const DepthAngles depths = EvaluateDepths(model.pose, model.rays, m);
-      const Vec z = (AngleOf(depths.in1) + AngleOf(depths.in2)) * Set(0.5 * model.inverse_noise_rad);
+      const Vec z =
+          (AngleOf(depths.in1) + AngleOf(depths.in2)) * (Set(0.5 * model.inverse_noise_rad) * noise.inverse);
       const Vec term = v * z / hn::Sqrt(FusedMulAdd(z, z, one));
       const Mask are_matches =
           hn::And(AreMatches(b * kBlockSize + lane, matches.num_matches()), term == term);
@@ -181,6 +206,12 @@ double SumCheiralityOverMatches(const MatchBlocks& matches, int num_blocks, cons
     Store(sum, partial + lane);
   }
   return SumOfEight(partial);
+}
+
+double SumCheiralityOverMatches(const MatchBlocks& matches, int num_blocks, const MixtureModel& model,
+                                double scale) {
+  if (matches.noise_scales().empty()) return SumCheiralityOver<false>(matches, num_blocks, model, scale);
+  return SumCheiralityOver<true>(matches, num_blocks, model, scale);
 }
 
 }  // namespace rcme::HWY_NAMESPACE
@@ -235,6 +266,10 @@ void EvaluateTerms(const MatchBlocks& matches, const RelativePose& pose, MatchTe
     lists[k++] = list->data();
   }
   HWY_DYNAMIC_DISPATCH(ListTerms)(matches, ModelAt(matches, pose, true), lists);
+  if (matches.noise_scales().empty()) return;
+  for (double* list : lists) {
+    for (size_t i = 0; i < size; ++i) list[i] /= matches.NoiseScaleAt(i);
+  }
 }
 
 double SumCheirality(const MatchBlocks& matches, int num_blocks, const RelativePose& pose, double scale) {

@@ -12,8 +12,9 @@
 
 namespace rcme {
 
-// Sums over the matches of the mask. With p the probability that a match is right, v = 2k / (2k - 1 + u^2)
-// the weight of its residual u = r / s, and psi = v u:
+// Sums over the matches of the mask. Where matches are not alike, r is r' of calibrated/mixture_parameters.h
+// and log_likelihood that of r', but near is what is near in r. With p the probability that a match is right,
+// v = 2k / (2k - 1 + u^2) the weight of its residual u = r / s, and psi = v u:
 struct MixtureSums {
   double log_likelihood = 0.0;           // of the densities per unit of the assumed sigma
   double num_right = 0.0;                // sum p
@@ -28,8 +29,8 @@ inline constexpr double kNearResidual = 30.0;  // units of the assumed sigma
 MixtureSums SumMixture(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
                        const MixtureParameters& parameters);
 
-// Of every match at a motion: r, z (calibrated/match_terms.h) and the derivatives of r along the five tangent
-// coordinates. Each list is padded to a whole block.
+// Of every match at a motion: r, z, or r', z' where matches are not alike (calibrated/match_terms.h) and the
+// derivatives of r along the five tangent coordinates. Each list is padded to a whole block.
 struct MatchTermLists {
   std::vector<double> residual, depth;
   std::array<std::vector<double>, 5> derivative;

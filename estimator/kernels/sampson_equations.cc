@@ -21,17 +21,20 @@ HWY_INLINE void AddTriangle(const Vec* a, Vec weight, Vec* sums) {
   }
 }
 
-// Calls visit(matches, constraint, 1 / |J|^2, b) for the matches `lane` to `lane` + kLanes - 1 of every block
-// b; 1 / |J|^2 is zero where unused.
-template <typename Visit>
+// Calls visit(matches, constraint, 1 / n^2, w^2, b) for the matches `lane` to `lane` + kLanes - 1 of every
+// block b, w their noise_scale and n = |J| w; 1 / n^2 is zero where unused.
+template <bool are_scaled, typename Visit>
 HWY_INLINE void ForEachBlock(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                              int lane, const Visit& visit) {
   for (int b = 0; b < matches.num_blocks(); ++b) {
     const Mask is_used = MaskFromBits(static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
     const Matches m = LoadMatches(matches[b], lane);
     const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
-    const Vec n2 = hn::IfThenElse(is_used, Dot4(c.gradient, c.gradient), Set(1.0));
-    visit(m, c, hn::IfThenElseZero(is_used, Set(1.0) / n2), b);
+    Vec noise2 = Set(1.0);
+    if constexpr (are_scaled)
+      noise2 = Square(Load(matches.noise_scales()[static_cast<size_t>(b)].scale + lane));
+    const Vec n2 = hn::IfThenElse(is_used, Dot4(c.gradient, c.gradient) * noise2, Set(1.0));
+    visit(m, c, hn::IfThenElseZero(is_used, Set(1.0) / n2), noise2, b);
   }
 }
 
@@ -68,44 +71,45 @@ struct alignas(64) PartialSums {
   }
 };
 
-// With u = g / |J|^2 and e_k = g_k - u J'J_k: r^2 = g u, r dr/dp_k = u e_k, dr/dp_k dr/dp_l = e_k e_l /
-// |J|^2. No root is needed. Sums of cost, gradient, Hessian, of a lane's matches.
-template <Loss loss>
+// With u = g / n^2 and e_k = g_k - g J'J_k / |J|^2: r^2 = g u, r dr/dp_k = u e_k, dr/dp_k dr/dp_l = e_k e_l /
+// n^2. No root is needed. Sums of cost, gradient, Hessian, of a lane's matches.
+template <Loss loss, bool are_scaled>
 HWY_INLINE void SumLane(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                         int lane, Vec (&sums)[21]) {
   const Vec one = Set(1.0), inverse_c2 = Set(1.0 / (kCauchyScale * kCauchyScale));
   for (Vec& sum : sums) sum = Set(0.0);
   LogSum logs;
-  ForEachBlock(matches, mask, model, lane, [&](const Matches& m, const Constraint& c, Vec inverse_n2, int b) {
-    const Vec u = c.g * inverse_n2, r2 = c.g * u;
-    Vec e[5];
-    for (int k = 0; k < 5; ++k) {
-      const Constraint d = EvaluateConstraint(Broadcast{model.dF[k]}, m);
-      e[k] = FusedNegMulAdd(u, Dot4(c.gradient, d.gradient), d.g);
-    }
-    Vec weight = u, curvature = inverse_n2;
-    if constexpr (loss == Loss::kCauchy) {
-      // rho = c2 log(1 + r2 / c2), w = rho' = 1 / (1 + r2 / c2), psi' = 2 w^2 - w.
-      const Vec ratio = FusedMulAdd(r2, inverse_c2, one), w = one / ratio;
-      logs.Add(ratio, b);
-      weight = weight * w;
-      curvature = curvature * Greater(FusedMulSub(w + w, w, w), Set(0.7) * w);
-    } else {
-      sums[0] = sums[0] + r2;
-    }
-    for (int k = 0; k < 5; ++k) sums[1 + k] = FusedMulAdd(weight, e[k], sums[1 + k]);
-    AddTriangle(e, curvature, sums + 6);
-  });
+  ForEachBlock<are_scaled>(matches, mask, model, lane,
+                           [&](const Matches& m, const Constraint& c, Vec inverse_n2, Vec noise2, int b) {
+                             const Vec u = c.g * inverse_n2, r2 = c.g * u;
+                             Vec e[5];
+                             for (int k = 0; k < 5; ++k) {
+                               const Constraint d = EvaluateConstraint(Broadcast{model.dF[k]}, m);
+                               e[k] = FusedNegMulAdd(u * noise2, Dot4(c.gradient, d.gradient), d.g);
+                             }
+                             Vec weight = u, curvature = inverse_n2;
+                             if constexpr (loss == Loss::kCauchy) {
+                               // rho = c2 log(1 + r2 / c2), w = rho' = 1 / (1 + r2 / c2), psi' = 2 w^2 - w.
+                               const Vec ratio = FusedMulAdd(r2, inverse_c2, one), w = one / ratio;
+                               logs.Add(ratio, b);
+                               weight = weight * w;
+                               curvature = curvature * Greater(FusedMulSub(w + w, w, w), Set(0.7) * w);
+                             } else {
+                               sums[0] = sums[0] + r2;
+                             }
+                             for (int k = 0; k < 5; ++k) sums[1 + k] = FusedMulAdd(weight, e[k], sums[1 + k]);
+                             AddTriangle(e, curvature, sums + 6);
+                           });
   if constexpr (loss == Loss::kCauchy) sums[0] = logs.Get();
 }
 
-template <Loss loss>
+template <Loss loss, bool are_scaled>
 HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                     SampsonSums* sums) {
   PartialSums<21> partial;
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
     Vec lane_sums[21];
-    SumLane<loss>(matches, mask, model, lane, lane_sums);
+    SumLane<loss, are_scaled>(matches, mask, model, lane, lane_sums);
     partial.Put(lane_sums, lane);
   }
   double totals[21];
@@ -117,27 +121,38 @@ HWY_INLINE void Sum(const MatchBlocks& matches, const MatchMask& mask, const Sam
 
 void SumSquared(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                 SampsonSums* sums) {
-  Sum<Loss::kSquared>(matches, mask, model, sums);
+  if (matches.noise_scales().empty()) return Sum<Loss::kSquared, false>(matches, mask, model, sums);
+  Sum<Loss::kSquared, true>(matches, mask, model, sums);
 }
 void SumCauchy(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                SampsonSums* sums) {
-  Sum<Loss::kCauchy>(matches, mask, model, sums);
+  if (matches.noise_scales().empty()) return Sum<Loss::kCauchy, false>(matches, mask, model, sums);
+  Sum<Loss::kCauchy, true>(matches, mask, model, sums);
 }
 
-void SumInformation(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
-                    double* triangle) {
+template <bool are_scaled>
+HWY_INLINE void SumInformationOver(const MatchBlocks& matches, const MatchMask& mask,
+                                   const SampsonModel& model, double* triangle) {
   PartialSums<15> partial;
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
     Vec information[15];
     for (Vec& sum : information) sum = Set(0.0);
-    ForEachBlock(matches, mask, model, lane, [&](const Matches& m, const Constraint&, Vec inverse_n2, int) {
-      Vec g_p[5];
-      for (int k = 0; k < 5; ++k) g_p[k] = EvaluateConstraint(Broadcast{model.dF[k]}, m).g;
-      AddTriangle(g_p, inverse_n2, information);
-    });
+    ForEachBlock<are_scaled>(matches, mask, model, lane,
+                             [&](const Matches& m, const Constraint&, Vec inverse_n2, Vec, int) {
+                               Vec g_p[5];
+                               for (int k = 0; k < 5; ++k)
+                                 g_p[k] = EvaluateConstraint(Broadcast{model.dF[k]}, m).g;
+                               AddTriangle(g_p, inverse_n2, information);
+                             });
     partial.Put(information, lane);
   }
   partial.Total(triangle);
+}
+
+void SumInformation(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
+                    double* triangle) {
+  if (matches.noise_scales().empty()) return SumInformationOver<false>(matches, mask, model, triangle);
+  SumInformationOver<true>(matches, mask, model, triangle);
 }
 
 }  // namespace rcme::HWY_NAMESPACE

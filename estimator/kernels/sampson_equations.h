@@ -16,8 +16,9 @@ struct SampsonSums {
   double cost, gradient[5], hessian[15];
 };
 
-// Of sum rho(r^2) / 2 over the matches of the mask, r = g / |J| in units of sigma, at a motion. With J_k and
-// g_k the derivatives of J and g along coordinate k of the motion, dr / dp_k = (g_k - r J'J_k / |J|) / |J|.
+// Of sum rho(r^2) / 2 over the matches of the mask, r = g / |J| in units of a match's sigma, at a motion.
+// With J_k and g_k the derivatives of J and g along coordinate k of the motion, dr / dp_k = (g_k - r J'J_k /
+// |J|) / |J|.
 NormalEquations LinearizeSampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
                                  Loss loss);
 

@@ -17,9 +17,9 @@ inline constexpr double kFitSignificance = 0.001;
 inline double MaxLeverage(int num_fitted) { return 10.0 * 5.0 / num_fitted; }
 
 // The matches that agree with a motion that was fitted to the matches `fitted` (ascending indices), at a
-// significance level: chi2_1 test of the residual against its own variance, which is sigma^2 minus the
-// motion's share for a match that was fitted and sigma^2 plus that share for one that was not; and not
-// clearly behind a camera.
+// significance level: chi2_1 test of the residual against its own variance, which is sigma^2 (that of the
+// match: noise_scale) minus the motion's share for a match that was fitted and sigma^2 plus that share for
+// one that was not; and not clearly behind a camera.
 std::vector<int> FindAgreeing(const MotionProblem& problem, const RefinedMotion& motion,
                               const std::vector<int>& fitted, double significance_level);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/noise_scale.h"
 #include "estimator/refinement/sampson_equations.h"
 
 namespace rcme {
@@ -32,8 +33,8 @@ NormalEquations Linearize(const MotionProblem& problem, const RelativePose& pose
                           const MEstimation& options) {
   const SampsonLinearization model(problem, pose);
   NormalEquations equations;
-  for (const Correspondence& match : problem.matches) {
-    const SampsonResidual residual = model.Evaluate(match);
+  for (size_t i = 0; i < problem.matches.size(); ++i) {
+    const SampsonResidual residual = model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i));
     const RobustTerms terms = EvaluateRobustLoss(options, residual.r);
     if (!std::isfinite(terms.rho)) continue;  // at both epipoles every line agrees
     equations.cost += terms.rho;
@@ -54,8 +55,8 @@ Matrix5d Information(const MotionProblem& problem, const RelativePose& pose, con
   const SampsonLinearization model(problem, pose);
   Matrix5d A = Matrix5d::Zero(), B = Matrix5d::Zero();
   int num_fitted = 0;
-  for (const Correspondence& match : problem.matches) {
-    const SampsonResidual residual = model.Evaluate(match);
+  for (size_t i = 0; i < problem.matches.size(); ++i) {
+    const SampsonResidual residual = model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i));
     const RobustTerms terms = EvaluateRobustLoss(options, residual.r);
     if (!std::isfinite(terms.rho)) continue;
     num_fitted += terms.weight > 0.0;

@@ -1,6 +1,6 @@
 // M-estimation of the motion over all matches, wrong ones among them (Huber 1964, 1981; Zhang 1997 for
-// epipolar geometry): the least sum rho(r) of the Sampson residuals r = g / (sigma |J|), by
-// reweighted least squares from a start that is near already.
+// epipolar geometry): the least sum rho(r) of the Sampson residuals r = g / (sigma |J|), sigma that of the
+// match (MotionProblem::noise_scale), by reweighted least squares from a start that is near already.
 //
 //   huber   rho = r^2 / 2 for |r| <= c, c |r| - c^2 / 2 beyond    weight 1, c / |r|
 //   tukey   rho = c^2 / 6 (1 - (1 - r^2 / c^2)^3), c^2 / 6 beyond  weight (1 - r^2 / c^2)^2, 0

@@ -8,6 +8,7 @@
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/geometry/triangulation.h"
+#include "estimator/noise_scale.h"
 
 namespace rcme {
 namespace {
@@ -131,8 +132,9 @@ RefinedMotion RefineByReprojection(const MotionProblem& problem, std::span<const
   for (const int index : indices) {
     const Correspondence& match = problem.matches[static_cast<size_t>(index)];
     points.push_back(InitialPoint(problem, match, start, F));
-    auto* cost = new ReprojectionCost(
-        new ReprojectionError{match, problem.camera1, problem.camera2, 1.0 / problem.sigma_px});
+    const double sigma_px = problem.sigma_px * NoiseScaleAt(problem, static_cast<size_t>(index));
+    auto* cost =
+        new ReprojectionCost(new ReprojectionError{match, problem.camera1, problem.camera2, 1.0 / sigma_px});
     costs.push_back(cost);
     bundle.AddResidualBlock(cost, loss == Loss::kCauchy ? new ceres::CauchyLoss(kCauchyScale) : nullptr,
                             pose.data(), points.back().data());

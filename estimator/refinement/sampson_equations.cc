@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
+#include "estimator/noise_scale.h"
 
 namespace rcme {
 namespace {
@@ -29,10 +30,11 @@ SampsonLinearization::SampsonLinearization(const MotionProblem& problem, const R
   for (Eigen::Matrix3d& d : dF_) d = FundamentalFromEssential(d, problem.camera1, problem.camera2);
 }
 
-SampsonResidual SampsonLinearization::Evaluate(const Correspondence& match) const {
+SampsonResidual SampsonLinearization::Evaluate(const Correspondence& match, double noise_scale) const {
+  const double sigma_px = sigma_px_ * noise_scale;
   const EpipolarConstraint c = EvaluateConstraint(F_, match);
   const double length = c.gradient.norm();
-  SampsonResidual residual{.r = c.g / (sigma_px_ * length), .norm = sigma_px_ * length, .g_p = {}, .r_p = {}};
+  SampsonResidual residual{.r = c.g / (sigma_px * length), .norm = sigma_px * length, .g_p = {}, .r_p = {}};
   for (int k = 0; k < 5; ++k) {
     const EpipolarConstraint d = EvaluateConstraint(dF_[static_cast<size_t>(k)], match);
     const double d_length = c.gradient.dot(d.gradient) / length;
@@ -46,8 +48,9 @@ NormalEquations LinearizeSampson(const MotionProblem& problem, std::span<const i
                                  const RelativePose& pose, Loss loss) {
   const SampsonLinearization model(problem, pose);
   NormalEquations equations;
-  for (const int i : indices) {
-    const SampsonResidual residual = model.Evaluate(problem.matches[static_cast<size_t>(i)]);
+  for (const int index : indices) {
+    const auto i = static_cast<size_t>(index);
+    const SampsonResidual residual = model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i));
     const LossTerms terms = EvaluateLoss(residual.r, loss);
     equations.cost += 0.5 * terms.rho;
     equations.gradient += terms.weight * residual.r * residual.r_p;
@@ -60,8 +63,9 @@ Matrix5d SampsonInformation(const MotionProblem& problem, std::span<const int> i
                             const RelativePose& pose) {
   const SampsonLinearization model(problem, pose);
   Matrix5d information = Matrix5d::Zero();
-  for (const int i : indices) {
-    const SampsonResidual residual = model.Evaluate(problem.matches[static_cast<size_t>(i)]);
+  for (const int index : indices) {
+    const auto i = static_cast<size_t>(index);
+    const SampsonResidual residual = model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i));
     const Vector5d row = residual.g_p / residual.norm;
     information += row * row.transpose();
   }

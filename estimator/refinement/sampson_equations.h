@@ -12,7 +12,7 @@ namespace rcme {
 
 // The residual of one match at a motion and its derivatives along the five coordinates of the motion.
 struct SampsonResidual {
-  double r = 0.0;     // g / (sigma |J|)
+  double r = 0.0;     // g / (sigma |J|), sigma that of the match
   double norm = 0.0;  // sigma |J|
   Vector5d g_p;       // of g
   Vector5d r_p;       // of r
@@ -20,7 +20,8 @@ struct SampsonResidual {
 class SampsonLinearization {
  public:
   SampsonLinearization(const MotionProblem& problem, const RelativePose& pose);
-  SampsonResidual Evaluate(const Correspondence& match) const;
+  // Of a match whose sigma is sigma_px times `noise_scale`.
+  SampsonResidual Evaluate(const Correspondence& match, double noise_scale = 1.0) const;
 
  private:
   double sigma_px_;
@@ -33,7 +34,8 @@ class SampsonLinearization {
 NormalEquations LinearizeSampson(const MotionProblem& problem, std::span<const int> indices,
                                  const RelativePose& pose, Loss loss);
 
-// sum g_p' g_p / var g over the matches, var g = sigma^2 |J|^2: 5x5, [rotation, direction], 1 / rad^2.
+// sum g_p' g_p / var g over the matches, var g = sigma^2 |J|^2, sigma that of the match: 5x5, [rotation,
+// direction], 1 / rad^2.
 Matrix5d SampsonInformation(const MotionProblem& problem, std::span<const int> indices,
                             const RelativePose& pose);
 

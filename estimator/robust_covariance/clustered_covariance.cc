@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "estimator/noise_scale.h"
 #include "estimator/refinement/sampson_equations.h"
 #include "estimator/robust_covariance/disjoint_sets.h"
 
@@ -46,8 +47,9 @@ void UniteNeighbours(const std::vector<Correspondence>& matches, Eigen::Vector2d
 MatchScores ScoreFitted(const MotionProblem& problem, std::span<const int> fitted, const RelativePose& pose) {
   const SampsonLinearization model(problem, pose);
   MatchScores scores;
-  for (const int i : fitted) {
-    const SampsonResidual residual = model.Evaluate(problem.matches[static_cast<size_t>(i)]);
+  for (const int index : fitted) {
+    const auto i = static_cast<size_t>(index);
+    const SampsonResidual residual = model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i));
     const Vector5d row = residual.g_p / residual.norm;
     scores.rows.push_back(row);
     scores.residuals.push_back(residual.r);

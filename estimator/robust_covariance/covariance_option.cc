@@ -24,24 +24,33 @@ bool IsMotion(const MotionEstimate& estimate, size_t num_matches) {
 
 class WithRobust : public MotionEstimator {
  public:
-  WithRobust(std::unique_ptr<MotionEstimator> estimator, const RobustCovarianceOptions& options)
-      : estimator_(std::move(estimator)), options_(options) {}
+  WithRobust(std::unique_ptr<MotionEstimator> estimator, const RobustCovarianceOptions& options,
+             bool uses_noise_scale)
+      : estimator_(std::move(estimator)), options_(options), uses_noise_scale_(uses_noise_scale) {}
 
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
     MotionEstimate estimate = estimator_->Estimate(problem, rng);
-    if (estimate.status == MotionStatus::kOk)
+    if (estimate.status != MotionStatus::kOk) return estimate;
+    if (uses_noise_scale_ || problem.noise_scale.empty()) {
       MakeCovarianceRobust(problem, options_, std::nullopt, &estimate);
+      return estimate;
+    }
+    MotionProblem all_alike = problem;  // as the estimator took them
+    all_alike.noise_scale.clear();
+    MakeCovarianceRobust(all_alike, options_, std::nullopt, &estimate);
     return estimate;
   }
 
  private:
   std::unique_ptr<MotionEstimator> estimator_;
   RobustCovarianceOptions options_;
+  bool uses_noise_scale_;
 };
 
 class ModelWithRobust : public EstimatorModel {
  public:
-  explicit ModelWithRobust(std::unique_ptr<EstimatorModel> model) : model_(std::move(model)) {}
+  ModelWithRobust(std::unique_ptr<EstimatorModel> model, bool uses_noise_scale)
+      : model_(std::move(model)), uses_noise_scale_(uses_noise_scale) {}
 
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = model_->Parameters();
@@ -62,11 +71,12 @@ class ModelWithRobust : public EstimatorModel {
   std::unique_ptr<MotionEstimator> Make() const override {
     std::unique_ptr<MotionEstimator> estimator = model_->Make();
     if (!is_robust_) return estimator;
-    return std::make_unique<WithRobust>(std::move(estimator), options_);
+    return std::make_unique<WithRobust>(std::move(estimator), options_, uses_noise_scale_);
   }
 
  private:
   std::unique_ptr<EstimatorModel> model_;
+  bool uses_noise_scale_;
   bool is_robust_ = false;
   RobustCovarianceOptions options_;
 };
@@ -90,10 +100,11 @@ void MakeCovarianceRobust(const MotionProblem& problem, const RobustCovarianceOp
   *estimate = std::move(refusal);
 }
 
-std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model) {
+std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model,
+                                                     bool uses_noise_scale) {
   const bool has_one = std::ranges::count(model->Parameters(), kOption, &Parameter::name) > 0;
   if (has_one) return model;
-  return std::make_unique<ModelWithRobust>(std::move(model));
+  return std::make_unique<ModelWithRobust>(std::move(model), uses_noise_scale);
 }
 
 }  // namespace rcme

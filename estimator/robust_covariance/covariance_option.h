@@ -18,8 +18,10 @@ namespace rcme {
 //
 // beside its own. The motion, its inliers and whatever else it says stay, number for number; of a motion
 // (status ok) the covariance is that of robust_covariance.h. Where the inliers determine none the status is
-// degenerate_matches. A model that has an option `covariance` itself stays as it is.
-std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model);
+// degenerate_matches. A model that has an option `covariance` itself stays as it is. The robust covariance is
+// of a fit that weighs all matches alike unless `uses_noise_scale`.
+std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model,
+                                                     bool uses_noise_scale = false);
 
 // Gives a motion the robust covariance, or refuses it. An answer that is none (motion not finite, inliers
 // that are no matches) stays.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "estimator/noise_scale.h"
 #include "estimator/refinement/fit_set.h"
 #include "estimator/refinement/sampson_equations.h"
 #include "estimator/robust_covariance/clustered_covariance.h"
@@ -30,8 +31,10 @@ double SigmaOfResiduals(const MotionProblem& problem, std::span<const int> inlie
                         const RelativePose& pose) {
   const SampsonLinearization model(problem, pose);
   std::vector<double> sizes;
-  for (const int i : inliers)
-    sizes.push_back(std::abs(model.Evaluate(problem.matches[static_cast<size_t>(i)]).r));
+  for (const int index : inliers) {
+    const auto i = static_cast<size_t>(index);
+    sizes.push_back(std::abs(model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i)).r));
+  }
   return problem.sigma_px * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
 }
 

@@ -25,10 +25,11 @@ double SdOfNoise(double sigma_px, size_t n) { return sigma_px / std::sqrt(0.74 *
 
 void MeasureParallax(const MotionProblem& inliers, const RelativePose& pose, MotionEvidence* evidence) {
   std::vector<double> angles_deg, to_noise;
-  for (const Correspondence& match : inliers.matches) {
+  for (size_t i = 0; i < inliers.matches.size(); ++i) {
+    const Correspondence& match = inliers.matches[i];
     const Eigen::Vector3d ray1 = inliers.camera1.Ray(match.x1_px), ray2 = inliers.camera2.Ray(match.x2_px);
     angles_deg.push_back(kDegPerRad * AngleBetween(pose.R * ray1, ray2));
-    to_noise.push_back(EvaluateMatch(inliers, pose, match).mean_depth);
+    to_noise.push_back(EvaluateMatch(inliers, pose, match, NoiseScaleAt(inliers, i)).mean_depth);
   }
   evidence->parallax_median_deg = MedianOf(std::move(angles_deg));
   evidence->parallax_to_noise = MedianOf(std::move(to_noise));

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "estimator/noise_scale.h"
 #include "simulator/noise_registry.h"
 #include "simulator/outlier_registry.h"
+#include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
@@ -115,8 +117,11 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> no
 
 TrialData SimulatedData::Give(const Scene& scene, Observation observation) const {
   TrialData data;
+  // sigma_px is that of the median match where single ones are told apart.
+  const double median = observation.noise_scale.empty() ? 1.0 : MedianOf(observation.noise_scale);
   data.problem = {std::move(observation.matches), assumed_.AssumedCamera(scene.camera1),
-                  assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(noise_->sigma_px())};
+                  assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(median * noise_->sigma_px()),
+                  NoiseScaleOf(std::move(observation.noise_scale))};
   data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
                 std::move(observation.is_undetectable)};
   data.origin = "simulated";

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
+#include "estimator/noise_scale.h"
 #include "experiments/truth_free/twin.h"
 
 namespace rcme {
@@ -11,7 +12,7 @@ namespace {
 
 struct PlacedResidual {
   Eigen::Vector2d x1_px;
-  double residual_px;
+  double residual_px;  // over the match's noise_scale
 };
 
 // From left to right.
@@ -21,7 +22,8 @@ std::vector<PlacedResidual> ResidualsOf(const MotionProblem& problem, const Moti
   for (const int i : estimate.inliers) {
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
     const EpipolarConstraint c = EvaluateConstraint(F, match);
-    residuals.push_back({match.x1_px, c.g / std::sqrt(c.squared_gradient())});
+    const double scale = NoiseScaleAt(problem, static_cast<size_t>(i));
+    residuals.push_back({match.x1_px, c.g / std::sqrt(c.squared_gradient()) / scale});
   }
   std::ranges::sort(residuals, {}, [](const PlacedResidual& r) { return r.x1_px.x(); });
   return residuals;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
+#include "estimator/noise_scale.h"
 #include "experiments/truth_free/twin.h"
 #include "stats/median_ratio.h"
 #include "stats/order_statistic.h"
@@ -14,9 +15,10 @@ void PatternSum::Add(const MotionProblem& problem, const MotionEstimate& estimat
   const double sigma_px = NoiseOf(problem, estimate);
   const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
   sigmas_.push_back(sigma_px);
-  for (const int i : estimate.inliers) {
-    sizes_.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[static_cast<size_t>(i)])) /
-                     sigma_px);
+  for (const int index : estimate.inliers) {
+    const auto i = static_cast<size_t>(index);
+    sizes_.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[i])) /
+                     (sigma_px * NoiseScaleAt(problem, i)));
   }
   products_ += ProductsOf(problem, estimate);
 }

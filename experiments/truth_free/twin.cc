@@ -48,8 +48,10 @@ double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate) {
   if (std::isfinite(estimate.sigma_estimated_px)) return estimate.sigma_estimated_px;
   const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
   std::vector<double> sizes;
-  for (const int i : estimate.inliers)
-    sizes.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[static_cast<size_t>(i)])));
+  for (const int index : estimate.inliers) {
+    const auto i = static_cast<size_t>(index);
+    sizes.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[i])) / NoiseScaleAt(problem, i));
+  }
   return MedianOf(std::move(sizes)) / kNormalQuartile;
 }
 

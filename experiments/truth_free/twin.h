@@ -18,8 +18,8 @@ Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& 
 // The match moved onto the nearest one that satisfies F, to second order of the distance.
 Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match);
 
-// Residual noise of the matches that agree with an answer, px: as the estimator says, else from the median of
-// their residuals.
+// Residual noise of the matches that agree with an answer, px, of one as noisy as the median
+// (MotionProblem::noise_scale): as the estimator says, else from the median of their residuals.
 double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate);
 
 // The inliers of an answer at the nearest points that satisfy it, with independent normal noise of its

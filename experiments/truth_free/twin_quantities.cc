@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/geometry/sampson.h"
+#include "estimator/noise_scale.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "experiments/truth_free/halves.h"
@@ -65,14 +66,13 @@ void AddResiduals(const MotionProblem& problem, const MotionEstimate& estimate, 
   const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
   const double sigma_px = NoiseOf(problem, estimate);
   (*values)[kSigma].push_back(sigma_px);
-  double num_beyond = 0.0;
-  for (const int i : estimate.inliers) {
-    const double squared = SquaredSampsonDistance(F, problem.matches[static_cast<size_t>(i)]);
-    num_beyond += squared > kTailSigmas * sigma_px * kTailSigmas * sigma_px;
-  }
-  double num_near = 0.0;
-  for (const Correspondence& match : problem.matches)
-    num_near += SquaredSampsonDistance(F, match) <= kRightWithin * sigma_px * kRightWithin * sigma_px;
+  const auto is_within = [&](double bound, size_t i) {
+    const double own_px = sigma_px * NoiseScaleAt(problem, i);
+    return SquaredSampsonDistance(F, problem.matches[i]) <= bound * own_px * bound * own_px;
+  };
+  double num_beyond = 0.0, num_near = 0.0;
+  for (const int i : estimate.inliers) num_beyond += !is_within(kTailSigmas, static_cast<size_t>(i));
+  for (size_t i = 0; i < problem.matches.size(); ++i) num_near += is_within(kRightWithin, i);
   const double num_inliers = static_cast<double>(estimate.inliers.size());
   if (num_near > 0.0) (*values)[kInlierTest].push_back(num_inliers / num_near);
   (*values)[kTailShare].push_back(num_beyond / num_inliers);

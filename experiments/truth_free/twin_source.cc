@@ -4,6 +4,7 @@
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/geometry/triangulation.h"
+#include "estimator/noise_scale.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
@@ -32,7 +33,8 @@ std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& es
   for (size_t i = 0; i < is_accepted.size(); ++i) {
     Correspondence& match = exact.problem.matches[i];
     const double squared = SquaredSampsonDistance(F, match);
-    if (!is_accepted[i] && (squared > kRightWithin * sigma_px * kRightWithin * sigma_px ||
+    const double own_px = sigma_px * NoiseScaleAt(pair.problem, i);
+    if (!is_accepted[i] && (squared > kRightWithin * own_px * kRightWithin * own_px ||
                             !IsInFrontOfBothCameras(pose, pair.problem.camera1.Ray(match.x1_px),
                                                     pair.problem.camera2.Ray(match.x2_px))))
       continue;

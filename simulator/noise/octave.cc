@@ -7,43 +7,77 @@ namespace rcme {
 namespace {
 
 // A detector on an image pyramid with the scale factor f. Level k has f^(-2k) times the area of level 0, and
-// as many times its points; an error there is f^k times as large in pixels of level 0. A match has the same
-// level in both images.
+// as many times its points; an error there is f^(g k) as large in pixels of level 0, g = octave_growth: f^k
+// where a key point is found within a given part of a pixel of its level (g = 1), the same on all where g =
+// 0. A match has the same level in both images.
 //
-// Of the levels' variance f^(2k) each holds the same part, since P(k) f^(2k) does not depend on k:
+// With g = 1 of the levels' variance f^(2k) each holds the same part, since P(k) f^(2k) does not depend on k:
 //   E f^(2k) = L / sum_k f^(-2k),  L levels,
 // so that a standard deviation of sigma_px f^k sqrt(sum f^(-2k) / L) has the root mean square sigma_px.
+//
+// The detector knows a key point's level, and may take its error to be f^(h k), h = told_growth: this is what
+// it tells; with h = 0 nothing.
 class OctaveNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
     return {SigmaParameter(&sigma_px_),
             Parameter::Integer("num_octave_levels", &num_levels_, {1, 32}, "levels of the image pyramid"),
             Parameter::Real("octave_factor", &factor_, {1.0, 4.0}, "",
-                            "scale of one level of the pyramid over that of the next finer one")};
+                            "scale of one level of the pyramid over that of the next finer one"),
+            Parameter::Real("octave_growth", &growth_, {0.0, 4.0}, "",
+                            "noise grows with this power of a level's scale"),
+            Parameter::Real("told_growth", &told_growth_, {0.0, 4.0}, "",
+                            "estimators are told that it grows with this power (of each match, relative to "
+                            "the median); 0: they are told nothing")};
   }
   double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
-    std::vector<double> area_up_to, scales;  // level by level
-    double scale = 1.0, total_area = 0.0;
-    for (int level = 0; level < num_levels_; ++level, scale *= factor_) {
-      total_area += 1.0 / (scale * scale);
-      area_up_to.push_back(total_area);
-      scales.push_back(scale);
-    }
-    const double finest_px = sigma_px_ * std::sqrt(total_area / num_levels_);
+    AddAndTell(matches, rng);
+  }
+
+  std::vector<double> AddAndTell(std::span<Correspondence> matches, RandomStream& rng) const override {
+    const Pyramid pyramid = MakePyramid();
+    std::vector<double> told;
     for (Correspondence& match : matches) {
-      const double area = total_area * rng.Uniform();
+      const double area = pyramid.total_area * rng.Uniform();
       size_t level = 0;
-      while (level + 1 < scales.size() && area >= area_up_to[level]) ++level;
-      for (double* x_px : Coordinates(match)) *x_px += finest_px * scales[level] * rng.Normal();
+      while (level + 1 < pyramid.sds.size() && area >= pyramid.area_up_to[level]) ++level;
+      for (double* x_px : Coordinates(match)) *x_px += pyramid.sds[level] * rng.Normal();
+      if (told_growth_ > 0.0) told.push_back(pyramid.told[level]);
     }
+    return told;
   }
 
  private:
+  // Level by level.
+  struct Pyramid {
+    std::vector<double> area_up_to, sds;  // px
+    std::vector<double> told;             // over sigma_px; true where told_growth is octave_growth
+    double total_area = 0.0;
+  };
+  Pyramid MakePyramid() const {
+    Pyramid pyramid;
+    double scale = 1.0, variance = 0.0, told_variance = 0.0;
+    for (int level = 0; level < num_levels_; ++level, scale *= factor_) {
+      const double area = 1.0 / (scale * scale);
+      pyramid.total_area += area;
+      pyramid.area_up_to.push_back(pyramid.total_area);
+      pyramid.sds.push_back(growth_ == 1.0 ? scale : std::pow(scale, growth_));
+      pyramid.told.push_back(std::pow(scale, told_growth_));
+      variance += growth_ == 1.0 ? 1.0 : area * pyramid.sds.back() * pyramid.sds.back();
+      told_variance += area * pyramid.told.back() * pyramid.told.back();
+    }
+    const double finest_px = sigma_px_ * std::sqrt(pyramid.total_area / variance);
+    for (double& sd : pyramid.sds) sd = finest_px * sd;
+    for (double& told : pyramid.told) told *= std::sqrt(pyramid.total_area / told_variance);
+    return pyramid;
+  }
+
   double sigma_px_ = 0.5;
   int num_levels_ = 8;  // with the factor: ORB's pyramid
   double factor_ = 1.2;
+  double growth_ = 1.0, told_growth_ = 0.0;
 };
 
 }  // namespace

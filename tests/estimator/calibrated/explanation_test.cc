@@ -7,21 +7,28 @@
 #include <numeric>
 
 #include "estimator/calibrated/match_terms.h"
+#include "estimator/noise_scale.h"
 #include "tests/test_support/calibrated_mode.h"
 
 namespace rcme {
 namespace {
 
 TEST(Explanation, OfEveryMatchIsThatOfTheScalarTwin) {
-  for (const int n : {7, 50, 61}) {
-    const FittedMode f = FitScene(n, 0.5, 0.2, static_cast<std::uint32_t>(n));
+  for (const auto& [n, is_scaled] : {std::pair{7, false}, {50, false}, {61, false}, {61, true}}) {
+    FittedMode f = FitScene(n, 0.5, 0.2, static_cast<std::uint32_t>(n));
+    if (is_scaled) {
+      for (int i = 0; i < n; ++i) f.problem.noise_scale.push_back(0.5 + 0.25 * (i % 7));
+      f = FitFromTruth(f.problem, f.pose_true);
+    }
     const MixtureParameters& m = f.mode.mixture;
     const Explanation e = Explain(f.matches, f.mode);
     ASSERT_EQ(e.probability.size(), static_cast<size_t>(n));
     int num_explained = 0;
     for (size_t i = 0; i < e.probability.size(); ++i) {
-      const MatchTerms terms = EvaluateMatch(f.problem, f.mode.pose, f.problem.matches[i]);
-      const MatchDensity d = EvaluateDensity(terms.residual, terms.depth, m);
+      const double scale = NoiseScaleAt(f.problem, i);
+      const MatchTerms terms = EvaluateMatch(f.problem, f.mode.pose, f.problem.matches[i], scale);
+      const MatchDensity d = EvaluateDensity(terms.residual, terms.depth, m, scale);
+      EXPECT_EQ(WrongDensity(e, i, 0.25), 0.25 * scale);
       const double u = terms.residual / m.scale;
       EXPECT_NEAR(e.probability[i], d.right, 1e-9);
       EXPECT_NEAR(m.inlier_ratio * e.inlier_density[i], d.right * d.density, 1e-9);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,8 @@
 #include <optional>
 
 #include "parameters/input_error.h"
+#include "stats/distributions.h"
+#include "tests/test_support/coverage_count.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -93,6 +96,60 @@ TEST_F(RcmeCalibratedOf, FailsAsOftenAsItsProbabilitiesSay) {
   EXPECT_NEAR(expected, failed, 4.0 * std::sqrt(variance) + 0.03 * kNumTrials);
 }
 
+// Matches of which each is 1, 2 or 4 times as noisy as .25 px, told or not; 30 % are wrong.
+MotionProblem UnequalProblem(std::uint32_t trial, bool is_told, RelativePose* pose_true) {
+  const Scene scene = TwoCameraScene(200, trial);
+  *pose_true = scene.cam2_from_cam1_true;
+  RandomStream noise_rng({.seed = 1, .trial = trial, .purpose = 93});
+  RandomStream outlier_rng({.seed = 1, .trial = trial, .purpose = 94});
+  const auto law = MakeOctaveNoise();
+  for (const auto& [key, value] : {std::pair{"sigma_px", "0.5"},
+                                   {"num_octave_levels", "3"},
+                                   {"octave_factor", "2"},
+                                   {"told_growth", is_told ? "1" : "0"}}) {
+    for (const Parameter& parameter : law->Parameters())
+      if (parameter.name() == key) parameter.SetFromText(value);
+  }
+  Observation seen = Observe(scene, *law, OutlierModel(0.3), noise_rng, outlier_rng);
+  return {std::move(seen.matches), scene.camera1, scene.camera2, 0.5, std::move(seen.noise_scale)};
+}
+
+// 200 trials, each with and without being told. The region covers: at .95 a false alarm has probability 1e-4
+// (.94 is admitted as well, 140 right matches being few). What is told makes the Mahalanobis distance by the
+// covariance of the told answer smaller more often than not: of 200 trials without any use, 130 or more have
+// probability 1.4e-5.
+TEST_F(RcmeCalibratedOf, BeingToldHowNoisyMatchesAreMakesErrorsSmallerAndKeepsTheCoverage) {
+  CoverageCount covered;
+  int num_smaller = 0;
+  for (std::uint32_t trial = 0; trial < 200; ++trial) {
+    RelativePose pose_true;
+    const MotionEstimate told = RunOn(UnequalProblem(trial, true, &pose_true), trial);
+    const MotionEstimate untold = RunOn(UnequalProblem(trial, false, &pose_true), trial);
+    ASSERT_EQ(told.status, MotionStatus::kOk);
+    const Vector5d error = LocalCoordinates(told.cam2_from_cam1, pose_true),
+                   other = LocalCoordinates(untold.cam2_from_cam1, pose_true);
+    const Matrix5d information = told.pose_cov.inverse();
+    covered.Add(error.dot(information * error) <= ChiSquareQuantile(5, 0.95));
+    num_smaller += error.dot(information * error) < other.dot(information * other);
+  }
+  EXPECT_TRUE(covered.Admits(0.95) || covered.Admits(0.94)) << covered;
+  EXPECT_GE(num_smaller, 130);
+}
+
+// In another unit the same: only the relation of scales counts, but for the two matches for which the assumed
+// sigma counts. Ones are no scales.
+TEST_F(RcmeCalibratedOf, OnlyTheRelationOfScalesCounts) {
+  RelativePose pose_true;
+  MotionProblem problem = UnequalProblem(3, true, &pose_true);
+  const MotionEstimate e = RunOn(problem, 3);
+  problem.sigma_px *= 0.5;
+  for (double& scale : problem.noise_scale) scale *= 2.0;
+  const MotionEstimate twice = RunOn(problem, 3);
+  EXPECT_LT(LocalCoordinates(e.cam2_from_cam1, twice.cam2_from_cam1).norm(),
+            0.1 * std::sqrt(e.pose_cov.trace()));
+  EXPECT_NEAR(2.0 * twice.sigma_estimated_px, e.sigma_estimated_px, 0.02 * e.sigma_estimated_px);
+}
+
 void ExpectSame(const MotionEstimate& a, const MotionEstimate& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.cam2_from_cam1.R, b.cam2_from_cam1.R);
@@ -102,6 +159,13 @@ void ExpectSame(const MotionEstimate& a, const MotionEstimate& b) {
   EXPECT_EQ(a.sigma_estimated_px, b.sigma_estimated_px);
   EXPECT_EQ(a.inlier_probabilities, b.inlier_probabilities);
   EXPECT_EQ(a.counts.num_hypotheses, b.counts.num_hypotheses);
+}
+
+TEST_F(RcmeCalibratedOf, ScalesOfOneGiveTheBytesOfNone) {
+  MotionProblem problem = TwoCameraProblem(100, 0.5, 0.3, 5);
+  const MotionEstimate none = RunOn(problem);
+  problem.noise_scale.assign(100, 1.0);
+  ExpectSame(RunOn(problem), none);
 }
 
 TEST_F(RcmeCalibratedOf, IsAPureFunctionOfProblemAndStreamOnEveryInstructionSet) {

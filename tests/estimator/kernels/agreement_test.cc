@@ -47,6 +47,9 @@ Case MakeCase(int num_matches, std::uint32_t trial) {
       c.fitted.push_back(i);
     }
   }
+  // Every third case says how noisy each match is.
+  for (int i = 0; trial % 3 == 2 && i < num_matches; ++i)
+    random.problem.noise_scale.push_back(rng.Uniform(0.5, 2.0));
   c.problem = random.problem;
   c.pose_true = random.pose_true;
   c.motion = RefineBySampson(c.problem, c.fitted, random.pose_true, Loss::kSquared);

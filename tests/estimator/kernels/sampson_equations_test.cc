@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
+#include "estimator/noise_scale.h"
+#include "estimator/refinement/sampson_equations.h"
 #include "estimator/uncertainty/motion_covariance.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/numeric_jacobian.h"
@@ -35,6 +37,9 @@ Case MakeCase(int num_matches, std::uint32_t trial) {
     if (rng.Uniform() < 0.1) c.problem.matches[static_cast<size_t>(i)].x2_px.y() += 30.0 * rng.Normal();
     if (rng.Uniform() < 0.8) c.used.push_back(i);
   }
+  // Every other case says how noisy each match is.
+  for (int i = 0; trial % 2 == 1 && i < num_matches; ++i)
+    c.problem.noise_scale.push_back(rng.Uniform(0.4, 3.0));
   return c;
 }
 
@@ -44,10 +49,11 @@ Eigen::VectorXd Residuals(const Case& c, const RelativePose& pose) {
       FundamentalFromEssential(EssentialFromPose(pose), c.problem.camera1, c.problem.camera2);
   Eigen::VectorXd residuals(c.used.size());
   for (size_t k = 0; k < c.used.size(); ++k) {
-    const EpipolarConstraint constraint =
-        EvaluateConstraint(F, c.problem.matches[static_cast<size_t>(c.used[k])]);
+    const auto i = static_cast<size_t>(c.used[k]);
+    const EpipolarConstraint constraint = EvaluateConstraint(F, c.problem.matches[i]);
+    const double sigma_px = c.problem.sigma_px * NoiseScaleAt(c.problem, i);
     residuals(static_cast<Eigen::Index>(k)) =
-        constraint.g / (std::sqrt(constraint.squared_gradient()) * c.problem.sigma_px);
+        constraint.g / (std::sqrt(constraint.squared_gradient()) * sigma_px);
   }
   return residuals;
 }
@@ -117,6 +123,7 @@ TEST_F(SampsonEquations, HessianSumsTheProductsOfTheDerivatives) {
 TEST_F(SampsonEquations, InformationIsTheInverseOfTheFirstOrderCovariance) {
   for (const int n : {8, 17, 200}) {
     Case c = MakeCase(n, static_cast<std::uint32_t>(n));
+    c.problem.noise_scale.clear();
     std::vector<Correspondence> used;
     for (const int i : c.used) used.push_back(c.problem.matches[static_cast<size_t>(i)]);
     const std::optional<Matrix5d> cov =
@@ -128,6 +135,26 @@ TEST_F(SampsonEquations, InformationIsTheInverseOfTheFirstOrderCovariance) {
       // Condition numbers reach 1e6.
       EXPECT_LT((information * *cov - Matrix5d::Identity()).norm(), 1e-8) << n;
     });
+  }
+}
+
+// And of the reference, which shares no formula with them.
+TEST_F(SampsonEquations, AreThoseOfTheReferenceWhereMatchesAreNotAlike) {
+  for (const int n : {7, 17, 63}) {
+    const Case c = MakeCase(n, static_cast<std::uint32_t>(n));
+    ASSERT_EQ(c.problem.noise_scale.size(), static_cast<size_t>(n));
+    for (const Loss loss : {Loss::kSquared, Loss::kCauchy}) {
+      const NormalEquations expected = LinearizeSampson(c.problem, c.used, c.pose, loss);
+      const Matrix5d information = SampsonInformation(c.problem, c.used, c.pose);
+      Run([&] {
+        const MatchBlocks matches(c.problem);
+        const NormalEquations equations = Linearize(c, loss);
+        EXPECT_NEAR(equations.cost, expected.cost, 1e-9 * expected.cost);
+        EXPECT_JACOBIAN_NEAR(equations.gradient, expected.gradient, 1e-9);
+        EXPECT_JACOBIAN_NEAR(equations.hessian, expected.hessian, 1e-9);
+        EXPECT_JACOBIAN_NEAR(SampsonInformation(matches, MaskOf(c.used, matches), c.pose), information, 1e-9);
+      });
+    }
   }
 }
 
