@@ -25,8 +25,8 @@ So a page says itself what each of its tables is made of. Kinds:
 import re
 
 from recipes import ROOT, RESULTS, ResultError
-from special_blocks import SPECIAL, markdown
-from tables import levels_of, read_table, select, shown, the_row, words_of
+from special_blocks import SPECIAL
+from tables import levels_of, markdown, read_table, select, shown, the_row, words_of
 
 BEGIN = re.compile(r"<!-- begin generated: (\S+)\n(.*?)-->\n(.*?)<!-- end generated: (\S+) -->", re.DOTALL)
 NUMBER = re.compile(r"\{([^{}]+)\}")

@@ -1,19 +1,13 @@
 """Blocks that one page needs: each is a function of its spec that returns Markdown."""
 
 import json
-import math
 import re
-import statistics
 
 from recipes import MADE, RESULTS, ROOT, read_recipes
-from tables import as_number, is_level, levels_of, rate, read_table, scientific, select, the_row, words_of
+from tables import as_number, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
+from validation_blocks import caught, median_ratios, truth_free, validation_values
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
-
-
-def markdown(head, body):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(line) + " |" for line in body])
 
 
 def made_by():
@@ -219,93 +213,6 @@ def least_coverage(spec):
     new, plain = min(float(cell[0]) for cell in cells), min(float(cell[1]) for cell in cells)
     return (f"In each of {len(cells)} cells it covers {new:.3f} or more where 0.95 is claimed; value +- 1.96 standard "
             f"errors covers as little as {plain:.3f}.")
-
-
-def truth_free(spec):
-    """Of each scene, for each table of `rcme validate` (tables: NAME as WORDS; ...): the share that the 95 % region covers, the
-    same of the twins, and by what the covariances are too small; one test."""
-    tables = [(read_table(name), words) for name, words in spec.parts("tables")]
-    body = []
-    for scene in levels_of(tables[0][0], "set"):
-        line = [scene]
-        for rows, _ in tables:
-            row = the_row(rows, f"set={scene}, test={spec.argument}")
-            if not row["value"]:
-                line.append("-")
-                continue
-            covered, twins = (f"{100 * float(row[name]):.0f}" for name in ("coverage", "twin_coverage"))
-            upper = float(row["upper"]) if row["upper"] else math.inf
-            line.append(f"{covered} ({twins}) of {row['n']}; {float(row['value']):.2g} "
-                        f"[{float(row['lower']):.2g}, {upper:.2g}], {row['verdict']}")
-        body.append(line)
-    return markdown(["scene", *(words for _, words in tables)], body)
-
-
-def exact_bound(hits, n, tail):
-    """The probability at which `hits` or more of n have the probability `tail` (Clopper and Pearson 1934)."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        p = 0.5 * (low + high)
-        at_least = sum(math.comb(n, k) * p ** k * (1 - p) ** (n - k) for k in range(hits, n + 1))
-        low, high = (p, high) if at_least < tail else (low, p)
-    return low
-
-
-def share_with_interval(hits, n):
-    """As "22 of 24 [73, 99]": exact 95 %."""
-    lower = exact_bound(hits, n, 0.025) if hits else 0.0
-    upper = exact_bound(hits + 1, n, 0.975) if hits < n else 1.0
-    return f"{hits} of {n} [{100 * lower:.0f}, {100 * upper:.0f}]"
-
-
-def caught(spec):
-    """In how many sets each test gave the verdict that something is wrong, with an exact 95 % interval in %, a row per table
-    (tables: NAME as WORDS; ...)."""
-    wrong = {"too small", "correlated", "wrong"}
-    body, tests = [], spec.parts("tests")
-    for name, words in spec.parts("tables"):
-        rows = read_table(name)
-        line = [words]
-        for test, _ in tests:
-            verdicts = [row["verdict"] for row in select(rows, f"test={test}")]
-            line.append(share_with_interval(sum(verdict in wrong for verdict in verdicts), len(verdicts)))
-        body.append(line)
-    return markdown(["what is planted", *(heading for _, heading in tests)], body)
-
-
-def validation_values(spec):
-    """Of each scene what `rcme validate` says of each test (tests: NAME as WORDS; ...): its value, interval and verdict; tests
-    named with a unit of 100 are printed in per cent (per_cent: NAME, ...)."""
-    rows = read_table(spec.argument)
-    per_cent = words_of(spec.get("per_cent"))
-    tests = spec.parts("tests")
-
-    def shown(row):
-        if not row["value"]:
-            return "-"
-        scale = 100 if row["test"] in per_cent else 1
-        bounds = [scale * float(row[name]) if row[name] else math.inf for name in ("lower", "upper")]
-        ranges = f" [{bounds[0]:.2g}, {bounds[1]:.2g}]" if row["lower"] else ""
-        return f"{scale * float(row['value']):.2g}{ranges}, {row['verdict']}"
-
-    body = []
-    for scene in levels_of(rows, "set"):
-        here = {row["test"]: row for row in select(rows, f"set={scene}")}
-        pairs = here["calibration"]["n"] if "calibration" in here else "0"
-        body.append([f"{scene} ({pairs})", *(shown(here[name]) if name in here else "-" for name, _ in tests)])
-    return markdown(["scene (pairs)", *(heading for _, heading in tests)], body)
-
-
-def median_ratios(spec):
-    """By what covariances are too small: of each test the middle one of the sets' ratios, a row per table (tables: NAME as WORDS;
-    ...)."""
-    tests = words_of(spec.get("tests"))
-    body = []
-    for name, words in spec.parts("tables"):
-        rows = read_table(name)
-        ratios = [sorted(float(row["value"]) for row in select(rows, f"test={test}") if row["value"]) for test in tests]
-        body.append([words, *(f"{statistics.median(each):.2f} ({each[0]:.2f} to {each[-1]:.2f})" for each in ratios)])
-    return markdown(["", *tests], body)
 
 
 def twins(spec):

@@ -130,3 +130,8 @@ def shown(row, form):
     if form not in FORMATS:
         raise ResultError(f"no format '{form}'; there are: {', '.join(FORMATS)}, column NAME")
     return FORMATS[form](row)
+
+
+def markdown(head, body):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(line) + " |" for line in body])
