@@ -30,7 +30,7 @@ TimedPoses ReadTimedPoses(const TimedFiles& files) {
     if (last && time_s < last->first)
       table.Fail("the time is before that of the row before; times must grow");
     if (last && time_s == last->first) truth.ambiguous_s.insert(time_s);
-    if (last && time_s > last->first) add_last();
+    add_last();
     last = {time_s, {R * files.body_from_cam.R_world_from_cam, R * files.body_from_cam.center + p}};
   }
   add_last();

@@ -85,6 +85,7 @@ TEST_F(Euroc, WhatIsBrokenIsNamedByPath) {
       {Replace(cam + "sensor.yaml", "[", "{["), {"sensor.yaml"}},
       {Replace(cam + "sensor.yaml", "[260", "[fx: 260"), {"sensor.yaml", "intrinsics:"}},
       {WriteInstead(cam + "sensor.yaml", ""), {"sensor.yaml"}},
+      {Replace(cam + "sensor.yaml", "resolution: [320", "resolution: [320.5"), {"resolution: whole numbers"}},
       {Replace(cam + "data.csv", "1403636579813555584,", "1403636579763555584,"),
        {cam + "data.csv: the time of", "must grow"}},
       {Replace(cam + "data.csv", ",1403636579813555584.png", ""),

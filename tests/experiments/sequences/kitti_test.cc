@@ -80,6 +80,8 @@ TEST_F(Kitti, WhatIsBrokenIsNamedByPath) {
        {s + "times.txt: has 5 lines, and there is an image image_0/000005.png"}},
       {Replace("poses/04.txt", "1.000000000000e+00", "2"),
        {"poses/04.txt:1: the matrix does not begin with a rotation"}},
+      {WriteInstead("poses/04.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n"), {"poses/04.txt: has 1 poses"}},
+      {WriteInstead(s + "calib.txt", "P0: 700 1 600 0 0 700 180 0 0 0 1 0\n"), {"P0 is not of the form"}},
       {Replace("poses/04.txt", " ", ""), {"poses/04.txt:1: 11 fields; 12 are needed"}},
   };
   for (const Change& change : cases) {

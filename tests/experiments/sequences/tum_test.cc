@@ -56,8 +56,25 @@ TEST_F(Tum, OfATimeThatStandsTwiceNoPoseIsUsed) {
     EXPECT_LT((doubled.frames[i].pose_true->center - plain.frames[i].pose_true->center).norm(), 1e-3) << i;
 }
 
+TEST_F(Tum, PosesAtBothEndsOfAGap) {
+  const std::string copy = Copy();
+  const std::vector<Frame> plain = ReadTum(WithCamera(Folder()))[0].frames;
+  std::string text;
+  for (const double time_s : {plain.front().time_s, plain.back().time_s})
+    text += std::to_string(time_s) + " 1 2 3 0 0 0.7106 0.7106\n";  // of length 1.005
+  Overwrite(copy + "/groundtruth.txt", text);
+  const std::vector<Frame> frames = ReadTum(WithCamera(copy))[0].frames;
+  EXPECT_TRUE(frames.front().pose_true.has_value());
+  EXPECT_TRUE(frames.back().pose_true.has_value());
+  const Eigen::Matrix3d R = frames.back().pose_true->R_world_from_cam;
+  EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  for (size_t i = 1; i + 1 < frames.size(); ++i) EXPECT_FALSE(frames[i].pose_true.has_value()) << i;
+}
+
 TEST_F(Tum, WhatIsBrokenIsNamedByPath) {
   const std::vector<Change> cases = {
+      {WriteInstead("rgb.txt", "1 rgb/1305031102.175300.png\n"),
+       {"rgb.txt: names 1 images; a pair needs two"}},
       {Remove("rgb.txt"), {"/rgb.txt: is not there"}},
       {Remove("rgb/1305031102.175300.png"), {"rgb/1305031102.175300.png: is not there"}},
       {Replace("rgb.txt", "1305031102.208633 ", "1305031102.1 "),
