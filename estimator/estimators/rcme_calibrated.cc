@@ -18,6 +18,7 @@
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
+#include "parameters/probability_text.h"
 
 namespace rcme {
 namespace {
@@ -144,9 +145,9 @@ std::string ReasonOf(const MotionEstimate& e) {
 }
 
 std::string MessageOf(const MotionEstimate& e) {
-  return fmt::format("{} of {} matches agree, sigma {:.2g} px; wrong with probability {:.2g}{}",
-                     e.inliers.size(), e.inlier_probabilities.size(), e.sigma_estimated_px,
-                     e.failure_probability, ReasonOf(e));
+  return fmt::format("{} of {} matches agree, sigma {:.2g} px; wrong with probability {}{}", e.inliers.size(),
+                     e.inlier_probabilities.size(), e.sigma_estimated_px,
+                     ProbabilityText(e.failure_probability), ReasonOf(e));
 }
 
 class RcmeCalibrated : public CalibratedEstimator {

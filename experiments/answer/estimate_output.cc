@@ -10,6 +10,7 @@
 #include "experiments/answer/refusal_advice.h"
 #include "experiments/base/field_text.h"
 #include "experiments/study/estimator_spec.h"
+#include "parameters/probability_text.h"
 #include "peers/outside_answer.h"
 
 namespace rcme {
@@ -33,9 +34,6 @@ std::string Vector(const Eigen::Vector3d& v) {
 }
 
 std::string Percent(double share) { return std::isnan(share) ? "?" : fmt::format("{:.0f} %", 100.0 * share); }
-
-// What is below a hundred-thousandth was neglected on the way there.
-std::string ProbabilityText(double p) { return p < 1e-5 ? "<1e-05" : fmt::format("{:.2g}", p); }
 
 std::string RotationText(const Eigen::Matrix3d& R) {
   std::string text;
@@ -97,8 +95,9 @@ std::string SureText(const MotionEstimate& estimate, const MotionSpread& spread,
       "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
       spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
       spread.direction_95_deg(0), spread.direction_95_deg(1));
-  if (estimate.other_modes.empty()) return text;
-  const MotionMode& other = estimate.other_modes.front();
+  const MotionMode* found = RunnerUpOf(estimate);
+  if (found == nullptr) return text;
+  const MotionMode& other = *found;
   const RelativePose &a = estimate.cam2_from_cam1, &b = other.cam2_from_cam1;
   text += fmt::format(
       "  otherwise  with probability {:.2g} a motion {:.3g} deg away in rotation,\n             {:.3g} deg "
@@ -151,7 +150,7 @@ std::string TruthText(const PairAnswer& answer) {
       "  normalised error squared (5 degrees of freedom, 95 % below 11.07): {:.2f};\n  {}\n",
       record.rotation_error_deg, record.direction_error_deg, record.nees,
       answer.has_truth_sd ? "the true motion's own error (truth_sd) is part of it"
-                          : "how good the file's motion is, nobody says (no truth_sd)");
+                          : "the file's motion is of unknown accuracy (no truth_sd)");
 }
 
 // Of an estimator that states them; see motion_estimate.h.

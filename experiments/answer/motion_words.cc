@@ -78,4 +78,19 @@ MotionSpread SpreadOf(const RelativePose& cam2_from_cam1, const Matrix5d& pose_c
   return spread;
 }
 
+const MotionMode* RunnerUpOf(const MotionEstimate& estimate) {
+  constexpr double kSameWithin = 0.1;
+  const Vector5d variances = estimate.pose_cov.diagonal();
+  const double rotation_sd = std::sqrt(variances.head<3>().sum()),
+               direction_sd = std::sqrt(variances.tail<2>().sum());
+  const RelativePose& answer = estimate.cam2_from_cam1;
+  for (const MotionMode& mode : estimate.other_modes) {
+    const RelativePose& other = mode.cam2_from_cam1;
+    if (RotationAngleBetween(other.R, answer.R) > kSameWithin * rotation_sd ||
+        AngleBetween(other.t, answer.t) > kSameWithin * direction_sd)
+      return &mode;
+  }
+  return nullptr;
+}
+
 }  // namespace rcme

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "estimator/geometry/pose.h"
+#include "estimator/motion_estimate.h"
 
 namespace rcme {
 
@@ -30,5 +31,9 @@ struct MotionSpread {
   Eigen::Vector2d direction_95_deg;  // its 95 % ellipse
 };
 MotionSpread SpreadOf(const RelativePose& cam2_from_cam1, const Matrix5d& pose_cov);
+
+// The likeliest other motion; none: nullptr. Two starts may end in one optimum: what is within a tenth of the
+// answer's standard deviation of it is no other motion.
+const MotionMode* RunnerUpOf(const MotionEstimate& estimate);
 
 }  // namespace rcme

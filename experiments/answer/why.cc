@@ -14,6 +14,7 @@
 #include "estimator/ransac_estimator.h"
 #include "estimator/reference_matches.h"
 #include "experiments/answer/estimate_output.h"
+#include "experiments/answer/motion_words.h"
 #include "experiments/study/estimator_spec.h"
 #include "parameters/input_error.h"
 
@@ -229,8 +230,9 @@ Why WhyNotRight(const EstimatorSpec& spec, const TrialData& data, const MotionEs
 
 std::string RunnerUpWords(const MotionEstimate& estimate, const TrialData& data,
                           const FailureBounds& bounds) {
-  if (estimate.other_modes.empty()) return {};
-  const MotionMode& other = estimate.other_modes.front();
+  const MotionMode* found = RunnerUpOf(estimate);
+  if (found == nullptr) return {};
+  const MotionMode& other = *found;
   std::string words =
       fmt::format("probability {:.2g}, {:.3g} deg and {:.3g} deg (rotation, direction) from the answer",
                   other.weight, RotationDeg(other.cam2_from_cam1, estimate.cam2_from_cam1),
@@ -253,7 +255,7 @@ const char* Meaning(WhyVerdict verdict) {
     case WhyVerdict::kTruthUnknown:
       break;
   }
-  return "nobody knows the true motion";
+  return "the true motion is unknown";
 }
 
 std::vector<int> RightMatches(const TrialData& data) {

@@ -13,6 +13,7 @@ inline constexpr const char* kPartFormat = "rcme part 1";
 inline constexpr const char* kComparisonFormat = "rcme comparison 1";
 inline constexpr const char* kEstimateFormat = "rcme estimate 2";
 inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
+inline constexpr const char* kPaperTableFormat = "rcme paper table 1";
 inline constexpr const char* kRareFormat = "rcme rare 1";
 inline constexpr const char* kReliabilityFormat = "rcme reliability 1";
 inline constexpr const char* kReportFormat = "rcme report 1";
@@ -20,6 +21,7 @@ inline constexpr const char* kSummaryFormat = "rcme summary 1";
 inline constexpr const char* kTransferFormat = "rcme transfer 1";
 inline constexpr const char* kTrialFormat = "rcme trial 2";
 inline constexpr const char* kTuningFormat = "rcme tuning 1";
+inline constexpr const char* kTwinFormat = "rcme twin 1";
 inline constexpr const char* kValidationFormat = "rcme validation 1";
 
 // The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no

@@ -15,7 +15,7 @@ namespace {
 struct PaperTableArguments {
   std::string run, out;
   std::vector<std::string> groups;  // empty: the usual ones
-  std::string clusters = "images";
+  std::string clusters = "images", format = "table";
 };
 
 void RunPaperTable(const PaperTableArguments& arguments) {
@@ -24,14 +24,16 @@ void RunPaperTable(const PaperTableArguments& arguments) {
   const PaperTable table =
       MakePaperTable(ResultStore::OpenForReading(arguments.run), groups.empty() ? UsualSceneGroups() : groups,
                      arguments.clusters == "images" ? TableClusters::kImages : TableClusters::kSequences);
-  const std::string text = PaperTableAsText(table);
+  const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table),
+                    json = PaperTableAsJson(table);
   if (!arguments.out.empty()) {
     MakeResultFolder(arguments.out);
     const std::filesystem::path folder(arguments.out);
     WriteFileWhole((folder / "paper_table.txt").string(), text);
-    WriteFileWhole((folder / "paper_table.csv").string(), PaperTableAsCsv(table));
+    WriteFileWhole((folder / "paper_table.csv").string(), csv);
+    WriteFileWhole((folder / "paper_table.json").string(), json);
   }
-  fmt::print("{}", text);
+  fmt::print("{}", arguments.format == "json" ? json : arguments.format == "csv" ? csv : text);
 }
 
 }  // namespace
@@ -57,7 +59,7 @@ void AddPaperTableCommand(CLI::App& app) {
   auto arguments = std::make_shared<PaperTableArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("-o,--out", arguments->out,
-                      "folder for paper_table.txt and .csv; made if it is missing");
+                      "folder for paper_table.txt, .csv and .json; made if it is missing");
   command
       ->add_option("--group", arguments->groups,
                    "NAME=SCENE,SCENE,..., repeatable: scenes (names, or beginnings with a star) to be "
@@ -68,6 +70,9 @@ void AddPaperTableCommand(CLI::App& app) {
       ->add_option("--clusters", arguments->clusters,
                    "what makes pairs dependent: images that they share, or all of a sequence")
       ->check(OneOf({"images", "sequences"}))
+      ->capture_default_str();
+  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
+      ->check(OneOf({"table", "csv", "json"}))
       ->capture_default_str();
   command->callback([arguments] { RunPaperTable(*arguments); });
 }

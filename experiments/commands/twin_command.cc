@@ -23,6 +23,7 @@ struct TwinArguments {
   double sigma_px = 0.5;
   std::int64_t seed = 1;
   int num_twins = 5;
+  std::string format = "table";
 };
 
 // Where the files of a scene go: STUDY.yaml names one scene alone, a folder holds those of all.
@@ -49,6 +50,7 @@ void WriteTemplates(const TwinSource& source, const std::filesystem::path& folde
     file.image2 = one.image2;
     file.matches = one.exact->problem.matches;
     file.sigma_px = one.exact->problem.noise_scale;  // only their relation counts
+    file.noise_level = one.noise_level;
     file.camera1 = one.exact->problem.camera1;
     file.camera2 = one.exact->problem.camera2;
     file.cam2_from_cam1_true = one.exact->truth.cam2_from_cam1_true;
@@ -106,12 +108,13 @@ void RunTwin(const TwinArguments& arguments) {
     if (!report.simulated.empty())
       WriteStudy(report, "simulated", report.simulated, 400, spec, places.simulated_study);
   }
-  const std::string text = TwinsAsText(reports);
+  const std::string text = TwinsAsText(reports), csv = TwinsAsCsv(reports), json = TwinsAsJson(reports);
   if (!is_one_study) {
     WriteFileWhole((out / "twin.txt").string(), text);
-    WriteFileWhole((out / "twin.csv").string(), TwinsAsCsv(reports));
+    WriteFileWhole((out / "twin.csv").string(), csv);
+    WriteFileWhole((out / "twin.json").string(), json);
   }
-  fmt::print("{}", text);
+  fmt::print("{}", arguments.format == "json" ? json : arguments.format == "csv" ? csv : text);
 }
 
 }  // namespace
@@ -148,7 +151,7 @@ void AddTwinCommand(CLI::App& app) {
       ->add_option(
           "-o,--out", arguments->out,
           "STUDY.yaml (one scene), with STUDY_simulated.yaml and STUDY_pairs/ beside it; or a folder for "
-          "those of every scene, twin.txt and twin.csv")
+          "those of every scene, twin.txt, .csv and .json")
       ->required();
   command->add_option("--scene", arguments->scene, "this scene alone");
   command
@@ -157,6 +160,9 @@ void AddTwinCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--twins", arguments->num_twins, "of either kind for each pair")
       ->transform(WholeNumberIn(1, 100))
+      ->capture_default_str();
+  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
+      ->check(OneOf({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of samples, halves and twins")
       ->transform(WholeNumberIn(0))

@@ -24,6 +24,7 @@ namespace rcme {
 //                                          baseline
 //   # baseline: 1.628 m                    optional: length of the true translation in the data set's unit,
 //                                          which may follow it
+//   # noise_level: 1.2                     optional: a template (rcme twin) gets so many times the noise
 //   # image1: frames/0001.png                optional, with image2: pairs of one scene
 //   # image2: frames/0002.png                that share an image say so
 //   # scene: name                            optional, groups pairs in a study
@@ -44,6 +45,7 @@ struct MatchFile {
   std::string image1, image2;    // empty: not said
   std::vector<double> sigma_px;  // per match; empty: the file has no such column
   double baseline = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
+  double noise_level = 1.0;                                    // of a template
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;

@@ -62,6 +62,7 @@ std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64
     add(is_direction_known ? 1.0 : 0.0);
   }
   for (const double x : file.sigma_px) add(x);
+  if (file.noise_level != 1.0) add(file.noise_level);
   if (file.truth_sd) {
     for (const double x : file.truth_sd->rotation_rad) add(x);
     for (const double x : file.truth_sd->translation) add(x);
@@ -150,6 +151,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     const MatchFolderSettings& settings) {
   struct Group {
     std::vector<TrialData> pairs;
+    std::vector<double> noise_levels;
     std::uint64_t digest = 0xcbf29ce484222325ULL;
     int num_with_truth_sd = 0, num_assumed = 0;
   };
@@ -170,6 +172,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     data.origin = path.filename().string();
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.is_direction_known = weak.count(PairIdOf(path)) == 0;
+    group.noise_levels.push_back(file.noise_level);
     group.num_with_truth_sd += file.truth_sd.has_value();
     if (IsTruthAssumed(file, settings.truth)) {
       file.truth_sd = AssumedSd(file, settings.truth);
@@ -187,8 +190,9 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
     if (group.num_with_truth_sd > 0) identity += fmt::format(", truth_sd in {}", group.num_with_truth_sd);
     if (group.num_assumed > 0) identity += fmt::format(", truth_sd assumed in {}", group.num_assumed);
-    sources.emplace_back(scene,
-                         std::make_shared<MatchFolderData>(scene, std::move(group.pairs), identity, redraw));
+    sources.emplace_back(
+        scene, std::make_shared<MatchFolderData>(scene, std::move(group.pairs), std::move(group.noise_levels),
+                                                 identity, redraw));
   }
   return sources;
 }

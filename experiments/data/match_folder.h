@@ -27,16 +27,18 @@ struct MatchFolderSettings {
 // images: they are not independent.
 class MatchFolderData : public DataSource {
  public:
-  MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::string identity, Redraw redraw)
+  MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::vector<double> noise_levels,
+                  std::string identity, Redraw redraw)
       : scene_(std::move(scene)),
         pairs_(std::move(pairs)),
+        noise_levels_(std::move(noise_levels)),
         identity_(std::move(identity)),
         redraw_(std::move(redraw)) {}
 
   int NumTrials(int trials) const override;
   TrialData Make(const StreamName& trial_name) const override {
-    const TrialData& pair = pairs_[trial_name.trial % pairs_.size()];
-    return redraw_.IsOn() ? redraw_.Draw(pair, trial_name) : pair;
+    const size_t i = trial_name.trial % pairs_.size();
+    return redraw_.IsOn() ? redraw_.Draw(pairs_[i], trial_name, noise_levels_[i]) : pairs_[i];
   }
   std::string Identity() const override { return identity_; }
   std::optional<std::string> SharedScene() const override { return scene_; }
@@ -44,6 +46,7 @@ class MatchFolderData : public DataSource {
  private:
   std::string scene_;
   std::vector<TrialData> pairs_;
+  std::vector<double> noise_levels_;
   std::string identity_;
   Redraw redraw_;
 };

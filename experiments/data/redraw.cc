@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "estimator/geometry/essential_matrix.h"
@@ -16,16 +17,14 @@ namespace {
 // Side of the mosaic (simulator/noise/correlated.cc) whose cells near neighbours share: half of the
 // correlation is left at 1 px.
 constexpr double kNearLengthPx = 2.3;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Root of (m - 2) / chi-square with m degrees of freedom: times a standard normal number it is Student's t,
-// scaled to variance one.
-double StudentScale(int degrees_of_freedom, RandomStream& rng) {
-  double chi_square = 0.0;
-  for (int k = 0; k < degrees_of_freedom; ++k) {
-    const double z = rng.Normal();
-    chi_square += z * z;
-  }
-  return std::sqrt((degrees_of_freedom - 2.0) / chi_square);
+// How often noise is drawn that leaves a right match too far, or a wrong one is exchanged that has come near.
+constexpr int kMostDraws = 100;
+
+Eigen::Matrix3d TrueFundamental(const TrialData& exact) {
+  return FundamentalFromEssential(EssentialFromPose(*exact.truth.cam2_from_cam1_true), exact.problem.camera1,
+                                  exact.problem.camera2);
 }
 
 std::shared_ptr<const NoiseModel> ConfiguredNoise(std::unique_ptr<NoiseModel> law,
@@ -51,10 +50,13 @@ std::vector<Parameter> Parameters(RedrawSettings& s) {
       Parameter::Real("redraw_noise_px", &s.noise_px, {0.0, 1000.0}, "px",
                       "0: matches as the files have them; else those that satisfy the file's true motion get "
                       "noise of this standard deviation (rcme twin writes such files)"),
-      Parameter::Integer(
-          "redraw_student_dof", &s.student_dof, {0, 1000},
-          "degrees of freedom of Student's t, the law of that noise, large for all of a match at "
-          "once; 0: normal"),
+      Parameter::Real(
+          "redraw_student_dof", &s.student_dof, {0.0, 1000.0}, "",
+          "degrees of freedom of Student's t, the law of that noise in 32 steps, large for all of "
+          "a match at once; 0: normal"),
+      Parameter::Real("redraw_within_px", &s.within_px, {0.0, 1000.0}, "px",
+                      "noise that takes a right match farther from its epipolar line is drawn again, and a "
+                      "wrong match that is dealt out nearer is exchanged; 0: never"),
       Parameter::Real("redraw_near_share", &s.near_share, {0.0, 1.0}, "",
                       "share of its variance that key points within 1 or 2 px have in common"),
       Parameter::Real("redraw_far_share", &s.far_share, {0.0, 1.0}, "",
@@ -66,16 +68,12 @@ std::vector<Parameter> Parameters(RedrawSettings& s) {
           "the other matches: as they are, or their second points dealt out again among them")};
 }
 
-Redraw::Redraw(const RedrawSettings& settings) : settings_(settings) {
+Redraw::Redraw(const RedrawSettings& settings) : settings_(settings), scales_(settings.student_dof) {
   if (!IsOn()) return;
   const double own_share = 1.0 - settings.near_share - settings.far_share;
   if (own_share < -1e-9) {
     throw InputError(fmt::format("redraw_near_share: {} and redraw_far_share: {} are together more than 1",
                                  settings.near_share, settings.far_share));
-  }
-  if (settings.student_dof == 1 || settings.student_dof == 2) {
-    throw InputError(fmt::format("redraw_student_dof: {} has no variance; give 0 (normal) or 3 and more",
-                                 settings.student_dof));
   }
   const auto sigma_of = [&](double share) { return settings.noise_px * std::sqrt(share); };
   if (settings.near_share > 0.0) laws_.push_back(SharedNoise(sigma_of(settings.near_share), kNearLengthPx));
@@ -92,55 +90,77 @@ void Redraw::Label(TrialData* exact) {
                     exact->origin));
   }
   const MotionProblem& problem = exact->problem;
-  const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(*exact->truth.cam2_from_cam1_true),
-                                                     problem.camera1, problem.camera2);
+  const Eigen::Matrix3d F = TrueFundamental(*exact);
   exact->truth.is_inlier_true.clear();
   for (const Correspondence& match : problem.matches)
     exact->truth.is_inlier_true.push_back(SquaredSampsonDistance(F, match) < kExactPx * kExactPx);
 }
 
-TrialData Redraw::Draw(const TrialData& exact, const StreamName& trial_name) const {
-  TrialData drawn = exact;
-  std::vector<Correspondence>& matches = drawn.problem.matches;
-  const std::vector<bool>& is_right = drawn.truth.is_inlier_true;
-  std::vector<Correspondence> right;
-  std::vector<Eigen::Vector2d> second_points;  // of the wrong ones
-  std::vector<double> right_scale;             // of their noise, where the pair states it
-  for (size_t i = 0; i < matches.size(); ++i) {
-    if (!is_right[i]) {
-      second_points.push_back(matches[i].x2_px);
-      continue;
+// Each law looks at where the exact points are, not at what another law has made of them. A scale that takes
+// a match too far is drawn again; if none does not, the match stays where it is.
+std::vector<Correspondence> Redraw::WithNoise(const TrialData& exact, const std::vector<size_t>& right,
+                                              double noise_level, RandomStream& rng) const {
+  std::vector<Correspondence> places, noisy;
+  for (const size_t i : right) places.push_back(exact.problem.matches[i]);
+  std::vector<Eigen::Vector4d> noise(right.size(), Eigen::Vector4d::Zero());
+  for (const auto& law : laws_) {
+    std::vector<Correspondence> moved = places;
+    law->AddTo(moved, rng);
+    for (size_t k = 0; k < right.size(); ++k) {
+      noise[k].head<2>() += moved[k].x1_px - places[k].x1_px;
+      noise[k].tail<2>() += moved[k].x2_px - places[k].x2_px;
     }
-    right.push_back(matches[i]);
-    if (!exact.problem.noise_scale.empty()) right_scale.push_back(exact.problem.noise_scale[i]);
   }
+  const Eigen::Matrix3d F = TrueFundamental(exact);
+  const double farthest = settings_.within_px > 0.0 ? noise_level * settings_.within_px : kInfinity;
+  for (size_t k = 0; k < right.size(); ++k) {
+    const double own =
+        noise_level * (exact.problem.noise_scale.empty() ? 1.0 : exact.problem.noise_scale[right[k]]);
+    Correspondence drawn = places[k];
+    for (int draw = 0; draw < kMostDraws; ++draw) {
+      const double scale = own * scales_.Draw(rng);
+      drawn.x1_px = places[k].x1_px + scale * noise[k].head<2>();
+      drawn.x2_px = places[k].x2_px + scale * noise[k].tail<2>();
+      if (SquaredSampsonDistance(F, drawn) <= farthest * farthest) break;
+      drawn = places[k];
+    }
+    noisy.push_back(drawn);
+  }
+  return noisy;
+}
+
+void Redraw::DealOutAgain(const TrialData& exact, const std::vector<size_t>& wrong, double noise_level,
+                          RandomStream& rng, std::vector<Correspondence>* matches) const {
+  std::vector<Eigen::Vector2d> second_points;
+  for (const size_t i : wrong) second_points.push_back((*matches)[i].x2_px);
+  rng.Shuffle(std::span(second_points));
+  for (size_t k = 0; k < wrong.size(); ++k) (*matches)[wrong[k]].x2_px = second_points[k];
+  if (!(settings_.within_px > 0.0)) return;
+  const Eigen::Matrix3d F = TrueFundamental(exact);
+  const double near_px = noise_level * settings_.within_px;
+  const auto is_near = [&](size_t i) {
+    return SquaredSampsonDistance(F, (*matches)[i]) <= near_px * near_px;
+  };
+  for (const size_t i : wrong) {
+    for (int draw = 0; draw < kMostDraws && is_near(i); ++draw) {
+      const size_t other = wrong[rng.IntegerBelow(static_cast<std::uint32_t>(wrong.size()))];
+      std::swap((*matches)[i].x2_px, (*matches)[other].x2_px);
+      if (is_near(other)) std::swap((*matches)[i].x2_px, (*matches)[other].x2_px);
+    }
+  }
+}
+
+TrialData Redraw::Draw(const TrialData& exact, const StreamName& trial_name, double noise_level) const {
+  TrialData drawn = exact;
+  std::vector<size_t> right, wrong;
+  for (size_t i = 0; i < exact.problem.matches.size(); ++i)
+    (exact.truth.is_inlier_true[i] ? right : wrong).push_back(i);
   RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise),
                wrong_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
-  // Each law looks at where the exact points are, not at what another law has made of them.
-  std::vector<Correspondence> noisy = right;
-  for (const auto& law : laws_) {
-    std::vector<Correspondence> moved = right;
-    law->AddTo(moved, noise_rng);
-    for (size_t k = 0; k < right.size(); ++k) {
-      noisy[k].x1_px += moved[k].x1_px - right[k].x1_px;
-      noisy[k].x2_px += moved[k].x2_px - right[k].x2_px;
-    }
-  }
-  for (size_t k = 0; k < right.size(); ++k) {
-    double scale = right_scale.empty() ? 1.0 : right_scale[k];
-    if (settings_.student_dof > 0) scale *= StudentScale(settings_.student_dof, noise_rng);
-    if (scale == 1.0) continue;
-    noisy[k].x1_px = right[k].x1_px + scale * (noisy[k].x1_px - right[k].x1_px);
-    noisy[k].x2_px = right[k].x2_px + scale * (noisy[k].x2_px - right[k].x2_px);
-  }
-  if (settings_.wrong == WrongMatches::kShuffled) wrong_rng.Shuffle(std::span(second_points));
-  size_t num_right = 0, num_wrong = 0;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    if (is_right[i])
-      matches[i] = noisy[num_right++];
-    else
-      matches[i].x2_px = second_points[num_wrong++];
-  }
+  const std::vector<Correspondence> noisy = WithNoise(exact, right, noise_level, noise_rng);
+  for (size_t k = 0; k < right.size(); ++k) drawn.problem.matches[right[k]] = noisy[k];
+  if (settings_.wrong == WrongMatches::kShuffled)
+    DealOutAgain(exact, wrong, noise_level, wrong_rng, &drawn.problem.matches);
   return drawn;
 }
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
+#include "experiments/base/json_output.h"
 #include "experiments/paper_table/printed_table.h"
 
 namespace rcme {
@@ -71,6 +74,10 @@ std::string PrintedAsText() {
   return text;
 }
 
+std::string QuantityOf(const PrintedRate& rate) {
+  return rate.quantity == "failure" ? "kappa_failure" : rate.quantity;
+}
+
 }  // namespace
 
 std::string PaperTableAsText(const PaperTable& table) {
@@ -103,13 +110,49 @@ std::string PaperTableAsCsv(const PaperTable& table) {
     }
   }
   for (const PrintedRate& rate : PrintedRates()) {
-    text += fmt::format("paper,{},{},{},rate,{},{},{},{},{},{},\n", rate.row, rate.method,
-                        rate.quantity == "failure" ? "kappa_failure" : rate.quantity,
+    text += fmt::format("paper,{},{},{},rate,{},{},{},{},{},{},\n", rate.row, rate.method, QuantityOf(rate),
                         CsvNumber(static_cast<double>(rate.count) / static_cast<double>(rate.n)),
                         CsvNumber(rate.interval.lower), CsvNumber(rate.interval.upper), rate.n, rate.count,
                         rate.n);
   }
   return text;
+}
+
+std::string PaperTableAsJson(const PaperTable& table) {
+  nlohmann::ordered_json json = {{"study", table.study},
+                                 {"max_rotation_error_deg", table.bounds.max_rotation_error_deg},
+                                 {"max_direction_error_deg", table.bounds.max_direction_error_deg},
+                                 {"rates", nlohmann::ordered_json::array()},
+                                 {"printed", nlohmann::ordered_json::array()}};
+  for (const TableRow& row : table.rows) {
+    for (size_t e = 0; e < table.estimators.size(); ++e) {
+      for (const CellQuantity& quantity : kQuantities) {
+        const SharedMemberRate& rate = row.cells[e].*quantity.rate;
+        if (rate.n == 0) continue;
+        json["rates"].push_back(
+            {{"scene", row.name},
+             {"is_group", row.is_group},
+             {"estimator", table.estimators[e]},
+             {"quantity", quantity.name},
+             {"value", JsonNumber(rate.rate)},
+             {"interval", {JsonNumber(rate.interval.lower), JsonNumber(rate.interval.upper)}},
+             {"n", rate.n},
+             {"count", rate.num_events},
+             {"apart", rate.num_apart},
+             {"design_effect", JsonNumber(rate.design_effect)}});
+      }
+    }
+  }
+  for (const PrintedRate& rate : PrintedRates()) {
+    json["printed"].push_back({{"scene", rate.row},
+                               {"method", rate.method},
+                               {"quantity", QuantityOf(rate)},
+                               {"value", static_cast<double>(rate.count) / static_cast<double>(rate.n)},
+                               {"interval", {rate.interval.lower, rate.interval.upper}},
+                               {"n", rate.n},
+                               {"count", rate.count}});
+  }
+  return JsonText(kPaperTableFormat, json);
 }
 
 }  // namespace rcme

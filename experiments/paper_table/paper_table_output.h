@@ -10,5 +10,7 @@ namespace rcme {
 std::string PaperTableAsText(const PaperTable& table);
 // A row per scene or group, estimator and quantity; the printed rates follow with `source` paper.
 std::string PaperTableAsCsv(const PaperTable& table);
+// The same rows as objects.
+std::string PaperTableAsJson(const PaperTable& table);
 
 }  // namespace rcme

@@ -181,19 +181,19 @@ MissingPieces MissingIn(const PiecePlan& plan, const MergedParts& merged, size_t
 
 std::string CostsInWords(const PiecePlan& plan, const MergedParts& merged) {
   std::vector<double> shards(merged.num_shards);
-  double sum = 0.0, dearest = 0.0;
+  double sum = 0.0, slowest = 0.0;
   PiecePlace where;
   for (const auto& [place, result] : merged.results) {
     sum += result.seconds;
     shards[ShardOfPiece(place, merged.num_shards) - 1] += result.seconds;
-    if (result.seconds > dearest) dearest = result.seconds, where = place;
+    if (result.seconds > slowest) slowest = result.seconds, where = place;
   }
   if (sum <= 0.0) return "the pieces took no time";
   const double mean = sum / static_cast<double>(shards.size());
   return fmt::format(
-      "processor time {:.4g} s; the dearest of {} shards {:.2f} times the mean, the dearest {} {:.2f} times "
+      "processor time {:.4g} s; the slowest of {} shards {:.2f} times the mean, the slowest {} {:.2f} times "
       "({})",
-      sum, shards.size(), std::ranges::max(shards) / mean, plan.piece_name, dearest / mean,
+      sum, shards.size(), std::ranges::max(shards) / mean, plan.piece_name, slowest / mean,
       InWords(plan, where));
 }
 

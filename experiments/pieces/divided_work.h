@@ -64,7 +64,7 @@ struct MissingPieces {
 MissingPieces MissingAmong(const std::vector<PiecePlace>& places, const MergedParts& merged);
 MissingPieces MissingIn(const PiecePlan& plan, const MergedParts& merged, size_t first, size_t end);
 
-// What the pieces took, for people: in all, by the dearest shard beside the mean, and by the dearest piece,
+// What the pieces took, for people: in all, by the slowest shard beside the mean, and by the slowest piece,
 // which no shard can take less than.
 std::string CostsInWords(const PiecePlan& plan, const MergedParts& merged);
 

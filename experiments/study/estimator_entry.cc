@@ -35,7 +35,7 @@ void ReadOutside(const Place& place, const YAML::Node& value, const std::string&
 }
 
 Parameter BudgetParameter(double* budget_ms) {
-  return Parameter::Real("budget_ms", budget_ms, {1e-6, 1e9}, "ms",
+  return Parameter::Real("budget_ms", budget_ms, {kLeastBudgetMs, kMostBudgetMs}, "ms",
                          "time of a call that the effort was chosen for");
 }
 

@@ -21,7 +21,6 @@ namespace rcme {
 namespace {
 
 constexpr int kMaxTrials = 2'000'000'000;
-constexpr size_t kMaxEstimators = 100;
 
 const FileKind& StudyFileKind() {
   static const FileKind kind = {"study file", "a study"};

@@ -7,6 +7,10 @@
 
 namespace rcme {
 
+// Limits that the readers share with what is said of the keys.
+inline constexpr size_t kMaxEstimators = 100;  // of a study
+inline constexpr double kLeastBudgetMs = 1e-6, kMostBudgetMs = 1e9;
+
 // A key of one block of the file. The blocks: "study" (the top), "ademp", "estimators" (what an
 // entry of the list may be beside an estimator), "estimator" (such an entry, or an estimator file),
 // "failure", "tune". The keys of `data` and `factors` are those of the data

@@ -10,16 +10,23 @@
 
 namespace rcme {
 
-void PatternSum::Add(const MotionProblem& problem, const MotionEstimate& estimate) {
-  if (estimate.status != MotionStatus::kOk) return;
+std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEstimate& estimate) {
   const double sigma_px = NoiseOf(problem, estimate);
   const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
-  sigmas_.push_back(sigma_px);
-  for (const int index : estimate.inliers) {
-    const auto i = static_cast<size_t>(index);
-    sizes_.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[i])) /
-                     (sigma_px * NoiseScaleAt(problem, i)));
+  std::vector<double> sizes;
+  for (const int inlier : estimate.inliers) {
+    const auto i = static_cast<size_t>(inlier);
+    sizes.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[i])) /
+                    (sigma_px * NoiseScaleAt(problem, i)));
   }
+  return sizes;
+}
+
+void PatternSum::Add(const MotionProblem& problem, const MotionEstimate& estimate) {
+  if (estimate.status != MotionStatus::kOk || estimate.inliers.empty()) return;
+  sigmas_.push_back(NoiseOf(problem, estimate));
+  const std::vector<double> sizes = ResidualSizes(problem, estimate);
+  sizes_.insert(sizes_.end(), sizes.begin(), sizes.end());
   products_ += ProductsOf(problem, estimate);
 }
 

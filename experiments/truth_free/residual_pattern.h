@@ -13,6 +13,10 @@ struct ResidualPattern {
   ResidualProducts products;
 };
 
+// Of the inliers: Sampson distance over the noise of the answer (NoiseOf) and over the match's own noise
+// scale.
+std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEstimate& estimate);
+
 // Of the answers to some pairs, one after the other; refusals are skipped.
 class PatternSum {
  public:

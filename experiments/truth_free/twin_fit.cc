@@ -129,6 +129,7 @@ TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std:
                     source.scene, source.pairs.size(), kLeastRight));
   }
   if (!(fit.noise.noise_px > 0.0)) fit.noise.noise_px = source.pairs.front().pair.problem.sigma_px;
+  fit.simulated_noise = fit.noise;
   layout.Give(&fit);
   return fit;
 }

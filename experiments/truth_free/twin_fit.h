@@ -9,10 +9,9 @@ namespace rcme {
 // What is measured on a scene. Medians over pairs, where nothing else is said.
 struct TwinFit {
   int num_templates = 0;
-  // Noise, fitted such that redrawn templates give the estimator the residuals that the pairs give it: their
-  // size, the ratio of their 95 % point to their median, their correlation up to 1 px and beyond.
-  RedrawSettings noise;
-  Camera camera1, camera2;  // of the first pair
+  RedrawSettings noise;            // of the semi-real twin (noise_fit.h)
+  RedrawSettings simulated_noise;  // of the simulated one: size, tails and correlation of neighbours
+  Camera camera1, camera2;         // of the first pair
   int num_matches = 0;
   double wrong_share = 0.0;           // mean over pairs
   double wrong_agreeing_share = 0.0;  // of the wrong: another one within 30 px moves alike, to 10 px

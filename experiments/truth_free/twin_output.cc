@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "experiments/base/columns.h"
 #include "experiments/base/field_text.h"
+#include "experiments/base/json_output.h"
 #include "experiments/truth_free/twin_quantities.h"
 
 namespace rcme {
@@ -13,9 +16,12 @@ std::string NumberText(const TwinComparison& c, double x) {
   return c.is_rate ? fmt::format("{:.1f} %", 100.0 * x) : fmt::format("{:.3g}", x);
 }
 
+std::string TailsInWords(const RedrawSettings& noise) {
+  return noise.student_dof == 0.0 ? "normal" : fmt::format("Student's t of {:g}", noise.student_dof);
+}
+
 std::string NoiseInWords(const RedrawSettings& noise) {
-  std::string text = fmt::format("{:.3g} px", noise.noise_px);
-  text += noise.student_dof == 0 ? ", normal" : fmt::format(", Student's t of {}", noise.student_dof);
+  std::string text = fmt::format("{:.3g} px, {}", noise.noise_px, TailsInWords(noise));
   if (noise.near_share >= 0.005)
     text += fmt::format(", {:.0f} % common within 1 px", 100.0 * noise.near_share);
   if (noise.far_share >= 0.005)
@@ -25,14 +31,20 @@ std::string NoiseInWords(const RedrawSettings& noise) {
 
 std::string FitInWords(const TwinReport& report) {
   const TwinFit& fit = report.fit;
-  return fmt::format(
-      "{}: {} pairs, {} with a geometry to resemble\n  noise {}; {} matches, {:.0f} % wrong ({:.0f} % of "
-      "those move "
-      "as a neighbour)\n  rotation {:.2g} deg, parallax {:.2g} deg, |t_z| {:.2f}, depths {:.2g} to {:.2g} "
-      "baselines, one plane explains {:.0f} %, Clark-Evans {:.2f}\n",
-      report.scene, report.num_pairs, fit.num_templates, NoiseInWords(fit.noise), fit.num_matches,
-      100.0 * fit.wrong_share, 100.0 * fit.wrong_agreeing_share, fit.rotation_deg, fit.parallax_deg,
-      fit.forwardness, fit.nearest, fit.farthest, 100.0 * fit.homography_share, fit.clark_evans);
+  std::string text = fmt::format("{}: {} pairs, {} with a geometry to resemble\n  noise {}", report.scene,
+                                 report.num_pairs, fit.num_templates, NoiseInWords(fit.noise));
+  if (!report.simulated.empty()) {
+    text += fmt::format("\n  simulated with {:.3g} px and {}", fit.simulated_noise.noise_px,
+                        TailsInWords(fit.simulated_noise));
+  }
+  return text +
+         fmt::format(
+             "\n  {} matches, {:.0f} % wrong ({:.0f} % of those move as a neighbour)\n"
+             "  rotation {:.2g} deg, parallax {:.2g} deg, |t_z| {:.2f}, depths {:.2g} to {:.2g} baselines, "
+             "one plane explains {:.0f} %, Clark-Evans {:.2f}\n",
+             fit.num_matches, 100.0 * fit.wrong_share, 100.0 * fit.wrong_agreeing_share, fit.rotation_deg,
+             fit.parallax_deg, fit.forwardness, fit.nearest, fit.farthest, 100.0 * fit.homography_share,
+             fit.clark_evans);
 }
 
 const TwinComparison* Find(const TwinReport& report, const std::string& quantity, const std::string& twin) {
@@ -40,6 +52,19 @@ const TwinComparison* Find(const TwinReport& report, const std::string& quantity
     if (c.quantity == quantity && c.twin == twin) return &c;
   }
   return nullptr;
+}
+
+nlohmann::ordered_json JsonOf(const Settings& settings) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : settings) json[key] = value;
+  return json;
+}
+
+// "3 of 4 predicted, 4 of 4 fitted".
+std::string WithinText(const TwinReport& report, const std::string& twin) {
+  return fmt::format("{} of {} predicted, {} of {} fitted", report.NumWithin(twin, false),
+                     report.NumCompared(twin, false), report.NumWithin(twin, true),
+                     report.NumCompared(twin, true));
 }
 
 std::string ReportAsText(const TwinReport& report) {
@@ -55,22 +80,23 @@ std::string ReportAsText(const TwinReport& report) {
         continue;
       }
       row[1] = fmt::format("{}", c->n);
+      const std::string kind = c->is_fitted ? "fitted" : "predicted";
       row.insert(row.end(), {NumberText(*c, c->predicted),
                              fmt::format("{} [{}, {}]", NumberText(*c, c->observed),
                                          NumberText(*c, c->joint.lower), NumberText(*c, c->joint.upper)),
-                             c->IsWithin() ? "within" : "NOT"});
-      if (!c->IsWithin() && c->twin == "semi_real")
-        missed += fmt::format("  not explained: {}: {}\n", text.words, text.missing);
+                             kind + (c->IsWithin() ? "" : ", NOT WITHIN")});
+      if (!c->IsWithin() && c->twin == "semi_real") {
+        missed += fmt::format("  not {}: {}: {}\n", c->is_fitted ? "met by the fit" : "explained", text.words,
+                              text.missing);
+      }
     }
     if (row[1].empty()) continue;
     rows.push_back(row);
   }
   std::string text = FitInWords(report) + FormatColumns(rows);
-  text += fmt::format("  within: semi-real {} of {}", report.NumWithin("semi_real"),
-                      report.NumCompared("semi_real"));
+  text += "  within: semi-real " + WithinText(report, "semi_real");
   text += report.simulated.empty() ? fmt::format("; no simulated scene: {}\n", report.why_not_simulated)
-                                   : fmt::format(", simulated {} of {}\n", report.NumWithin("simulated"),
-                                                 report.NumCompared("simulated"));
+                                   : "; simulated " + WithinText(report, "simulated") + "\n";
   return text + missed + "\n";
 }
 
@@ -85,6 +111,7 @@ std::string TwinsAsText(const std::vector<TwinReport>& reports) {
       "wrong\nmatches dealt out again; simulated: a scene of the simulator fitted to the numbers above. "
       "Observed "
       "intervals hold for all\nquantities of a scene together and respect images that pairs share. "
+      "fitted: the twins were made to agree in it, which is\nno evidence; predicted: they were not. "
       "Quantities:\n";
   for (const QuantityText& quantity : kQuantityTexts)
     text += fmt::format("  {:<18}{}\n", quantity.name, quantity.words);
@@ -92,16 +119,42 @@ std::string TwinsAsText(const std::vector<TwinReport>& reports) {
 }
 
 std::string TwinsAsCsv(const std::vector<TwinReport>& reports) {
-  std::string text = "scene,pairs,twin,quantity,kind,observed,lower,upper,n,predicted,within\n";
+  std::string text = "scene,pairs,twin,quantity,kind,fitted,observed,lower,upper,n,predicted,within\n";
   for (const TwinReport& report : reports) {
     for (const TwinComparison& c : report.comparisons) {
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", CsvField(report.scene), report.num_pairs,
-                          c.twin, c.quantity, c.is_rate ? "rate" : "mean", CsvNumber(c.observed),
-                          CsvFinite(c.joint.lower), CsvFinite(c.joint.upper), c.n, CsvNumber(c.predicted),
-                          c.IsWithin() ? "yes" : "no");
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", CsvField(report.scene), report.num_pairs,
+                          c.twin, c.quantity, c.is_rate ? "rate" : "mean", c.is_fitted ? "yes" : "no",
+                          CsvNumber(c.observed), CsvFinite(c.joint.lower), CsvFinite(c.joint.upper), c.n,
+                          CsvNumber(c.predicted), c.IsWithin() ? "yes" : "no");
     }
   }
   return text;
+}
+
+std::string TwinsAsJson(const std::vector<TwinReport>& reports) {
+  nlohmann::ordered_json json = {{"scenes", nlohmann::ordered_json::array()}};
+  for (const TwinReport& report : reports) {
+    nlohmann::ordered_json scene = {{"name", report.scene},
+                                    {"pairs", report.num_pairs},
+                                    {"templates", report.fit.num_templates},
+                                    {"semi_real", JsonOf(report.semi_real)},
+                                    {"simulated", JsonOf(report.simulated)},
+                                    {"why_not_simulated", report.why_not_simulated},
+                                    {"comparisons", nlohmann::ordered_json::array()}};
+    for (const TwinComparison& c : report.comparisons) {
+      scene["comparisons"].push_back({{"twin", c.twin},
+                                      {"quantity", c.quantity},
+                                      {"kind", c.is_rate ? "rate" : "mean"},
+                                      {"fitted", c.is_fitted},
+                                      {"n", c.n},
+                                      {"observed", JsonNumber(c.observed)},
+                                      {"interval", {JsonNumber(c.joint.lower), JsonNumber(c.joint.upper)}},
+                                      {"predicted", JsonNumber(c.predicted)},
+                                      {"within", c.IsWithin()}});
+    }
+    json["scenes"].push_back(std::move(scene));
+  }
+  return JsonText(kTwinFormat, json);
 }
 
 }  // namespace rcme

@@ -7,8 +7,9 @@
 
 namespace rcme {
 
-// Tables for people; a row per scene, twin and quantity.
+// Tables for people; a row per scene, twin and quantity; the same for programs, with the data blocks.
 std::string TwinsAsText(const std::vector<TwinReport>& reports);
 std::string TwinsAsCsv(const std::vector<TwinReport>& reports);
+std::string TwinsAsJson(const std::vector<TwinReport>& reports);
 
 }  // namespace rcme

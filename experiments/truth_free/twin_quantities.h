@@ -29,6 +29,7 @@ enum Quantity : size_t {
 struct QuantityText {
   const char* name;
   bool is_rate;
+  bool is_fitted;  // a twin is made to agree in it: no evidence where it does
   const char* words;
   const char* missing;  // what simulation may lack where it is not met
 };

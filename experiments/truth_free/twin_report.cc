@@ -8,6 +8,7 @@
 
 #include "experiments/base/stop_request.h"
 #include "experiments/data/make_data.h"
+#include "experiments/truth_free/noise_fit.h"
 #include "experiments/truth_free/twin.h"
 #include "experiments/truth_free/twin_quantities.h"
 #include "experiments/truth_free/twin_settings.h"
@@ -70,8 +71,13 @@ std::optional<TwinComparison> Compared(const std::vector<ComparedPair>& pairs, s
                                        const std::string& twin, double confidence) {
   const QuantityText& text = kQuantityTexts[quantity];
   const bool is_paired = twin == "semi_real" && !text.is_rate;
-  TwinComparison compared{text.name, twin, text.is_rate, 0, kNaN, PredictionOf(pairs, quantity, is_paired),
-                          {}};
+  TwinComparison compared;
+  compared.quantity = text.name;
+  compared.twin = twin;
+  compared.is_rate = text.is_rate;
+  // Points of a simulated scene are not found twice.
+  compared.is_fitted = text.is_fitted && !(twin == "simulated" && quantity == kNearCorrelation);
+  compared.predicted = PredictionOf(pairs, quantity, is_paired);
   if (std::isnan(compared.predicted)) return std::nullopt;
   if (text.is_rate) {
     const SharedMemberRate rate = MeasureSharedMemberRate(EventsOf(pairs, quantity), confidence);
@@ -136,13 +142,15 @@ std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstim
 
 }  // namespace
 
-int TwinReport::NumCompared(const std::string& twin) const {
-  return static_cast<int>(std::ranges::count(comparisons, twin, &TwinComparison::twin));
+int TwinReport::NumCompared(const std::string& twin, bool fitted) const {
+  return static_cast<int>(std::ranges::count_if(
+      comparisons, [&](const TwinComparison& c) { return c.twin == twin && c.is_fitted == fitted; }));
 }
 
-int TwinReport::NumWithin(const std::string& twin) const {
-  return static_cast<int>(std::ranges::count_if(
-      comparisons, [&](const TwinComparison& c) { return c.twin == twin && c.IsWithin(); }));
+int TwinReport::NumWithin(const std::string& twin, bool fitted) const {
+  return static_cast<int>(std::ranges::count_if(comparisons, [&](const TwinComparison& c) {
+    return c.twin == twin && c.is_fitted == fitted && c.IsWithin();
+  }));
 }
 
 TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estimator,
@@ -161,13 +169,17 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
       if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
       const StreamName name{seed, StreamKeyOf(source.pairs[i].pair.origin),
                             static_cast<std::uint32_t>(k) * kCallsOfOne, 0};
-      pairs[i].twins =
-          Joined(pairs[i].twins, TwinValues(redraw.Draw(*source.pairs[i].exact, name), estimator, name));
+      pairs[i].twins = Joined(
+          pairs[i].twins, TwinValues(redraw.Draw(*source.pairs[i].exact, name, source.pairs[i].noise_level),
+                                     estimator, name));
     }
   }
   AddComparisons(pairs, "semi_real", &report);
   try {
-    report.simulated = SimulatedTwinData(report.fit, assumed_sigma_px);
+    const double clustered_share = ClusteredShareOf(report.fit);
+    report.fit.simulated_noise =
+        FitSimulatedNoise(source, report.fit, clustered_share, estimator, assumed_sigma_px, seed);
+    report.simulated = SimulatedTwinData(report.fit, clustered_share, assumed_sigma_px);
     const std::shared_ptr<const SimulatedData> data = MakeSimulatedData(report.simulated);
     for (size_t i = 0; i < pairs.size(); ++i) {
       pairs[i].twins = Values();

@@ -15,7 +15,8 @@ struct TwinComparison {
   std::string quantity;
   std::string twin;  // semi_real, simulated
   bool is_rate = false;
-  std::int64_t n = 0;  // observed values
+  bool is_fitted = false;  // the twin was made to agree in it; else predicted
+  std::int64_t n = 0;      // observed values
   double observed = 0.0, predicted = 0.0;
   // Of the observed value, at 1 - 0.05 / (quantities of the scene and twin), so that all hold together with
   // 0.95 where simulation is right. Pairs with a common image are not independent (stats/shared_members.h);
@@ -32,9 +33,10 @@ struct TwinReport {
   std::string why_not_simulated;
   std::vector<TwinComparison> comparisons;
 
-  // Of one twin: how many quantities are compared, and how many lie within.
-  int NumCompared(const std::string& twin) const;
-  int NumWithin(const std::string& twin) const;
+  // Of one twin and the quantities that are fitted, or that are predicted: how many are compared, and how
+  // many lie within.
+  int NumCompared(const std::string& twin, bool fitted) const;
+  int NumWithin(const std::string& twin, bool fitted) const;
 };
 
 // `folder`: where the templates of the scene will be. `num_twins`: of each pair, of either kind. Pure in the

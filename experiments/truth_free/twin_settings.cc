@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -48,20 +49,11 @@ void SetMotion(const TwinFit& fit, Settings* data) {
   Set(data, "parallax_deg", fit.parallax_deg);
 }
 
-void SetNoise(const TwinFit& fit, double assumed_sigma_px, Settings* data) {
-  const RedrawSettings& noise = fit.noise;
-  if (noise.far_share >= 0.05) {
-    Set(data, "noise", "correlated");
-    Set(data, "noise_correlation", noise.far_share);
-    Set(data, "noise_correlation_length_px", noise.far_length_px);
-  } else if (noise.near_share >= 0.05 && fit.twice_share >= 0.05) {
-    Set(data, "noise", "duplicated");
-    Set(data, "duplicated_share", 0.5 * fit.twice_share);  // of two alike one is the first
-    Set(data, "duplicated_correlation", noise.near_share);
-  } else if (noise.student_dof > 0) {
-    Set(data, "noise", "student_t");
-    Set(data, "student_dof", fmt::format("{}", noise.student_dof));
-  }
+void SetNoise(const RedrawSettings& noise, double assumed_sigma_px, Settings* data) {
+  Set(data, "noise", "correlated");
+  Set(data, "noise_correlation", noise.far_share);
+  Set(data, "noise_correlation_length_px", noise.far_length_px);
+  Set(data, "noise_student_dof", noise.student_dof);
   Set(data, "sigma_px", noise.noise_px);
   Set(data, "assumed_sigma_px", assumed_sigma_px);
 }
@@ -81,19 +73,6 @@ void SetScene(const TwinFit& fit, double clustered_share, Settings* data) {
     Set(data, "cluster_spread_px", 0.03 * fit.camera1.width);
     Set(data, "clustered_share", clustered_share);
   }
-}
-
-Settings SimulatedWith(const TwinFit& fit, double clustered_share, double assumed_sigma_px) {
-  Settings data;
-  SetScene(fit, clustered_share, &data);
-  SetCameras(fit, &data);
-  SetMotion(fit, &data);
-  SetNoise(fit, assumed_sigma_px, &data);
-  Set(&data, "num_matches", fmt::format("{}", fit.num_matches));
-  Set(&data, "outlier_ratio", fit.wrong_share);
-  Set(&data, "outliers", fit.wrong_agreeing_share > 0.3 ? "clustered_both" : "uniform");
-  Set(&data, "severity", "skipped");
-  return data;
 }
 
 double ClarkEvansOf(const Settings& settings) {
@@ -119,18 +98,30 @@ Settings SemiRealData(const TwinFit& fit, const std::string& folder, double assu
   return data;
 }
 
-Settings SimulatedTwinData(const TwinFit& fit, double assumed_sigma_px) {
-  Settings best = SimulatedWith(fit, 0.0, assumed_sigma_px);
-  double least = std::abs(ClarkEvansOf(best) - fit.clark_evans);
-  if (best.front().second != "image_clusters") return best;
-  for (const double share : {0.3, 0.6, 0.9}) {
-    const Settings data = SimulatedWith(fit, share, assumed_sigma_px);
+double ClusteredShareOf(const TwinFit& fit) {
+  double least = std::numeric_limits<double>::infinity(), best = 0.0;
+  for (const double share : {0.0, 0.3, 0.6, 0.9}) {
+    const Settings data = SimulatedTwinData(fit, share, 1.0);
+    if (data.front().second != "image_clusters") return 0.0;
     const double difference = std::abs(ClarkEvansOf(data) - fit.clark_evans);
     if (difference >= least) continue;
     least = difference;
-    best = data;
+    best = share;
   }
   return best;
+}
+
+Settings SimulatedTwinData(const TwinFit& fit, double clustered_share, double assumed_sigma_px) {
+  Settings data;
+  SetScene(fit, clustered_share, &data);
+  SetCameras(fit, &data);
+  SetMotion(fit, &data);
+  SetNoise(fit.simulated_noise, assumed_sigma_px, &data);
+  Set(&data, "num_matches", fmt::format("{}", fit.num_matches));
+  Set(&data, "outlier_ratio", fit.wrong_share);
+  Set(&data, "outliers", fit.wrong_agreeing_share > 0.3 ? "clustered_both" : "uniform");
+  Set(&data, "severity", "skipped");
+  return data;
 }
 
 }  // namespace rcme

@@ -8,10 +8,13 @@
 
 namespace rcme {
 
-// Data blocks of studies: the real layout, noise and wrong matches drawn anew (`folder`: that of the
-// templates); and a simulated scene, whose keys are fitted to the same numbers. The second throws InputError
-// where no scene of its kind has the parallax that was measured.
+// The real layout, noise and wrong matches drawn anew; `folder`: that of the templates.
 Settings SemiRealData(const TwinFit& fit, const std::string& folder, double assumed_sigma_px);
-Settings SimulatedTwinData(const TwinFit& fit, double assumed_sigma_px);
+
+// A simulated scene whose keys are fitted to the same numbers, with that share of its points in clusters.
+Settings SimulatedTwinData(const TwinFit& fit, double clustered_share, double assumed_sigma_px);
+// The share of points in clusters that resembles the pairs. Throws InputError where no scene of its kind has
+// the parallax that was measured.
+double ClusteredShareOf(const TwinFit& fit);
 
 }  // namespace rcme

@@ -1,5 +1,6 @@
 #include "experiments/truth_free/twin_source.h"
 
+#include <algorithm>
 #include <tuple>
 
 #include "estimator/geometry/sampson.h"
@@ -9,6 +10,7 @@
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "experiments/truth_free/twin.h"
+#include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
@@ -46,7 +48,24 @@ std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& es
   return exact;
 }
 
+// Of templates whose reference is the answer, in units of their median; the others have 1.
+void SetNoiseLevels(TwinSource* source) {
+  std::vector<double> sigmas;
+  for (const AnsweredTrial& one : source->pairs) {
+    if (one.HasAnsweredTemplate()) sigmas.push_back(NoiseOf(one.pair.problem, one.estimate));
+  }
+  const double median = MedianOf(std::move(sigmas));
+  for (AnsweredTrial& one : source->pairs) {
+    if (one.HasAnsweredTemplate() && median > 0.0)
+      one.noise_level = std::max(NoiseOf(one.pair.problem, one.estimate) / median, 1e-3);
+  }
+}
+
 }  // namespace
+
+bool AnsweredTrial::HasAnsweredTemplate() const {
+  return exact && estimate.status == MotionStatus::kOk && !IsWrong(estimate, pair);
+}
 
 MotionEstimate Answered(const MotionProblem& problem, const MotionEstimator& estimator,
                         const StreamName& name) {
@@ -60,7 +79,8 @@ TwinSource AnswerScene(const std::string& scene, const DataSource& data, const I
   const auto num_pairs = static_cast<std::uint32_t>(data.NumTrials(1));
   for (std::uint32_t number = 0; number < num_pairs; ++number) {
     if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
-    AnsweredTrial answered{data.Make({seed, 0, number, 0}), {}, {}, {}, std::nullopt};
+    AnsweredTrial answered;
+    answered.pair = data.Make({seed, 0, number, 0});
     const auto named = images.find(answered.pair.origin);
     if (named != images.end()) std::tie(answered.image1, answered.image2) = named->second;
     answered.estimate =
@@ -68,6 +88,7 @@ TwinSource AnswerScene(const std::string& scene, const DataSource& data, const I
     answered.exact = ExactOf(answered.pair, answered.estimate);
     source.pairs.push_back(std::move(answered));
   }
+  SetNoiseLevels(&source);
   return source;
 }
 

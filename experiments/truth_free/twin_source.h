@@ -20,6 +20,9 @@ struct AnsweredTrial {
   std::string image1, image2;  // empty: not known
   MotionEstimate estimate;
   std::optional<TrialData> exact;
+  double noise_level = 1.0;  // of the template: the noise of its pair over the median of the scene
+
+  bool HasAnsweredTemplate() const;  // whose reference is the answer
 };
 // Matches within this many standard deviations of the reference count as right.
 inline constexpr double kRightWithin = 4.0;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -124,6 +125,13 @@ def existing(name: str, value: Any, what: str) -> str:
     if not os.path.isfile(text):
         raise ValueError(f"{name}: {words(text)} is no file, seen from {os.getcwd()}; expected the path of {what}")
     return text
+
+
+def existing_or_shared(name: str, value: Any, what: str) -> str:
+    """The path of a file, or the name of one that comes with the program ("paper_table"), which the program looks up."""
+    if isinstance(value, str) and re.fullmatch(r"\w+(/\w+)*", value) and not os.path.isfile(value):
+        return plain(name, value)
+    return existing(name, value, what)
 
 
 def texts(name: str, value: Any, what: str) -> list[str]:

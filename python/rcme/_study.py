@@ -28,8 +28,9 @@ _own_folder: Optional[tempfile.TemporaryDirectory[str]] = None  # of runs withou
 def conditions(study: Study, *, overrides: Optional[Mapping[str, Any]] = None) -> pandas.DataFrame:
     """The conditions of a study, a row each: its number, its level of each factor (text), and its trials.
 
-    `study` is the path of a study file (YAML), or a dict with the same keys; `overrides` as for `run`. ValueError: no such
-    file, or a study that is wrong (the message names the key and what is allowed).
+    `study` is the path of a study file (YAML), the name of one that comes with the program ("paper_table"), or a dict with
+    the same keys; `overrides` as for `run`. ValueError: no such file, or a study that is wrong (the message names the key
+    and what is allowed).
     """
     return pandas.DataFrame(_rcme.conditions(source_of(study, overrides)))
 
@@ -69,7 +70,8 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
 
     Parameters
     ----------
-    study : path of a study file (YAML), or a dict with the same keys
+    study : path of a study file (YAML), the name of one that comes with the program ("paper_table"), or a dict with the
+        same keys
     estimators : dict {label: estimator}, added to those of the study. An estimator is
         - a function (x1, x2, camera1, camera2, options) -> (pose, info), as `estimate_relative_pose` itself: x1, x2 (N, 2;
           px), cameras as dicts, options {"sigma_px": float, "seed": int}, and "noise_scale" (N, 1 in
@@ -134,7 +136,7 @@ def source_of(study: Optional[Study], overrides: Optional[Mapping[str, Any]] = N
     if isinstance(study, Mapping):
         text = _text_of(study)
     elif study is not None:
-        path = _check.existing("study", study, "a study file (YAML), or a dict with the same keys")
+        path = _check.existing_or_shared("study", study, "a study file (YAML), or a dict with the same keys")
     return _rcme.StudySource(path, text, _check.settings("overrides", overrides),
                              -1 if seed is None else _check.whole("seed", seed, 0, 2**63 - 1),
                              0 if trials is None else _check.whole("trials", trials, 1, 2_000_000_000))
@@ -155,7 +157,7 @@ def add_estimators(source: _rcme.StudySource,
         if isinstance(estimator, Mapping):
             _add_by_name(source, name, label, estimator)
         elif isinstance(estimator, (str, os.PathLike)):
-            source.add_estimator_file(label, _check.existing(name, estimator, "an estimator file"))
+            source.add_estimator_file(label, _check.existing_or_shared(name, estimator, "an estimator file"))
         elif callable(estimator):
             functions[label] = (estimator_of(estimator), code_of(estimator))
         else:

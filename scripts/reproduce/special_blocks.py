@@ -216,17 +216,29 @@ def least_coverage(spec):
 
 
 def twins(spec):
-    """Of each scene how many of the compared quantities a twin predicts within their joint interval, and which not."""
+    """Of each scene and of all how many of the predicted, and of the fitted, quantities lie within their joint interval with a
+    twin, and which do not."""
     rows = read_table(spec.argument)
+
+    def within(here):
+        return f"{sum(row['within'] == 'yes' for row in here)} of {len(here)}" if here else "-"
+
+    def line_of(name, pairs, chosen, names_missed):
+        line = [name, pairs]
+        for twin, _ in spec.parts("twins"):
+            here = select(chosen, f"twin={twin}")
+            line += [within([row for row in here if row["fitted"] == fitted]) for fitted in ("no", "yes")]
+            missed = [row["quantity"] for row in here if row["within"] == "no"]
+            line.append((", ".join(missed) or "none") if names_missed else "")
+        return line
+
     body = []
     for scene in levels_of(rows, "scene"):
-        line = [scene, select(rows, f"scene={scene}")[0]["pairs"]]
-        for twin, _ in spec.parts("twins"):
-            here = [row for row in rows if row["scene"] == scene and row["twin"] == twin]
-            missed = [row["quantity"] for row in here if row["within"] == "no"]
-            line += [f"{len(here) - len(missed)} of {len(here)}" if here else "-", ", ".join(missed) or "none"]
-        body.append(line)
-    head = [words for _, heading in spec.parts("twins") for words in (heading + ": within", "not within")]
+        chosen = select(rows, f"scene={scene}")
+        body.append(line_of(scene, chosen[0]["pairs"], chosen, True))
+    body.append(line_of("all", str(sum(int(line[1]) for line in body)), rows, False))
+    head = [words for _, heading in spec.parts("twins")
+            for words in (heading + ": predicted within", "fitted within", "not within")]
     return markdown(["scene", "pairs", *head], body)
 
 

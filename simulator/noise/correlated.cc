@@ -4,6 +4,7 @@
 
 #include "simulator/noise/noise_laws.h"
 #include "stats/portable_math.h"
+#include "stats/student_scales.h"
 
 namespace rcme {
 namespace {
@@ -44,7 +45,7 @@ class Mosaic {
 // Normal, and correlated between neighbours as key points on one piece of texture are: a share rho of the
 // variance is that of a mosaic over each image, the rest each point's own. The correlation of two points'
 // errors in one image at the distance d is rho (1 - 4 u / pi + u^2 / pi), u = d / noise_correlation_length_px
-// <= 1.
+// <= 1. With Student's scales all four errors of a match are large together, as those of a large key point.
 class CorrelatedNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -52,7 +53,10 @@ class CorrelatedNoise : public NoiseModel {
             Parameter::Real("noise_correlation", &correlation_, {0.0, 1.0}, "",
                             "correlation of the errors of two points at one place of an image"),
             Parameter::Real("noise_correlation_length_px", &length_px_, {0.01, 1e5}, "px",
-                            "distance at which it has fallen to 0.045 of that; none beyond 1.41 times")};
+                            "distance at which it has fallen to 0.045 of that; none beyond 1.41 times"),
+            Parameter::Real("noise_student_dof", &student_dof_, {0.0, 1000.0}, "",
+                            "tails: a match's errors are larger or smaller together, as those of Student's t "
+                            "with these degrees of freedom, in 32 steps; 0: normal")};
   }
   double sigma_px() const override { return sigma_px_; }
 
@@ -60,10 +64,12 @@ class CorrelatedNoise : public NoiseModel {
     Mosaic in_image1(length_px_, rng), in_image2(length_px_, rng);
     const double shared_px = sigma_px_ * std::sqrt(correlation_),
                  own_px = sigma_px_ * std::sqrt(1.0 - correlation_);
+    const StudentScales scales(student_dof_);
     for (Correspondence& match : matches) {
+      const double scale = scales.Draw(rng);
       const auto error = [&](const Eigen::Vector2d& of_neighbours) {
         const double x = rng.Normal(), y = rng.Normal();
-        return Eigen::Vector2d(shared_px * of_neighbours + own_px * Eigen::Vector2d(x, y));
+        return Eigen::Vector2d(scale * (shared_px * of_neighbours + own_px * Eigen::Vector2d(x, y)));
       };
       match.x1_px += error(in_image1.At(match.x1_px, rng));
       match.x2_px += error(in_image2.At(match.x2_px, rng));
@@ -73,6 +79,7 @@ class CorrelatedNoise : public NoiseModel {
  private:
   double sigma_px_ = 0.5;
   double correlation_ = 0.5, length_px_ = 20.0;
+  double student_dof_ = 0.0;
 };
 
 }  // namespace

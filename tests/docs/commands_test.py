@@ -86,12 +86,15 @@ class Commands(unittest.TestCase):
             return
         folder = self.sandbox(any("rcme pairs" in one.text for one in commands))
         environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "GLOG_minloglevel": "3"}
+        output = ""
         for one in shown:
             if isinstance(one, pages.ShownFile):
                 (folder / one.name).write_text(one.text)
+            elif isinstance(one, pages.ShownOutput):
+                self.check_output(f"{page}:{one.line}", one.words, output)
             elif not any(re.match(pattern, one.text) for pattern in ELSEWHERE):
                 for command in as_run(one.text):
-                    self.run_one(f"{page}:{one.line}", command, folder, environment)
+                    output = self.run_one(f"{page}:{one.line}", command, folder, environment)
 
     def run_one(self, where, command, folder, environment):
         start = time.monotonic()
@@ -99,6 +102,13 @@ class Commands(unittest.TestCase):
         print(f"{time.monotonic() - start:6.1f} s  {where}: {command}", flush=True)
         # 75: a share, or a merge that still lacks trials, as the page says.
         self.assertIn(done.returncode, (0, 75) if re.search("--shard|--round", command) else (0,), f"{where}: {command}\n{done.stdout}{done.stderr}")
+        return done.stdout
+
+    def check_output(self, where, words, output):
+        """Lines that begin with these words are there, in this order."""
+        begins = iter([line.split()[0] for line in output.splitlines() if line.strip()])
+        for word in words:
+            self.assertTrue(any(begin == word for begin in begins), f"{where}: no line begins with {word!r} here in\n{output}")
 
     def test_every_rule_is_needed(self):
         texts = [one.text for page in PAGES for one in pages.contents((ROOT / page).read_text())

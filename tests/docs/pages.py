@@ -23,6 +23,14 @@ class ShownFile:
     text: str
 
 
+@dataclasses.dataclass(frozen=True)
+class ShownOutput:
+    """What the command before it prints: the word that each line begins with; its numbers are those of another problem."""
+
+    line: int
+    words: tuple
+
+
 def code_blocks(text):
     """(number of the first line, language or "", lines without the indentation, the line of text before) of each block."""
     lines = text.splitlines()
@@ -46,13 +54,15 @@ def code_blocks(text):
 
 
 def contents(text):
-    """What a page shows, in its order: files and commands."""
+    """What a page shows, in its order: files, commands and (blocks called `text`) their output."""
     shown = []
     for begin, language, lines, before in code_blocks(text):
         name = FILE_BEFORE.search(before)
         if name and language in ("yaml", "json", "csv"):
             shown.append(ShownFile(begin, name[1], "\n".join(lines) + "\n"))
             continue
+        if language == "text":
+            shown.append(ShownOutput(begin, tuple(line.split()[0] for line in lines if line.strip())))
         if language not in ("", "sh", "bash"):
             continue
         number = 0

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,7 @@ TEST_F(TwinProgram, WritesStudiesThatRun) {
   for (const char* part :
        {"a: 2 pairs, 2 with a geometry", "b: 1 pairs", "spatial_halves", "within: semi-real"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in\n" << result.out;
-  EXPECT_NE(ReadBytes(out + "/twin.csv").find("\na,2,semi_real,refusal,rate,0,0,"), std::string::npos);
+  EXPECT_NE(ReadBytes(out + "/twin.csv").find("\na,2,semi_real,refusal,rate,no,0,0,"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(out + "/a_pairs/a_1.csv"));
   for (const char* study : {"/a.yaml", "/a_simulated.yaml"}) {
     const std::string run = folder_.Path("run.sqlite");
@@ -57,7 +58,16 @@ TEST_F(TwinProgram, WritesStudiesThatRun) {
   }
   EXPECT_NE(ReadBytes(out + "/a.yaml").find("redraw_noise_px"), std::string::npos);
   const std::string once = ReadBytes(out + "/twin.csv");
-  ASSERT_EQ(RunRcme({"twin", pairs_.path(), "--out", out, "--twins", "2"}).exit_code, 0);
+  const ProgramResult again =
+      RunRcme({"twin", pairs_.path(), "--out", out, "--twins", "2", "--format", "json"});
+  ASSERT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.out, ReadBytes(out + "/twin.json"));
+  const auto json = nlohmann::json::parse(again.out);
+  EXPECT_EQ(json["format"], "rcme twin 1");
+  EXPECT_EQ(json["scenes"][0]["name"], "a");
+  EXPECT_EQ(json["scenes"][0]["semi_real"]["scene"], "match_files");
+  EXPECT_EQ(json["scenes"][0]["comparisons"][0]["quantity"], "refusal");
+  EXPECT_EQ(json["scenes"][0]["comparisons"][0]["fitted"], false);
   EXPECT_EQ(ReadBytes(out + "/twin.csv"), once);
 }
 

@@ -1,15 +1,16 @@
 #!/bin/sh
 # Installs the build into a scratch prefix, builds examples/own_estimator against it as a user would, and runs its contract,
 # its audit and its study: the estimator that the example adds must be in all of them.
-#   own_estimator_test.sh CMAKE BUILD_DIR
+#   own_estimator_test.sh CMAKE BUILD_DIR [PREFIXES]    (where the build found its libraries, separated by semicolons)
 set -eu
 cmake=$1
 build=$2
+prefixes=${3-}
 root=$(cd "$(dirname "$0")/../.." && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$cmake" --install "$build" --prefix "$scratch/prefix" >/dev/null
-"$cmake" -G Ninja -S "$root/examples/own_estimator" -B "$scratch/own" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
+"$cmake" -G Ninja -S "$root/examples/own_estimator" -B "$scratch/own" -DCMAKE_PREFIX_PATH="$scratch/prefix;$prefixes" \
   -DCMAKE_BUILD_TYPE=Release >/dev/null
 "$cmake" --build "$scratch/own"
 own=$scratch/own/own_rcme

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "parameters/probability_text.h"
+
 namespace rcme {
 namespace {
 
@@ -40,6 +42,12 @@ TEST(Printable, KeepsBothEndsOfLongText) {
 TEST(Quoted, IsShort) {
   EXPECT_EQ(Quoted("a\x1B"), "'a\\x1B'");
   EXPECT_LT(Quoted(std::string(1 << 20, '\x01')).size(), 1000u);
+}
+
+TEST(ProbabilityText, SaysWhereItIsTooSmallToBeTold) {
+  EXPECT_EQ(ProbabilityText(0.0), "<1e-05");
+  EXPECT_EQ(ProbabilityText(1e-5), "1e-05");
+  EXPECT_EQ(ProbabilityText(0.01234), "0.012");
 }
 
 }  // namespace

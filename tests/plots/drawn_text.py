@@ -11,7 +11,7 @@ DOTS_PER_INCH = 200
 
 def drawn_texts(figure):
     """[(text, points, corners)]; corners: 4 x 2, inches from the upper left corner of the figure."""
-    found, original = [], RendererAgg.draw_text
+    found = []
 
     def record(renderer, gc, x, y, s, prop, angle, ismath=False, mtext=None):
         width, height, descent = renderer.get_text_width_height_descent(s, prop, ismath)
@@ -21,7 +21,6 @@ def drawn_texts(figure):
         corners = numpy.array([base, base + width * along, base + width * along + height * up, base + height * up])
         if s.strip() and gc.get_alpha() != 0:
             found.append((s, prop.get_size_in_points(), corners / DOTS_PER_INCH))
-        original(renderer, gc, x, y, s, prop, angle, ismath, mtext)
 
     figure.set_dpi(DOTS_PER_INCH)
     with mock.patch.object(RendererAgg, "draw_text", record):

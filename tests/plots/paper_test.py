@@ -102,17 +102,19 @@ def run_script(kind, *arguments):
     return code, errors.getvalue(), figures
 
 
-class Paper(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        scratch = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(scratch.cleanup)
-        cls.folder = pathlib.Path(scratch.name)
-        cls.cases = cases(cls.folder)
+class WithCases(unittest.TestCase):
+    """The cases lie in one folder, so that a figure is drawn once for all tests."""
+
+    scratch = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(scratch.cleanup)
+    folder = pathlib.Path(scratch.name)
+    cases = cases(folder)
 
     def arguments(self, kind, given, is_folder, *more):
         return [kind, *given, "--out", str(self.folder if is_folder else self.folder / "figure"), *more]
 
+
+class Paper(WithCases):
     def test_every_kind_of_the_program_is_here(self):
         source = (ROOT / "experiments" / "commands" / "plot_command.cc").read_text()
         known = re.findall(r'\{"(\w+)",\s*"[A-Z]', source)
@@ -171,19 +173,15 @@ class Paper(unittest.TestCase):
         self.assertIn("inches", run_script(*many)[1])
 
 
-class Formats(unittest.TestCase):
+class Formats(WithCases):
     @classmethod
     def setUpClass(cls):
         """{name of a file: its text}, of every kind."""
         cls.tikz = {}
-        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-            for number, (kind, given, is_folder) in enumerate(cases(folder)):
-                out = pathlib.Path(folder, f"out_{number}")
-                out.mkdir()
-                code = importlib.import_module(kind).main([*given, "--out", str(out if is_folder else out / "figure"),
-                                                           "--width", "3.3", "--format", "tikz"])
-                assert code == 0, kind
-                cls.tikz |= {f"{number}_{kind}_{path.name}": path.read_text() for path in sorted(out.glob("*.tikz"))}
+        for number, case in enumerate(cls.cases):
+            code, _, figures = run_script(*cls().arguments(*case, "--width", str(WIDTHS[0])))
+            assert code == 0, case[0]
+            cls.tikz |= {f"{number}_{case[0]}_{name}.tikz": tikz.tikz_of(figure) for name, figure in sorted(figures.items())}
 
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
@@ -191,7 +189,7 @@ class Formats(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
 
     def test_every_format_is_written_alone_and_twice_alike(self):
-        case = cases(self.folder)[0]
+        case = self.cases[0]
         for kind, beginning in (("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml"), ("tikz", b"% A figure")):
             found = []
             for name in ("a", "b"):

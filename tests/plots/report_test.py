@@ -1,16 +1,13 @@
 #!/usr/bin/python3
 """Tests of plots/report.py; run as: /usr/bin/python3 tests/plots/report_test.py"""
 
-import contextlib
 import csv
 import io
 import json
 import pathlib
 import re
 import sys
-import tempfile
 import unittest
-from html.parser import HTMLParser
 from unittest import mock
 
 PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
@@ -19,124 +16,10 @@ sys.path.insert(0, str(PLOTS))
 import fake_reliability  # noqa: E402
 from browser import BROWSER, SKIP_REASON, Browser  # noqa: E402
 import report  # noqa: E402
+from fake_report import EVIL, ReportTest, comparison, facts, quoted, summary  # noqa: E402
+from page_structure import Structure  # noqa: E402
 from report_page import figures as report_figures  # noqa: E402
 from page import html as html_of  # noqa: E402
-from page.html import VOID  # noqa: E402
-
-SUMMARY_HEADER = "study,condition,{factors}estimator,quantity,kind,value,lower,upper,standard_error,n\n"
-COMPARISON_HEADER = ("study,condition,{factors}estimator,reference,event,n,both,estimator_only,reference_only,neither,"
-                     "risk_difference,lower,upper,p_mcnemar,p_holm\n")
-EVIL = '<script>alert("1")</script>&'  # a name is whatever a study says
-
-
-def facts(**changes):
-    """run.json of a run with one factor, two conditions and two estimators."""
-    return {"format": "rcme report 1", "run": "runs/a b.sqlite", "rcme_version": "0.1.0", "name": "demo", "description": "What fails?", "seed": 7,
-            "trials_done": 15, "trials_planned": 20, "until": "", "study_yaml": "name: demo\nseed: 7\n",
-            "reference": "standard", "factors": ["noise"], "estimators": ["standard", "mine"],
-            "conditions": [{"index": index, "levels": [level], "trials_done": 10 - 5 * index,
-                            "trials_end": 10 - 5 * index, "trials_planned": 10,
-                            "first": [{"failure": None, "refusal": None}, {"failure": 3, "refusal": 1}]}
-                           for index, level in enumerate(("gaussian", "laplace"))],
-            "failure_bounds": [{"name": "max_rotation_error_deg", "value": "3", "unit": "deg"}],
-            "quantities": [{"name": "failure", "kind": "rate", "doc": "a motion beyond a bound"}],
-            "events": [{"name": "failure", "doc": "a motion beyond a bound"},
-                       {"name": "failure_or_refusal", "doc": "one of the two"}], **changes}
-
-
-def summary(study="demo", levels=(("gaussian",), ("laplace",)), estimators=("standard", "mine"), factors=("noise",)):
-    """Every number is different, and none follows from another."""
-    text, number = SUMMARY_HEADER.format(factors="".join(f"{factor}," for factor in factors)), 0.001
-    for condition, level in enumerate(levels):
-        for estimator in estimators:
-            for quantity in ("success", "failure", "no_candidate"):
-                number += 0.0023
-                text += ",".join([quoted(study), str(condition), *map(quoted, level), quoted(estimator), quantity, "rate",
-                                  f"{number:.4f}", f"{number - 0.0005:.4f}", f"{number + 0.3:.4f}", "", "10"]) + "\n"
-            text += ",".join([quoted(study), str(condition), *map(quoted, level), quoted(estimator), "nees", "mean",
-                              f"{50 * number:.4f}", "", "", f"{number:.5f}", "9"]) + "\n"
-    return text
-
-
-def comparison(study="demo", levels=(("gaussian",), ("laplace",)), others=("mine",), factors=("noise",)):
-    text = COMPARISON_HEADER.format(factors="".join(f"{factor}," for factor in factors))
-    for condition, level in enumerate(levels):
-        for estimator in others:
-            for event, p_holm in (("failure", "0.0123"), ("failure_or_refusal", "0.0789")):
-                text += ",".join([quoted(study), str(condition), *map(quoted, level), quoted(estimator), "standard", event,
-                                  "10", "1", "2", "3", "4", "-0.1", "-0.4", "0.2", "0.0045", p_holm]) + "\n"
-    return text
-
-
-def quoted(text):
-    return '"' + text.replace('"', '""') + '"'
-
-
-class Structure(HTMLParser):
-    """What a page holds; an end tag without its start is an error."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.open, self.elements, self.text, self.headings, self.ids = [], [], [], [], []
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag, attributes):
-        self.elements.append((tag, dict(attributes)))
-        self.ids += [value for key, value in attributes if key == "id"]
-        if tag not in VOID | {"br", "wbr"}:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        if not self.open or self.open.pop() != tag:
-            raise AssertionError(f"</{tag}> ends nothing")
-
-    def handle_data(self, data):
-        if self.open and self.open[-1] not in ("style", "script"):
-            self.text.append(data)
-            if self.open[-1] in ("h1", "h2", "h3"):
-                self.headings.append(data)
-
-    def attributes(self, name):
-        return [attributes[name] for _, attributes in self.elements if name in attributes]
-
-    def of(self, tag):
-        return [attributes for name, attributes in self.elements if name == tag]
-
-
-class ReportTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-        self.data, self.out = self.folder / "data", self.folder / "report.html"
-        self.data.mkdir()
-
-    def add_run(self, number=1, run_json=None, summary_csv=None, comparison_csv=None):
-        folder = self.data / f"run_{number:04}"
-        folder.mkdir(exist_ok=True)
-        (folder / "run.json").write_text(json.dumps(run_json or facts()))
-        (folder / "summary.csv").write_text(summary_csv or summary())
-        if comparison_csv != "":
-            (folder / "comparison.csv").write_text(comparison_csv or comparison())
-
-    def run_main(self, *arguments):
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = report.main([str(self.data), "--out", str(self.out), *arguments])
-        return code, out.getvalue(), err.getvalue()
-
-    def page(self):
-        self.assertEqual(self.run_main(), (0, f"{self.out}\n", ""))
-        return self.out.read_text(encoding="utf-8")
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir()], ["data"])
 
 
 class Page(ReportTest):

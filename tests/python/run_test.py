@@ -204,5 +204,15 @@ class Tables(unittest.TestCase):
                 self.assertTrue(tuned["why"])
 
 
+class Names(unittest.TestCase):
+    def test_a_study_of_the_program_is_known_by_its_name(self):
+        named = rcme.conditions("failure_vs_outliers")
+        self.assertGreater(len(named), 3)
+        self.assertIn("outlier_ratio", named.columns)
+        for wrong in ("failure_vs_outlier", "no_study_at_all"):
+            with self.assertRaisesRegex(ValueError, wrong):
+                rcme.conditions(wrong)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -10,8 +10,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stats/distributions.h"
 #include "stats/order_statistic.h"
 #include "stats/random.h"
+#include "stats/student_scales.h"
 #include "tests/test_support/coverage_count.h"
 
 namespace rcme {
@@ -163,6 +165,30 @@ TEST(OrderStatistic, IsThatOfTheSortedList) {
   EXPECT_EQ(QuantileOf(values, 1.0), sorted[36]);
   std::vector<double> none;
   EXPECT_TRUE(std::isnan(QuantileOf(none, 0.5)));
+}
+
+// Student's t itself: the share of |t| > 3 by the scales' normal laws against its closed form with one and
+// two degrees of freedom, 1 - 2 atan(3) / pi and 1 - 3 / sqrt(11); times the scales' unit, which their median
+// tells (the middle of 32 lies between two).
+TEST(StudentScales, HaveVarianceOneAndStudentsTails) {
+  for (const double dof : {1.0, 1.5, 2.0, 5.0, 100.0}) {
+    double sum_squares = 0.0;
+    const StudentScales made(dof);
+    for (const double scale : made.scales()) sum_squares += scale * scale / 32.0;
+    EXPECT_NEAR(sum_squares, 1.0, 1e-5) << dof;
+  }
+  const double beyond[] = {1.0 - 2.0 / std::numbers::pi * std::atan(3.0), 1.0 - 3.0 / std::sqrt(11.0)};
+  for (const int dof : {1, 2}) {
+    const std::vector<double> scales = StudentScales(dof).scales();
+    const double median = std::sqrt(dof / ChiSquareQuantile(dof, 0.5));
+    const double unit = 0.5 * (scales[15] + scales[16]) / median;
+    double share = 0.0;
+    for (const double scale : scales) share += 2.0 * NormalCdf(-3.0 * unit / scale) / 32.0;
+    EXPECT_NEAR(share / beyond[dof - 1], 1.0, 0.05) << dof;
+  }
+  RandomStream rng({.seed = 1, .purpose = 10}), untouched({.seed = 1, .purpose = 10});
+  EXPECT_EQ(StudentScales(0.0).Draw(rng), 1.0);
+  EXPECT_EQ(rng.Uniform(), untouched.Uniform());  // normal noise draws what it always drew
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
@@ -97,6 +98,27 @@ TEST(RefusalAdvice, NamesWhatTheEstimatorHas) {
               testing::Contains(testing::HasSubstr("num_iterations=2000")));
   EXPECT_THAT(AdviceFor(none, DefaultEstimator("rcme_calibrated")),
               testing::Not(testing::Contains(testing::HasSubstr("rcme_calibrated"))));
+}
+
+// A mode 0.05 standard deviations away is the answer once more; one that is 0.2 away, in either part, is not.
+TEST(RunnerUp, IsAnotherMotionThanTheAnswer) {
+  MotionEstimate estimate;
+  estimate.cam2_from_cam1.t = Eigen::Vector3d::UnitX();
+  estimate.pose_cov = 1e-4 * Matrix5d::Identity();  // 0.0173 rad of rotation, 0.0141 of direction
+  EXPECT_EQ(RunnerUpOf(estimate), nullptr);
+  const auto add = [&](double turn, double swing) {
+    MotionMode mode;
+    mode.cam2_from_cam1.R = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    mode.cam2_from_cam1.t = Eigen::Vector3d(std::cos(swing), std::sin(swing), 0.0);
+    estimate.other_modes.push_back(mode);
+  };
+  add(0.05 * 0.0173, 0.05 * 0.0141);
+  EXPECT_EQ(RunnerUpOf(estimate), nullptr);
+  add(0.0, 0.2 * 0.0141);
+  EXPECT_EQ(RunnerUpOf(estimate), &estimate.other_modes[1]);
+  estimate.other_modes.clear();
+  add(0.2 * 0.0173, 0.0);
+  EXPECT_EQ(RunnerUpOf(estimate), &estimate.other_modes[0]);
 }
 
 }  // namespace

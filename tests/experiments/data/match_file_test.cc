@@ -162,6 +162,21 @@ TEST_F(MatchFileTest, TruePoseIsMadeUnitLength) {
   EXPECT_NEAR(file.cam2_from_cam1_true->t.norm(), 1.0, 1e-15);
 }
 
+TEST_F(MatchFileTest, ATemplateMayStateItsNoiseLevel) {
+  EXPECT_EQ(Read(FullText()).noise_level, 1.0);
+  const std::string line = "# noise_level: 1.5\n";
+  const MatchFile file = Read(line + FullText());
+  EXPECT_EQ(file.noise_level, 1.5);
+  const std::string path = folder_.path() + "/level.csv";
+  WriteMatchFile(file, path);
+  EXPECT_EQ(ReadMatchFile(path).noise_level, 1.5);
+  for (const char* wrong : {"0", "-1", "nan", "1 2", "x"}) {
+    std::string text = "# noise_level: ";
+    text.append(wrong).append("\n");
+    EXPECT_TRUE(Refuses(text + FullText(), {"noise_level"})) << wrong;
+  }
+}
+
 TEST_F(MatchFileTest, TheTruthMayStateItsOwnErrorAndTheImagesTheirNames) {
   EXPECT_FALSE(Read(FullText()).truth_sd.has_value());
   EXPECT_TRUE(std::isnan(Read(FullText()).baseline));

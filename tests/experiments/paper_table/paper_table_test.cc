@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "experiments/paper_table/paper_table_output.h"
 #include "experiments/paper_table/printed_table.h"
@@ -175,6 +176,16 @@ TEST_F(PaperTableOfARun, IsWrittenForPeopleAndPrograms) {
   EXPECT_NE(csv.find("run,kitti_a,standard,kappa_failure,rate,0.66666667,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("paper,indoor,Standard,kappa_failure,rate,0.0143520"), std::string::npos) << csv;
   EXPECT_EQ(csv.find("run,room,standard,true_failure"), std::string::npos) << csv;
+  const auto json = nlohmann::json::parse(PaperTableAsJson(table));
+  EXPECT_EQ(json["format"], "rcme paper table 1");
+  const auto num_rows = static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n'));
+  EXPECT_EQ(json["rates"].size() + json["printed"].size() + 1, num_rows);
+  for (const auto& rate : json["rates"]) {
+    if (rate["scene"] != "kitti_a" || rate["estimator"] != "standard" || rate["quantity"] != "kappa_failure")
+      continue;
+    EXPECT_NEAR(rate["value"].get<double>(), 2.0 / 3.0, 1e-12);
+    EXPECT_EQ(rate["count"], 2);
+  }
 }
 
 TEST(ParseSceneGroup, NamesAndWhatIsWrong) {

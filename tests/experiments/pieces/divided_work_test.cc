@@ -211,7 +211,7 @@ TEST_F(DividedWork, SaysWhatThePiecesTook) {
   }
   EXPECT_EQ(
       CostsInWords(Plan(), merged),
-      "processor time 12 s; the dearest of 3 shards 1.75 times the mean, the dearest row 1.50 times (row "
+      "processor time 12 s; the slowest of 3 shards 1.75 times the mean, the slowest row 1.50 times (row "
       "3 of sleeve)");
 }
 

@@ -95,7 +95,7 @@ TEST(Shard, EveryTrialIsInOneShardAndEveryShardKnowsItsOwn) {
   EXPECT_EQ(all.NumBefore(17), 17u);
 }
 
-// Cost of the dearest of `count` shards over the mean. Conditions cost from 1 to `spread` a trial, neighbours
+// Cost of the slowest of `count` shards over the mean. Conditions cost from 1 to `spread` a trial, neighbours
 // about the same.
 double WorstOverMean(std::uint32_t count, std::uint32_t num_conditions, std::uint32_t num_trials,
                      double spread) {

@@ -65,6 +65,21 @@ TEST(CorrelatedNoise, HasTheStatedVariogram) {
   EXPECT_GT(std::abs(ZAgainst(Variogram(*law, 4.0), stated(4.0, 0.4, length))), kNoiseZ) << "no power";
 }
 
+// With tails the variance is still that of sigma_px, and all four errors of a match are large together: of
+// Student's t with three degrees of freedom. One match a trial; the mean square by a z-test at 1e-4, and the
+// correlation of squares of two coordinates, 0 where they are independent, at 10 standard errors.
+TEST(CorrelatedNoise, MayHaveTailsOfTheWholeMatch) {
+  const auto law = WithSettings(MakeCorrelatedNoise(), {{"sigma_px", "2"}, {"noise_student_dof", "3"}});
+  Moments square, product;
+  for (std::uint32_t trial = 0; trial < 20'000; ++trial) {
+    const Eigen::Vector4d e = SampleNoise(*law, 1, trial).front();
+    square.Add(e.squaredNorm() / 16.0);
+    product.Add((e(0) * e(0) / 4.0 - 1.0) * (e(3) * e(3) / 4.0 - 1.0));
+  }
+  EXPECT_LT(std::abs(ZAgainst(square, 1.0)), kNoiseZ);
+  EXPECT_GT(ZAgainst(product, 0.0), 5.0);
+}
+
 // One match a trial; Anderson-Darling of each coordinate at 1e-4. A sigma that is a fifth off is seen.
 TEST(CorrelatedNoise, IsNormalAndOfTheStatedSigmaInEachCoordinate) {
   const auto law = WithSettings(MakeCorrelatedNoise(), {{"sigma_px", "2"}});
