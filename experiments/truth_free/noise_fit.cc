@@ -18,6 +18,7 @@ namespace {
 constexpr double kLeastProducts = 100.0;    // of residuals, for a correlation
 constexpr size_t kMostForFit = 20;          // pairs that the noise is fitted to
 constexpr std::uint32_t kFitTrial = 0xf17;  // no trial of a report has this number
+constexpr std::uint32_t kFitDraws = 3;      // for each of these
 constexpr double kFarLengthsPx[] = {20.0, 40.0, 80.0, 160.0};
 // From no tails to the longest; 0: normal.
 constexpr double kDegreesOfFreedom[] = {0.0, 20.0, 10.0, 6.0, 4.0, 3.0, 2.5, 2.0, 1.75, 1.5, 1.25, 1.0};
@@ -117,9 +118,11 @@ RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimat
     const Redraw redraw(tried);
     PatternSum sum;
     for (const AnsweredTrial* answered : used) {
-      const StreamName name{seed, StreamKeyOf(answered->pair.origin), kFitTrial, 0};
-      const TrialData drawn = redraw.Draw(*answered->exact, name, answered->noise_level);
-      sum.Add(drawn.problem, Answered(drawn.problem, estimator, name));
+      for (std::uint32_t draw = 0; draw < kFitDraws; ++draw) {
+        const StreamName name{seed, StreamKeyOf(answered->pair.origin), kFitTrial + draw, 0};
+        const TrialData drawn = redraw.Draw(*answered->exact, name, answered->noise_level);
+        sum.Add(drawn.problem, Answered(drawn.problem, estimator, name));
+      }
     }
     return sum.Take();
   };
@@ -140,7 +143,7 @@ RedrawSettings FitSimulatedNoise(const TwinSource& source, const TwinFit& fit, d
     tried_fit.simulated_noise = tried;
     const auto data = MakeSimulatedData(SimulatedTwinData(tried_fit, clustered_share, assumed_sigma_px));
     PatternSum sum;
-    for (std::uint32_t number = 0; number < used.size(); ++number) {
+    for (std::uint32_t number = 0; number < kFitDraws * used.size(); ++number) {
       const StreamName name{seed, StreamKeyOf(source.scene), kFitTrial + number, 0};
       const TrialData drawn = data->Make(name);
       sum.Add(drawn.problem, Answered(drawn.problem, estimator, name));

@@ -6,7 +6,7 @@
 
 namespace rcme {
 
-// Of the semi-real twin. Fitted to the answers: the median of the estimated noise, the ratio of the
+// Of the semi-real twin. Fitted to the answers: the geometric mean of the estimated noise, the ratio of the
 // residuals' 95 % point to their median, their correlation up to 1 px and beyond. Right matches stay as near
 // as those of the pairs are. noise_px is 0 where no template has an answer. Its streams are its own.
 RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed);

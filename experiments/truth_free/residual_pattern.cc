@@ -5,7 +5,6 @@
 #include "estimator/geometry/sampson.h"
 #include "estimator/noise_scale.h"
 #include "experiments/truth_free/twin.h"
-#include "stats/median_ratio.h"
 #include "stats/order_statistic.h"
 
 namespace rcme {
@@ -24,7 +23,8 @@ std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEsti
 
 void PatternSum::Add(const MotionProblem& problem, const MotionEstimate& estimate) {
   if (estimate.status != MotionStatus::kOk || estimate.inliers.empty()) return;
-  sigmas_.push_back(NoiseOf(problem, estimate));
+  sum_log_sigma_ += std::log(NoiseOf(problem, estimate));
+  num_answers_ += 1.0;
   const std::vector<double> sizes = ResidualSizes(problem, estimate);
   sizes_.insert(sizes_.end(), sizes.begin(), sizes.end());
   products_ += ProductsOf(problem, estimate);
@@ -33,7 +33,7 @@ void PatternSum::Add(const MotionProblem& problem, const MotionEstimate& estimat
 ResidualPattern PatternSum::Take() const {
   std::vector<double> sizes = sizes_;
   const double far = QuantileOf(sizes, 0.95);
-  return {MedianOf(sigmas_), far / QuantileOf(sizes, 0.5), products_};
+  return {std::exp(sum_log_sigma_ / num_answers_), far / QuantileOf(sizes, 0.5), products_};
 }
 
 }  // namespace rcme

@@ -8,7 +8,7 @@
 namespace rcme {
 
 struct ResidualPattern {
-  double sigma_px = 0.0;    // median
+  double sigma_px = 0.0;    // geometric mean; NaN without an answer
   double tail_ratio = 0.0;  // 95 % point over the median of |r| / sigma, all pairs together
   ResidualProducts products;
 };
@@ -24,7 +24,8 @@ class PatternSum {
   ResidualPattern Take() const;
 
  private:
-  std::vector<double> sigmas_, sizes_;
+  double sum_log_sigma_ = 0.0, num_answers_ = 0.0;
+  std::vector<double> sizes_;
   ResidualProducts products_;
 };
 
