@@ -65,6 +65,13 @@ TEST_F(Euroc, DialectsOfItsFilesAreReadTheSame) {
   }
 }
 
+TEST_F(Euroc, AnEquidistantLensIsAFisheye) {
+  const std::string copy = Copy();
+  EXPECT_EQ(ReadEuroc(OptionsOf(copy))[0].lens.model, LensModel::kRadtan);
+  Replace("mav0/cam0/sensor.yaml", "radial-tangential", "equidistant")(copy);
+  EXPECT_EQ(ReadEuroc(OptionsOf(copy))[0].lens.model, LensModel::kFisheye);
+}
+
 TEST_F(Euroc, WhatIsBrokenIsNamedByPath) {
   const std::string cam = "mav0/cam0/";
   const std::vector<Change> cases = {

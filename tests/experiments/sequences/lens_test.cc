@@ -48,6 +48,11 @@ TEST(Lens, UndistortsWhatItDistorts) {
   EXPECT_TRUE(Undistort(folding, {54.0, 0.0}).has_value());
   EXPECT_LT(Undistort(folding, {54.0, 0.0})->x(), 100.0 * std::sqrt(2.0 / 3.0));
   EXPECT_FALSE(Undistort(folding, {55.0, 0.0}).has_value());
+  // r (1 - .3 r^2 + .04 r^4) goes up to .792 at r = 1.41, down, and up again from 1.58: .85 is of r = 1.94,
+  // behind the fold.
+  const Lens twice = MakeLens({100, 100, 0, 0, 200, 200}, LensModel::kRadtan, {-0.3, 0.04, 0, 0}, "");
+  EXPECT_FALSE(Undistort(twice, {85.0, 0.0}).has_value());
+  EXPECT_TRUE(Undistort(twice, {75.0, 0.0}).has_value());
   EXPECT_TRUE(ThrowsInputError(
       [] {
         MakeLens({1, 0, 0, 0, 1, 1}, LensModel::kPinhole, {}, "file");
