@@ -130,8 +130,9 @@ std::vector<FeatureMatch> MatchFeatures(const Features& features1, const Feature
 }
 
 double SigmaOfMatch(Detector detector, const KeyPoint& point1, const KeyPoint& point2) {
-  constexpr double kFinestSigmaPx = 0.5;
-  return kFinestSigmaPx * std::hypot(point1.size_px, point2.size_px) / std::sqrt(2.0) / FinestSize(detector);
+  constexpr double kFinestSigmaPx = 0.5, kGrowth = 0.7;
+  const double size = std::hypot(point1.size_px, point2.size_px) / std::sqrt(2.0);
+  return kFinestSigmaPx * std::pow(size / FinestSize(detector), kGrowth);
 }
 
 }  // namespace rcme
