@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "estimator/geometry/sampson.h"
 #include "estimator/noise_scale.h"
 #include "estimator/refinement/sampson_equations.h"
 #include "estimator/robust_covariance/disjoint_sets.h"
@@ -46,10 +47,15 @@ void UniteNeighbours(const std::vector<Correspondence>& matches, Eigen::Vector2d
 
 MatchScores ScoreFitted(const MotionProblem& problem, std::span<const int> fitted, const RelativePose& pose) {
   const SampsonLinearization model(problem, pose);
+  const Eigen::Matrix3d F =
+      FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
   MatchScores scores;
   for (const int index : fitted) {
     const auto i = static_cast<size_t>(index);
-    const SampsonResidual residual = model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i));
+    const Correspondence& match = problem.matches[i];
+    const SampsonResidual residual = model.Evaluate(match, NoiseScaleAt(problem, i));
+    scores.matches.push_back(match);
+    scores.normals.push_back(EvaluateConstraint(F, match).gradient.normalized());
     const Vector5d row = residual.g_p / residual.norm;
     scores.rows.push_back(row);
     scores.residuals.push_back(residual.r);

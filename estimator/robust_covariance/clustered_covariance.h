@@ -23,6 +23,8 @@ namespace rcme {
 struct MatchScores {
   std::vector<Vector5d> rows;     // J_i', 5x1
   std::vector<double> residuals;  // r_i
+  std::vector<Correspondence> matches;
+  std::vector<Eigen::Vector4d> normals;  // derivatives of g along both points, of length 1
   Matrix5d information = Matrix5d::Zero();
 };
 MatchScores ScoreFitted(const MotionProblem& problem, std::span<const int> fitted, const RelativePose& pose);

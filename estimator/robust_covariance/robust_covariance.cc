@@ -1,13 +1,13 @@
 #include "estimator/robust_covariance/robust_covariance.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <utility>
 
 #include "estimator/noise_scale.h"
 #include "estimator/refinement/fit_set.h"
 #include "estimator/refinement/sampson_equations.h"
+#include "estimator/refinement/sampson_mle.h"
 #include "estimator/robust_covariance/clustered_covariance.h"
 #include "estimator/uncertainty/motion_covariance.h"
 #include "stats/order_statistic.h"
@@ -17,6 +17,9 @@ namespace {
 
 constexpr double kKeyPointRadiusPx = 1.0;
 constexpr int kBlocksPerSide = 8, kJackknifeBlocksPerSide = 4;
+constexpr double kLeastEffect =
+    1.25;  // of blocks; where there is none, the sandwich of blocks is 1.13 too large
+constexpr int kMostRefits = 10;
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 constexpr size_t kLeastFitted = 6;                      // five matches determine a motion exactly
 
@@ -38,24 +41,33 @@ double SigmaOfResiduals(const MotionProblem& problem, std::span<const int> inlie
   return problem.sigma_px * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
 }
 
-std::vector<int> FittedOf(const MotionProblem& problem, const RelativePose& pose,
-                          std::span<const int> inliers) {
-  std::vector<int> fitted(inliers.begin(), inliers.end());
+// The matches that agree with a motion that was fitted to `fitted`; nothing where these determine none.
+std::vector<int> AgreeingWith(const MotionProblem& problem, const RelativePose& pose,
+                              const std::vector<int>& fitted) {
   MotionProblem with_own_noise = problem;
-  with_own_noise.sigma_px = SigmaOfResiduals(problem, inliers, pose);
+  with_own_noise.sigma_px = SigmaOfResiduals(problem, fitted, pose);
   const std::optional<Matrix5d> pose_cov = FirstOrderMotionCovariance(
-      pose, problem.camera1, problem.camera2, MatchesOf(problem, inliers), with_own_noise.sigma_px);
-  if (!pose_cov) return fitted;
-  const std::vector<int> agreeing = SelectFitSet(with_own_noise, {true, pose, *pose_cov, 0}, fitted);
-  std::vector<int> both;
-  std::ranges::set_union(fitted, agreeing, std::back_inserter(both));
-  return both;
+      pose, problem.camera1, problem.camera2, MatchesOf(problem, fitted), with_own_noise.sigma_px);
+  if (!pose_cov) return {};
+  return SelectFitSet(with_own_noise, {true, pose, *pose_cov, 0}, fitted);
 }
 
-// How much greater b is than a, on average over the directions, and at least 1.
-double EffectOf(const Matrix5d& a, const Matrix5d& b) {
-  const double effect = a.llt().solve(b).trace() / 5.0;
-  return std::isfinite(effect) ? std::max(1.0, effect) : 1.0;
+// How much greater the sandwich of blocks is than a covariance, on average over the directions; 1 where it is
+// hardly greater.
+double DesignEffect(const Matrix5d& covariance, const Matrix5d& of_blocks) {
+  const double effect = covariance.llt().solve(of_blocks).trace() / 5.0;
+  return std::isfinite(effect) && effect > kLeastEffect ? effect : 1.0;
+}
+
+// C_0 of scores.
+std::optional<Matrix5d> IndependentCovariance(const MatchScores& scores) {
+  const size_t n = scores.residuals.size();
+  const Matrix5d sandwich = ClusteredCovariance(scores, Separate(n));
+  if (!sandwich.allFinite() || sandwich.llt().info() != Eigen::Success) return std::nullopt;
+  double sum_squares = 0.0;
+  for (const double r : scores.residuals) sum_squares += r * r;
+  const double variance = sum_squares / static_cast<double>(n - 5);
+  return 0.5 * (sandwich + variance * scores.information.llt().solve(Matrix5d::Identity()));
 }
 
 }  // namespace
@@ -68,35 +80,49 @@ std::vector<Parameter> Parameters(RobustCovarianceOptions& options) {
               "of the robust covariance: the jackknife of 4x4 image blocks on top, conservative")};
 }
 
-std::optional<RobustCovarianceParts> RobustParts(const MotionProblem& problem, const RelativePose& pose,
-                                                 std::span<const int> inliers) {
-  if (inliers.size() < kLeastFitted) return std::nullopt;
-  RobustCovarianceParts parts;
-  parts.fitted = FittedOf(problem, pose, inliers);
-  const std::vector<Correspondence> matches = MatchesOf(problem, parts.fitted);
-  const MatchScores scores = ScoreFitted(problem, parts.fitted, pose);
-  const auto clustered = [&](const std::vector<int>& groups) { return ClusteredCovariance(scores, groups); };
-  parts.own = clustered(KeyPointGroups(matches, kKeyPointRadiusPx));
-  parts.inverse_information = scores.information.llt().solve(Matrix5d::Identity());
-  if (!parts.own.allFinite() || parts.own.llt().info() != Eigen::Success) return std::nullopt;
-  parts.key_point_effect = EffectOf(clustered(Separate(matches.size())), parts.own);
-  parts.block_effect = EffectOf(parts.own, clustered(BlockGroups(problem.camera1, matches, kBlocksPerSide)));
-  parts.jackknife = clustered(BlockGroups(problem.camera1, matches, kJackknifeBlocksPerSide));
-  return parts;
+AgreeingFit FitAgreeing(const MotionProblem& problem, const RelativePose& pose,
+                        std::span<const int> inliers) {
+  const AgreeingFit as_given{pose, std::vector<int>(inliers.begin(), inliers.end())};
+  AgreeingFit fit = as_given;
+  for (int refit = 0; refit < kMostRefits; ++refit) {
+    std::vector<int> agreeing = AgreeingWith(problem, fit.cam2_from_cam1, fit.fitted);
+    if (agreeing.size() < kLeastFitted) return as_given;
+    if (refit > 0 && agreeing == fit.fitted) break;
+    const RefinedMotion refined = RefineBySampson(problem, agreeing, fit.cam2_from_cam1, Loss::kSquared);
+    if (!refined.converged) return as_given;
+    fit = {refined.cam2_from_cam1, std::move(agreeing)};
+  }
+  return fit;
 }
 
 std::optional<Matrix5d> RobustCovariance(const MotionProblem& problem, const RelativePose& pose,
                                          std::span<const int> inliers, const RobustCovarianceOptions& options,
                                          const std::optional<Matrix5d>& own_cov) {
-  const std::optional<RobustCovarianceParts> parts = RobustParts(problem, pose, inliers);
-  if (!parts) return std::nullopt;
-  const Matrix5d base = own_cov ? Matrix5d(parts->key_point_effect * *own_cov) : parts->own;
-  Matrix5d covariance = options.factor * parts->block_effect * base;
-  if (options.adds_jackknife) covariance += parts->jackknife;
+  if (inliers.size() < kLeastFitted) return std::nullopt;
+  const AgreeingFit fit = FitAgreeing(problem, pose, inliers);
+  const RelativePose& at = fit.cam2_from_cam1;
+  const MatchScores scores = ScoreFitted(problem, fit.fitted, at);
+  const std::optional<Matrix5d> of_scores = IndependentCovariance(scores);
+  if (!of_scores) return std::nullopt;
+  const ResidualVariances variances =
+      FitResidualVariances(scores, KeyPointGroups(scores.matches, kKeyPointRadiusPx));
+  const double own_share = variances.own / variances.Sum();
+  Matrix5d covariance = own_share * own_cov.value_or(*of_scores) + variances.shared;
+  const auto of_blocks = [&](int per_side) {
+    return ClusteredCovariance(scores, BlockGroups(problem.camera1, scores.matches, per_side));
+  };
+  covariance *= options.factor * DesignEffect(covariance, of_blocks(kBlocksPerSide));
+  if (!own_cov) {
+    const Vector5d away = LocalCoordinates(pose, at);
+    covariance += away * away.transpose();
+  }
+  if (options.adds_jackknife) covariance += of_blocks(kJackknifeBlocksPerSide);
   covariance += CalibrationCovariance(
-      problem, options.calibration, parts->inverse_information, [&](const MotionProblem& changed) {
-        return LinearizeSampson(changed, parts->fitted, pose, Loss::kSquared).gradient;
+      problem, options.calibration, scores.information.llt().solve(Matrix5d::Identity()),
+      [&](const MotionProblem& changed) {
+        return LinearizeSampson(changed, fit.fitted, at, Loss::kSquared).gradient;
       });
+  if (!covariance.allFinite()) return std::nullopt;
   return covariance;
 }
 

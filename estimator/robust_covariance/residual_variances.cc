@@ -1,0 +1,245 @@
+#include "estimator/robust_covariance/residual_variances.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace rcme {
+namespace {
+
+constexpr Eigen::Index kNumLengths = 3;
+constexpr double kLongestPx = 270.0;  // the others are a third and a ninth
+constexpr int kOwn = 0, kKeyPoint = 1, kFirstLength = 2, kNumParts = 5;
+constexpr size_t kMostKeyPoints = 1500;
+constexpr double kLeastPairs = 1.0;     // of evidence for a part, in full pairs
+constexpr double kLeastDeviance = 1.0;  // half of what Akaike's criterion asks of a parameter
+
+using Parts = Eigen::Matrix<double, kNumParts, 1>;
+using PartsSquare = Eigen::Matrix<double, kNumParts, kNumParts>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 5>;
+using ByLength = Eigen::Matrix<double, Eigen::Dynamic, kNumLengths>;
+
+// Key points, n of N that the matches have, and their matches' rows of U.
+struct KeyPoints {
+  double share_kept = 1.0;  // n / N
+  std::vector<Correspondence> at;
+  std::vector<Eigen::Vector4d> normals;
+  Eigen::VectorXd num_matches, residuals, mean_squares;  // n; of the residuals mean and mean square
+  Rows sums, means;                                      // n x 5, of the rows
+  // Sums over the matches of U_i' U_i, the same over the number of matches of their key point, and over pairs
+  // of different matches of one, over the number of these: U' U, U' W_0 U, U' W_1 U.
+  Matrix5d squares = Matrix5d::Zero(), within = Matrix5d::Zero(), between = Matrix5d::Zero();
+
+  Eigen::Index size() const { return num_matches.size(); }
+};
+
+// Of so many that their pairs can be visited, evenly: the place of each, or -1.
+std::vector<Eigen::Index> PlacesOf(size_t num_points) {
+  std::vector<Eigen::Index> places(num_points, -1);
+  const size_t num_kept = std::min(num_points, kMostKeyPoints);
+  for (size_t i = 0; i < num_kept; ++i) places[i * num_points / num_kept] = static_cast<Eigen::Index>(i);
+  return places;
+}
+
+KeyPoints KeyPointsOf(const MatchScores& scores, std::span<const int> groups, const Matrix5d& L) {
+  const std::vector<Eigen::Index> places =
+      PlacesOf(1 + static_cast<size_t>(*std::ranges::max_element(groups)));
+  const auto n = static_cast<Eigen::Index>(std::min(places.size(), kMostKeyPoints));
+  KeyPoints points;
+  points.share_kept = static_cast<double>(n) / static_cast<double>(places.size());
+  points.at.resize(static_cast<size_t>(n));
+  points.normals.resize(static_cast<size_t>(n));
+  points.num_matches = points.residuals = points.mean_squares = Eigen::VectorXd::Zero(n);
+  points.sums = Rows::Zero(n, 5);
+  std::vector<Matrix5d> squares(static_cast<size_t>(n), Matrix5d::Zero());
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const Eigen::Index g = places[static_cast<size_t>(groups[i])];
+    if (g < 0) continue;
+    if (points.num_matches(g) == 0.0) {
+      points.at[static_cast<size_t>(g)] = scores.matches[i];
+      points.normals[static_cast<size_t>(g)] = scores.normals[i];
+    }
+    const Vector5d row = L.triangularView<Eigen::Lower>().solve(scores.rows[i]);
+    points.num_matches(g) += 1.0;
+    points.residuals(g) += scores.residuals[i];
+    points.mean_squares(g) += scores.residuals[i] * scores.residuals[i];
+    points.sums.row(g) += row;
+    squares[static_cast<size_t>(g)] += row * row.transpose();
+  }
+  for (Eigen::Index g = 0; g < n; ++g) {
+    const double m = points.num_matches(g);
+    const Matrix5d& square = squares[static_cast<size_t>(g)];
+    points.squares += square;
+    points.within += square / m;
+    if (m > 1.0)
+      points.between += (points.sums.row(g).transpose() * points.sums.row(g) - square) / (m * (m - 1.0));
+  }
+  points.residuals.array() /= points.num_matches.array();
+  points.mean_squares.array() /= points.num_matches.array();
+  points.means = points.num_matches.cwiseInverse().asDiagonal() * points.sums;
+  return points;
+}
+
+// c of a key point and those before it, the longest length last.
+ByLength CorrelationsOf(const KeyPoints& points, size_t g) {
+  ByLength c(static_cast<Eigen::Index>(g), kNumLengths);
+  for (size_t h = 0; h < g; ++h) {
+    const double e1 = std::exp(-(points.at[g].x1_px - points.at[h].x1_px).norm() / kLongestPx);
+    const double e2 = std::exp(-(points.at[g].x2_px - points.at[h].x2_px).norm() / kLongestPx);
+    const double cos1 = points.normals[g].head<2>().dot(points.normals[h].head<2>());
+    const double cos2 = points.normals[g].tail<2>().dot(points.normals[h].tail<2>());
+    const double third1 = e1 * e1 * e1, third2 = e2 * e2 * e2;
+    const auto row = static_cast<Eigen::Index>(h);
+    c(row, 0) = cos1 * third1 * third1 * third1 + cos2 * third2 * third2 * third2;
+    c(row, 1) = cos1 * third1 + cos2 * third2;
+    c(row, 2) = cos1 * e1 + cos2 * e2;
+  }
+  return c;
+}
+
+// Sums over pairs of different key points.
+struct PairSums {
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();   // of c_k c_l
+  Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero();  // over both numbers of matches
+  Eigen::Vector3d products = Eigen::Vector3d::Zero();  // of c_k times both residuals
+  std::array<Rows, kNumLengths> sums, means;           // row g: of c_gh times the sum, the mean of rows of h
+};
+
+PairSums VisitPairs(const KeyPoints& points) {
+  PairSums pairs;
+  pairs.sums.fill(Rows::Zero(points.size(), 5));
+  pairs.means.fill(Rows::Zero(points.size(), 5));
+  const Eigen::VectorXd weights = points.num_matches.cwiseInverse();
+  for (Eigen::Index g = 1; g < points.size(); ++g) {
+    const ByLength c = CorrelationsOf(points, static_cast<size_t>(g));
+    pairs.squares += 2.0 * c.transpose() * c;
+    pairs.weighted += 2.0 * weights(g) * c.transpose() * weights.head(g).asDiagonal() * c;
+    pairs.products += 2.0 * points.residuals(g) * c.transpose() * points.residuals.head(g);
+    for (Eigen::Index k = 0; k < kNumLengths; ++k) {
+      Rows& sums = pairs.sums[static_cast<size_t>(k)];
+      Rows& means = pairs.means[static_cast<size_t>(k)];
+      sums.row(g) += c.col(k).transpose() * points.sums.topRows(g);
+      means.row(g) += c.col(k).transpose() * points.means.topRows(g);
+      sums.topRows(g) += c.col(k) * points.sums.row(g);
+      means.topRows(g) += c.col(k) * points.means.row(g);
+    }
+  }
+  return pairs;
+}
+
+// The equations of the moments, q = T v with weights M, and what a v of 1 adds to the middle of the sandwich.
+struct Moments {
+  Parts q = Parts::Zero();
+  PartsSquare T = PartsSquare::Zero(), M = PartsSquare::Zero();
+  std::array<Matrix5d, kNumParts> G;  // U' K_b U
+};
+
+Moments MomentsOf(const KeyPoints& points) {
+  const PairSums pairs = VisitPairs(points);
+  const Eigen::ArrayXd m = points.num_matches.array(), is_repeated = (m > 1.0).cast<double>();
+  const Eigen::ArrayXd num_pairs = (m * (m - 1.0)).max(1.0);
+  const Matrix5d* of_weights[kNumParts] = {&points.within, &points.between};  // U' W_a U
+  std::array<Matrix5d, kNumLengths> of_lengths;
+  Moments moments;
+  moments.q(kOwn) = points.mean_squares.sum();
+  moments.q(kKeyPoint) =
+      (is_repeated * (m.square() * points.residuals.array().square() - m * points.mean_squares.array()) /
+       num_pairs)
+          .sum();
+  moments.q.tail<kNumLengths>() = pairs.products;
+  moments.M(kOwn, kOwn) = m.inverse().sum();
+  moments.M(kKeyPoint, kKeyPoint) = (is_repeated / num_pairs).sum();
+  moments.M.bottomRightCorner<kNumLengths, kNumLengths>() = pairs.weighted;
+  moments.T.bottomRightCorner<kNumLengths, kNumLengths>() = pairs.squares;
+  for (size_t k = 0; k < kNumLengths; ++k) {
+    of_lengths[k] = points.means.transpose() * pairs.means[k];
+    of_weights[kFirstLength + k] = &of_lengths[k];
+  }
+  moments.G[kOwn] = points.squares / points.share_kept;
+  moments.T(kOwn, kOwn) = static_cast<double>(points.size());
+  for (int a = kOwn; a < kNumParts; ++a) moments.T(a, kOwn) -= of_weights[a]->trace();
+  for (int b = kKeyPoint; b < kNumParts; ++b) {
+    Rows smooth = points.sums;  // K_b U, of a key point's matches
+    if (b >= kFirstLength) smooth += pairs.sums[static_cast<size_t>(b - kFirstLength)] / points.share_kept;
+    const Matrix5d G = points.sums.transpose() * smooth / points.share_kept;
+    const Eigen::ArrayXd left = 1.0 - 2.0 * smooth.cwiseProduct(points.means).rowwise().sum().array();
+    moments.T(kOwn, b) = left.sum();
+    moments.T(kKeyPoint, b) = (is_repeated * left).sum();
+    for (int a = kFirstLength; a < kNumParts; ++a)
+      moments.T(a, b) -= 2.0 * pairs.means[static_cast<size_t>(a - kFirstLength)].cwiseProduct(smooth).sum();
+    for (int a = kOwn; a < kNumParts; ++a) moments.T(a, b) += of_weights[a]->cwiseProduct(G).sum();
+    moments.G[static_cast<size_t>(b)] = G;
+  }
+  return moments;
+}
+
+// Least squares of q - T v over v >= 0, and by how much it is better than v_0 alone.
+struct Solution {
+  Parts v = Parts::Zero();
+  double deviance = 0.0;
+};
+Solution SolveMoments(const Moments& moments) {
+  std::vector<int> known;  // parts that the matches say something of
+  for (int a = kOwn; a < kNumParts; ++a) {
+    if (moments.M(a, a) >= kLeastPairs || a == kOwn) known.push_back(a);
+  }
+  const Eigen::MatrixXd T = moments.T(known, known);
+  const Eigen::MatrixXd weighted = moments.M(known, known).ldlt().solve(T);
+  const Eigen::MatrixXd normal = T.transpose() * weighted;
+  const Eigen::VectorXd right = weighted.transpose() * Eigen::VectorXd(moments.q(known));
+  Solution best;
+  best.v(kOwn) = right(0) / normal(0, 0);
+  const double variance = best.v(kOwn), alone = right(0) * variance;
+  for (unsigned chosen = 1; chosen < 1u << (known.size() - 1); ++chosen) {
+    std::vector<int> active = {0};
+    for (size_t k = 1; k < known.size(); ++k) {
+      if ((chosen >> (k - 1) & 1u) != 0) active.push_back(static_cast<int>(k));
+    }
+    const Eigen::VectorXd v = normal(active, active).ldlt().solve(right(active));
+    if (!(v.minCoeff() >= 0.0)) continue;
+    const double deviance = (right(active).dot(v) - alone) / (2.0 * variance * variance);
+    if (!(deviance > std::max(best.deviance, kLeastDeviance))) continue;
+    best = {Parts::Zero(), deviance};
+    for (size_t k = 0; k < active.size(); ++k)
+      best.v(known[static_cast<size_t>(active[k])]) = v(static_cast<Eigen::Index>(k));
+  }
+  return best;
+}
+
+// Without what thinning may leave of negative eigenvalues.
+Matrix5d Nonnegative(const Matrix5d& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(0.5 * (matrix + matrix.transpose()));
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
+
+}  // namespace
+
+double ResidualVariances::Sum() const {
+  return std::accumulate(of_neighbours.begin(), of_neighbours.end(), own + of_key_point);
+}
+
+ResidualVariances FitResidualVariances(const MatchScores& scores, std::span<const int> groups) {
+  const Eigen::LLT<Matrix5d> llt(scores.information);
+  if (groups.empty() || llt.info() != Eigen::Success) return {};
+  const Matrix5d L = llt.matrixL();
+  const Moments moments = MomentsOf(KeyPointsOf(scores, groups, L));
+  const Solution solution = SolveMoments(moments);
+  ResidualVariances variances;
+  variances.own = solution.v(kOwn);
+  variances.of_key_point = solution.v(kKeyPoint);
+  variances.deviance = solution.deviance;
+  Matrix5d middle = Matrix5d::Zero();
+  for (int b = kKeyPoint; b < kNumParts; ++b) {
+    if (b >= kFirstLength) variances.of_neighbours.push_back(solution.v(b));
+    middle += solution.v(b) * moments.G[static_cast<size_t>(b)];
+  }
+  const Matrix5d half = L.transpose().triangularView<Eigen::Upper>().solve(Nonnegative(middle));
+  variances.shared = L.transpose().triangularView<Eigen::Upper>().solve(half.transpose());
+  return variances;
+}
+
+}  // namespace rcme
