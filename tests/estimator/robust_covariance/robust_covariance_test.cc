@@ -122,7 +122,7 @@ Residuals DrawResiduals(double own, double of_key_point, double of_neighbours, s
     const Correspondence here{{640.0 * rng.Uniform(), 480.0 * rng.Uniform()}, {0.0, 0.0}};
     drawn.scores.matches.push_back(is_repeated ? drawn.scores.matches.back() : here);
     drawn.scores.normals.emplace_back(0.0, 1.0, 0.0, 0.0);
-    for (int k = 0; k < 5; ++k) X(i, k) = k == 0 ? 1.0 : rng.Normal();
+    for (int k = 0; k < 5; ++k) X(i, k) = is_repeated ? X(i - 1, k) : k == 0 ? 1.0 : rng.Normal();
     for (int j = 0; j <= i; ++j) {
       const auto a = static_cast<size_t>(i), b = static_cast<size_t>(j);
       const double distance = (drawn.scores.matches[a].x1_px - drawn.scores.matches[b].x1_px).norm();
@@ -145,8 +145,8 @@ Residuals DrawResiduals(double own, double of_key_point, double of_neighbours, s
 }
 
 // Of 300 draws each: the estimated covariance, relative to the true one and averaged over the five
-// directions, is 1 within four standard errors and a fifth (what is below zero counts as zero, and five
-// parameters are fitted). The covariance of independent errors is less than 0.8 of it: power.
+// directions, is 1 within four standard errors and a fifth (what is below zero counts as zero). Without
+// shared parts it is below 0.92: power.
 TEST(ResidualVariances, GiveTheCovarianceOfASharedError) {
   const std::array<std::array<double, 3>, 3> laws = {{{0.6, 0.0, 0.4}, {0.4, 0.6, 0.0}, {0.4, 0.3, 0.3}}};
   for (const auto& [own, of_key_point, of_neighbours] : laws) {
@@ -163,13 +163,13 @@ TEST(ResidualVariances, GiveTheCovarianceOfASharedError) {
     }
     const double mean = sum / kNumDraws;
     const double error = std::sqrt((sum_squares / kNumDraws - mean * mean) / kNumDraws);
-    EXPECT_NEAR(mean, 1.0, 0.2 + 4.0 * error) << of_key_point << " " << of_neighbours;
-    EXPECT_LT(sum_without / kNumDraws, 0.85) << of_key_point << " " << of_neighbours;
+    EXPECT_NEAR(mean, 1.0, 0.2 + 4.0 * error) << error << " " << of_key_point << " " << of_neighbours;
+    EXPECT_LT(sum_without / kNumDraws, 0.92) << of_key_point << " " << of_neighbours;
   }
 }
 
 // Where errors are independent a shared part is seen in at most a third of 300 draws (exact interval of
-// confidence 0.999), and it adds little: 0.15 of the variance on average.
+// confidence 0.9999), and it adds little: a quarter of the variance on average.
 TEST(ResidualVariances, OfIndependentErrorsAreMostlyOwn) {
   CoverageCount found;
   double sum_shared = 0.0;
@@ -182,7 +182,7 @@ TEST(ResidualVariances, OfIndependentErrorsAreMostlyOwn) {
     sum_shared += drawn.covariance_true.llt().solve(variances.shared).trace() / 5.0 / 300.0;
   }
   EXPECT_LT(found.interval().lower, 0.33) << found;
-  EXPECT_LT(sum_shared, 0.15);
+  EXPECT_LT(sum_shared, 0.25);
 }
 
 // What a common k1 of both images moves the motion by, to first order, found by fits to images that have it.
