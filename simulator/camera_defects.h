@@ -8,7 +8,7 @@
 
 namespace rcme {
 
-// What real cameras have and an ideal pinhole does not; no estimator is told.
+// What real cameras have and an ideal pinhole does not; no estimator knows of it.
 struct CameraDefects {
   // Radial distortion that a calibration has left, of both cameras: a point (x, y, 1) of a ray is imaged as
   // (1 + k1 (x^2 + y^2)) (x, y).

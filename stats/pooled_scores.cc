@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Of information in units in which every parameter alone has one: below it a combination is not told.
+// Of information in units in which every parameter alone has one: below it a combination is not determined.
 constexpr double kLeastInformation = 1e-9;
 constexpr double kCommonDegreesOfFreedom = 10.0;  // nu_0, at most
-constexpr PooledParameter kUntold = {kNaN, kNaN, {-kInfinity, kInfinity}, 0.0};
+constexpr PooledParameter kUndetermined = {kNaN, kNaN, {-kInfinity, kInfinity}, 0.0};
 
 // Symmetric matrices in units in which all units' information has a diagonal of ones.
 struct Scaling {
@@ -90,7 +90,7 @@ PooledScores PoolScores(std::span<const UnitScore> units, double confidence) {
   PooledScores pooled{{}, kNaN, kNaN, {}};
   if (units.empty()) return pooled;
   const Eigen::Index k = units.front().score.size();
-  pooled.parameters.assign(static_cast<size_t>(k), kUntold);
+  pooled.parameters.assign(static_cast<size_t>(k), kUndetermined);
   Eigen::VectorXd score = Eigen::VectorXd::Zero(k);
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(k, k);
   for (const UnitScore& unit : units) score += unit.score, A += unit.information;
@@ -143,7 +143,7 @@ PooledParameter PoolScoreAlone(std::span<const UnitScore> units, Eigen::Index j,
         {unit.member1, unit.member2, unit.score.segment(j, 1), unit.information.block(j, j, 1, 1)});
   }
   const PooledScores pooled = PoolScores(alone, confidence);
-  return pooled.parameters.empty() ? kUntold : pooled.parameters.front();
+  return pooled.parameters.empty() ? kUndetermined : pooled.parameters.front();
 }
 
 }  // namespace rcme

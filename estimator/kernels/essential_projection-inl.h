@@ -88,8 +88,8 @@ HWY_INLINE Vec3 Polish(const Mat3& M, const Vec3& u) {
   const Vec smallest = Dot(r3, r3);
   const Vec a = Dot(r1, r1) - smallest, b = Dot(r1, r2), c = Dot(r2, r2) - smallest;
   const Vec determinant = FusedMulSub(a, c, b * b);
-  const Mask is_told = determinant > Set(1e-20) * Square(a + c);
-  const Vec inverse = hn::IfThenElseZero(is_told, Set(1.0) / determinant);
+  const Mask is_determined = determinant > Set(1e-20) * Square(a + c);
+  const Vec inverse = hn::IfThenElseZero(is_determined, Set(1.0) / determinant);
   const Vec p = Dot(r1, r3), q = Dot(r2, r3);
   const Vec along1 = FusedMulSub(b, q, c * p) * inverse, along2 = FusedMulSub(b, p, a * q) * inverse;
   const Vec3 step = Combine(u1, along1, u2, along2);

@@ -52,9 +52,9 @@ struct Tally {
 Tally CountDifferences(const Comparison& comparison, const std::string& label, const std::string& event) {
   Tally tally;
   for (const ComparisonRow& row : comparison.rows) {
-    const bool is_told =
+    const bool is_decided =
         row.estimator == label && row.event == event && row.holm_p_value < kSignificanceLevel;
-    if (is_told) ++(row.difference > 0.0 ? tally.more : tally.less);
+    if (is_decided) ++(row.difference > 0.0 ? tally.more : tally.less);
   }
   return tally;
 }

@@ -62,7 +62,7 @@ MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& es
   evidence.sigma_sd_px = std::isfinite(estimate.sigma_estimated_sd_px)
                              ? estimate.sigma_estimated_sd_px
                              : SdOfNoise(evidence.sigma_px, inliers.matches.size());
-  // What the noise explains is told by the noise there is; without any, by a little of what was assumed.
+  // What the noise explains is measured by the noise there is; without any, by a little of what was assumed.
   inliers.sigma_px = std::max(evidence.sigma_px, 0.01 * problem.sigma_px);
   MeasureParallax(inliers, estimate.cam2_from_cam1, &evidence);
   RandomStream rng = StreamFor({1, 0, 0, 0}, StreamPurpose::kCheck);

@@ -9,7 +9,7 @@
 // to be estimated. On rendered images residuals grow with the power 0.8 to 0.9 of the size (SIFT), 1 (ORB)
 // and 1.3 to 1.9 (AKAZE; tests/experiments/data/features_test.cc holds them within bounds), on real pairs 4
 // to 9 times over the sizes, less than proportionally. A power too great costs more than one too small, as it
-// gives all the weight to few matches (experiments/results/told_noise): hence 0.7.
+// gives all the weight to few matches (experiments/results/stated_noise): hence 0.7.
 #pragma once
 
 #include <cstdint>

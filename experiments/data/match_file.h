@@ -33,7 +33,7 @@ namespace rcme {
 //   14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre of the top-left pixel
 //
 // A further column named sigma_px is each match's own standard deviation per coordinate (features.h says
-// what those of our front end are). An estimator is told how these compare with each other, not how large
+// what those of our front end are). An estimator is given how these compare with each other, not how large
 // they are (ProblemOf). Other columns are skipped.
 struct MatchFile {
   std::string path;
@@ -65,7 +65,7 @@ MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given = std
 // The same from standard input, which is also the path of the result.
 MatchFile ReadMatchesFromInput(const GivenCameras& given = std::nullopt);
 
-// What an estimator is told of a file: its matches and cameras, the noise level that is assumed, and of a
+// What an estimator is given of a file: its matches and cameras, the noise level that is assumed, and of a
 // column sigma_px each one's share of the median (noise_scale).
 MotionProblem ProblemOf(MatchFile file, double sigma_px);
 

@@ -53,8 +53,8 @@ void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecor
   for (const int index : estimate.inliers) {
     const auto i = static_cast<size_t>(index);
     num_found += truth.is_inlier_true[i];
-    const bool can_be_told = truth.is_undetectable.empty() || !truth.is_undetectable[i];
-    num_wrong += !truth.is_inlier_true[i] && can_be_told;
+    const bool can_be_classified = truth.is_undetectable.empty() || !truth.is_undetectable[i];
+    num_wrong += !truth.is_inlier_true[i] && can_be_classified;
   }
   for (const bool is_inlier : truth.is_inlier_true) num_true += is_inlier;
   if (num_found + num_wrong > 0) record->inlier_precision = 1.0 * num_found / (num_found + num_wrong);

@@ -30,7 +30,7 @@ struct TrialRecord {
   double failure_probability = 0.0;  // as the estimator states it; NaN: it states none
   double sigma_estimated_px = 0.0, sigma_estimated_sd_px = 0.0;
   double inlier_brier =
-      0.0;        // mean squared error of the inlier probabilities, over the matches that can be told
+      0.0;        // mean squared error of the inlier probabilities, over the matches that can be classified
   int doubt = 0;  // number of the Doubt (motion_estimate.h)
   // Processor time of the call, of its thread, and the time that an estimator outside the program took; the
   // only field that is not a function of the trial's name.

@@ -49,6 +49,11 @@ bool IsFault(TruthFreeVerdict verdict) {
   return verdict == TruthFreeVerdict::kTooSmall || verdict == TruthFreeVerdict::kTooLarge;
 }
 
+// Further from zero than all of the other interval, to the same side or the other.
+bool IsBeyond(const Interval& interval, const Interval& other) {
+  return interval.lower > std::max(0.0, other.upper) || interval.upper < std::min(0.0, other.lower);
+}
+
 TruthFreeVerdict VerdictOnAll(const CalibrationReport& report) {
   if (std::isnan(report.p_value)) return TruthFreeVerdict::kNoData;
   const auto holds = [](const FaultReport& each) { return each.verdict == TruthFreeVerdict::kHolds; };
@@ -101,7 +106,8 @@ CalibrationReport TestCalibration(const std::vector<PairAnswers>& answers) {
     FaultReport of{fault, joint.parameters[j], PoolScoreAlone(units, column, kOfEach), {}, {}, {}};
     of.twins = twins.parameters.empty() ? PoolScoreAlone(of_twins, column, kOfEach) : twins.parameters[j];
     of.verdict = VerdictOf(fault, of.joint);
-    if (IsFault(VerdictOf(fault, of.twins))) of.verdict = TruthFreeVerdict::kUndecided;
+    if (IsFault(VerdictOf(fault, of.twins)) && !IsBeyond(of.joint.interval, of.twins.interval))
+      of.verdict = TruthFreeVerdict::kUndecided;
     if (of.verdict == TruthFreeVerdict::kUndecided && IsFault(VerdictOf(fault, of.alone)))
       of.confused_with = MostAlike(joint.correlations, column);
     report.faults.push_back(of);

@@ -21,7 +21,7 @@ struct FaultReport {
   // Estimated beside the other faults; were it the only one; the former of the twins, which have none.
   PooledParameter joint, alone, twins;
   // By `joint`: holds if the whole interval is nominal, too large or too small if it does not hold zero; by
-  // nothing ("undecided") where the twins themselves show more than what is nominal.
+  // nothing ("undecided") where the twins show one too, and the pairs' interval does not lie beyond theirs.
   TruthFreeVerdict verdict = TruthFreeVerdict::kNoData;
   // Where it is undecided, but is found if it is the only fault: the one that it is told apart from worst.
   std::optional<CameraFault> confused_with;

@@ -7,9 +7,10 @@ from tables import levels_of, markdown, read_table, select, the_row, words_of
 
 
 def truth_free(spec):
-    """Of each scene, for each table of `rcme validate` (tables: NAME as WORDS; ...): the share that the 95 % region covers, the
-    same of the twins, and by what the covariances are too small; one test."""
-    tables = [(read_table(name), words) for name, words in spec.parts("tables")]
+    """Of each scene, for each table of `rcme validate` (tables: NAME as WORDS; ... of one folder, or NAME+NAME of several): the
+    share that the 95 % region covers, the same of the twins, and by what the covariances are too small; one test."""
+    tables = [([row for part in name.split("+") for row in read_table(part)], words)
+              for name, words in spec.parts("tables")]
     body = []
     for scene in levels_of(tables[0][0], "set"):
         line = [scene]

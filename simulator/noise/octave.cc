@@ -15,8 +15,8 @@ namespace {
 //   E f^(2k) = L / sum_k f^(-2k),  L levels,
 // so that a standard deviation of sigma_px f^k sqrt(sum f^(-2k) / L) has the root mean square sigma_px.
 //
-// The detector knows a key point's level, and may take its error to be f^(h k), h = told_growth: this is what
-// it tells; with h = 0 nothing.
+// The detector knows a key point's level, and may take its error to be f^(h k), h = stated_growth: this is
+// what it states; with h = 0 nothing.
 class OctaveNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -26,9 +26,9 @@ class OctaveNoise : public NoiseModel {
                             "scale of one level of the pyramid over that of the next finer one"),
             Parameter::Real("octave_growth", &growth_, {0.0, 4.0}, "",
                             "noise grows with this power of a level's scale"),
-            Parameter::Real("told_growth", &told_growth_, {0.0, 4.0}, "",
-                            "estimators are told that it grows with this power (of each match, relative to "
-                            "the median); 0: they are told nothing")};
+            Parameter::Real("stated_growth", &stated_growth_, {0.0, 4.0}, "",
+                            "estimators are given that it grows with this power (of each match, relative to "
+                            "the median); 0: they are given nothing")};
   }
   double sigma_px() const override { return sigma_px_; }
 
@@ -38,46 +38,46 @@ class OctaveNoise : public NoiseModel {
 
   std::vector<double> AddAndTell(std::span<Correspondence> matches, RandomStream& rng) const override {
     const Pyramid pyramid = MakePyramid();
-    std::vector<double> told;
+    std::vector<double> stated;
     for (Correspondence& match : matches) {
       const double area = pyramid.total_area * rng.Uniform();
       size_t level = 0;
       while (level + 1 < pyramid.sds.size() && area >= pyramid.area_up_to[level]) ++level;
       for (double* x_px : Coordinates(match)) *x_px += pyramid.sds[level] * rng.Normal();
-      if (told_growth_ > 0.0) told.push_back(pyramid.told[level]);
+      if (stated_growth_ > 0.0) stated.push_back(pyramid.stated[level]);
     }
-    return told;
+    return stated;
   }
 
  private:
   // Level by level.
   struct Pyramid {
     std::vector<double> area_up_to, sds;  // px
-    std::vector<double> told;             // over sigma_px; true where told_growth is octave_growth
+    std::vector<double> stated;           // over sigma_px; true where stated_growth is octave_growth
     double total_area = 0.0;
   };
   Pyramid MakePyramid() const {
     Pyramid pyramid;
-    double scale = 1.0, variance = 0.0, told_variance = 0.0;
+    double scale = 1.0, variance = 0.0, stated_variance = 0.0;
     for (int level = 0; level < num_levels_; ++level, scale *= factor_) {
       const double area = 1.0 / (scale * scale);
       pyramid.total_area += area;
       pyramid.area_up_to.push_back(pyramid.total_area);
       pyramid.sds.push_back(growth_ == 1.0 ? scale : std::pow(scale, growth_));
-      pyramid.told.push_back(std::pow(scale, told_growth_));
+      pyramid.stated.push_back(std::pow(scale, stated_growth_));
       variance += growth_ == 1.0 ? 1.0 : area * pyramid.sds.back() * pyramid.sds.back();
-      told_variance += area * pyramid.told.back() * pyramid.told.back();
+      stated_variance += area * pyramid.stated.back() * pyramid.stated.back();
     }
     const double finest_px = sigma_px_ * std::sqrt(pyramid.total_area / variance);
     for (double& sd : pyramid.sds) sd = finest_px * sd;
-    for (double& told : pyramid.told) told *= std::sqrt(pyramid.total_area / told_variance);
+    for (double& stated : pyramid.stated) stated *= std::sqrt(pyramid.total_area / stated_variance);
     return pyramid;
   }
 
   double sigma_px_ = 0.5;
   int num_levels_ = 8;  // with the factor: ORB's pyramid
   double factor_ = 1.2;
-  double growth_ = 1.0, told_growth_ = 0.0;
+  double growth_ = 1.0, stated_growth_ = 0.0;
 };
 
 }  // namespace

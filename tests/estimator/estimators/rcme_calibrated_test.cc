@@ -96,8 +96,8 @@ TEST_F(RcmeCalibratedOf, FailsAsOftenAsItsProbabilitiesSay) {
   EXPECT_NEAR(expected, failed, 4.0 * std::sqrt(variance) + 0.03 * kNumTrials);
 }
 
-// Matches of which each is 1, 2 or 4 times as noisy as .25 px, told or not; 30 % are wrong.
-MotionProblem UnequalProblem(std::uint32_t trial, bool is_told, RelativePose* pose_true) {
+// Matches of which each is 1, 2 or 4 times as noisy as .25 px, stated or not; 30 % are wrong.
+MotionProblem UnequalProblem(std::uint32_t trial, bool is_stated, RelativePose* pose_true) {
   const Scene scene = TwoCameraScene(200, trial);
   *pose_true = scene.cam2_from_cam1_true;
   RandomStream noise_rng({.seed = 1, .trial = trial, .purpose = 93});
@@ -106,7 +106,7 @@ MotionProblem UnequalProblem(std::uint32_t trial, bool is_told, RelativePose* po
   for (const auto& [key, value] : {std::pair{"sigma_px", "0.5"},
                                    {"num_octave_levels", "3"},
                                    {"octave_factor", "2"},
-                                   {"told_growth", is_told ? "1" : "0"}}) {
+                                   {"stated_growth", is_stated ? "1" : "0"}}) {
     for (const Parameter& parameter : law->Parameters())
       if (parameter.name() == key) parameter.SetFromText(value);
   }
@@ -114,21 +114,22 @@ MotionProblem UnequalProblem(std::uint32_t trial, bool is_told, RelativePose* po
   return {std::move(seen.matches), scene.camera1, scene.camera2, 0.5, std::move(seen.noise_scale)};
 }
 
-// 200 trials, each with and without being told. The region covers: at .95 a false alarm has probability 1e-4
-// (.94 is admitted as well, 140 right matches being few). What is told makes the Mahalanobis distance by the
-// covariance of the told answer smaller more often than not: of 200 trials without any use, 130 or more have
-// probability 1.4e-5.
+// 200 trials, each with and without the statement. The region covers: at .95 a false alarm has probability
+// 1e-4
+// (.94 is admitted as well, 140 right matches being few). The statement makes the Mahalanobis distance by the
+// covariance of the answer with it smaller more often than not: of 200 trials without any use, 130 or more
+// have probability 1.4e-5.
 TEST_F(RcmeCalibratedOf, BeingToldHowNoisyMatchesAreMakesErrorsSmallerAndKeepsTheCoverage) {
   CoverageCount covered;
   int num_smaller = 0;
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
     RelativePose pose_true;
-    const MotionEstimate told = RunOn(UnequalProblem(trial, true, &pose_true), trial);
-    const MotionEstimate untold = RunOn(UnequalProblem(trial, false, &pose_true), trial);
-    ASSERT_EQ(told.status, MotionStatus::kOk);
-    const Vector5d error = LocalCoordinates(told.cam2_from_cam1, pose_true),
-                   other = LocalCoordinates(untold.cam2_from_cam1, pose_true);
-    const Matrix5d information = told.pose_cov.inverse();
+    const MotionEstimate stated = RunOn(UnequalProblem(trial, true, &pose_true), trial);
+    const MotionEstimate unstated = RunOn(UnequalProblem(trial, false, &pose_true), trial);
+    ASSERT_EQ(stated.status, MotionStatus::kOk);
+    const Vector5d error = LocalCoordinates(stated.cam2_from_cam1, pose_true),
+                   other = LocalCoordinates(unstated.cam2_from_cam1, pose_true);
+    const Matrix5d information = stated.pose_cov.inverse();
     covered.Add(error.dot(information * error) <= ChiSquareQuantile(5, 0.95));
     num_smaller += error.dot(information * error) < other.dot(information * other);
   }

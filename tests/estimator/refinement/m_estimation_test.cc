@@ -80,7 +80,7 @@ TEST(MEstimation, CovarianceCoversWhereNothingIsWrong) {
   }
 }
 
-// And where each match's own noise is told: 200 precise matches decide.
+// And where each match's own noise is stated: 200 precise matches decide.
 TEST(MEstimation, CovarianceCoversWhereMatchesAreNotAlike) {
   for (const MEstimation& options : {kHuber, kTukey}) {
     CoverageCount covered;

@@ -64,29 +64,29 @@ TEST(OctaveNoise, HasTheSameLevelInBothImages) {
   EXPECT_GT(ZAgainst(product, 1.0), 2.0 * kNoiseZ) << "no power";
 }
 
-// Over what is told all coordinates are standard normal where it is true; where noise does not grow and the
+// Over what is stated all coordinates are standard normal where it is true; where noise does not grow and the
 // detector thinks so, they are normal as they are. Anderson-Darling at 1e-4 a coordinate.
 TEST(OctaveNoise, TellsTheTrueSizeOfEachMatchsNoiseUnlessItIsToldWrong) {
   for (const bool is_true : {true, false}) {
     const auto law = WithSettings(MakeOctaveNoise(), {{"sigma_px", "1"},
                                                       {"octave_factor", "1.5"},
                                                       {"octave_growth", is_true ? "0.7" : "0"},
-                                                      {"told_growth", "0.7"}});
+                                                      {"stated_growth", "0.7"}});
     RandomStream rng({.seed = 1, .purpose = 95});
     std::vector<Correspondence> matches(20'000, Correspondence{{0.0, 0.0}, {0.0, 0.0}});
-    const std::vector<double> told = law->AddAndTell(matches, rng);
-    ASSERT_EQ(told.size(), matches.size());
-    std::vector<Eigen::Vector4d> own, over_told;
+    const std::vector<double> stated = law->AddAndTell(matches, rng);
+    ASSERT_EQ(stated.size(), matches.size());
+    std::vector<Eigen::Vector4d> own, over_stated;
     double mean_square = 0.0;
     for (size_t i = 0; i < matches.size(); ++i) {
       own.emplace_back(matches[i].x1_px.x(), matches[i].x1_px.y(), matches[i].x2_px.x(),
                        matches[i].x2_px.y());
-      over_told.emplace_back(own.back() / told[i]);
-      mean_square += told[i] * told[i] / static_cast<double>(matches.size());
+      over_stated.emplace_back(own.back() / stated[i]);
+      mean_square += stated[i] * stated[i] / static_cast<double>(matches.size());
     }
-    EXPECT_NEAR(mean_square, 1.0, 0.05);  // sigma_px is the root mean square of what is told, too
-    EXPECT_GT(PValue(is_true ? over_told : own, NormalCdf), 1e-4);
-    EXPECT_LT(PValue(is_true ? own : over_told, NormalCdf), 1e-6) << "no power";
+    EXPECT_NEAR(mean_square, 1.0, 0.05);  // sigma_px is the root mean square of what is stated, too
+    EXPECT_GT(PValue(is_true ? over_stated : own, NormalCdf), 1e-4);
+    EXPECT_LT(PValue(is_true ? own : over_stated, NormalCdf), 1e-6) << "no power";
   }
 }
 
