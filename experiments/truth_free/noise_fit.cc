@@ -121,7 +121,7 @@ RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimat
       for (std::uint32_t draw = 0; draw < kFitDraws; ++draw) {
         const StreamName name{seed, StreamKeyOf(answered->pair.origin), kFitTrial + draw, 0};
         const TrialData drawn = redraw.Draw(*answered->exact, name, answered->noise_level);
-        sum.Add(drawn.problem, Answered(drawn.problem, estimator, name));
+        sum.Add(drawn.problem, AnswerTo(drawn.problem, estimator, name));
       }
     }
     return sum.Take();
@@ -146,7 +146,7 @@ RedrawSettings FitSimulatedNoise(const TwinSource& source, const TwinFit& fit, d
     for (std::uint32_t number = 0; number < kFitDraws * used.size(); ++number) {
       const StreamName name{seed, StreamKeyOf(source.scene), kFitTrial + number, 0};
       const TrialData drawn = data->Make(name);
-      sum.Add(drawn.problem, Answered(drawn.problem, estimator, name));
+      sum.Add(drawn.problem, AnswerTo(drawn.problem, estimator, name));
     }
     return sum.Take();
   };

@@ -118,7 +118,7 @@ Values Joined(Values a, const Values& b) {
 constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
 
 Values TwinValues(const TrialData& twin, const MotionEstimator& estimator, const StreamName& name) {
-  return ValuesOf(twin, Answered(twin.problem, estimator, name), estimator, name);
+  return ValuesOf(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
 }
 
 std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstimator& estimator,

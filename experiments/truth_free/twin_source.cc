@@ -67,7 +67,7 @@ bool AnsweredTrial::HasAnsweredTemplate() const {
   return exact && estimate.status == MotionStatus::kOk && !IsWrong(estimate, pair);
 }
 
-MotionEstimate Answered(const MotionProblem& problem, const MotionEstimator& estimator,
+MotionEstimate AnswerTo(const MotionProblem& problem, const MotionEstimator& estimator,
                         const StreamName& name) {
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
   return Judged(estimator.Estimate(problem, rng), problem.matches.size());
@@ -84,7 +84,7 @@ TwinSource AnswerScene(const std::string& scene, const DataSource& data, const I
     const auto named = images.find(answered.pair.origin);
     if (named != images.end()) std::tie(answered.image1, answered.image2) = named->second;
     answered.estimate =
-        Answered(answered.pair.problem, estimator, {seed, StreamKeyOf(answered.pair.origin), 0, 0});
+        AnswerTo(answered.pair.problem, estimator, {seed, StreamKeyOf(answered.pair.origin), 0, 0});
     answered.exact = ExactOf(answered.pair, answered.estimate);
     source.pairs.push_back(std::move(answered));
   }

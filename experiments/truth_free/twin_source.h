@@ -37,7 +37,7 @@ TwinSource AnswerScene(const std::string& scene, const DataSource& data, const I
                        const MotionEstimator& estimator, std::uint64_t seed);
 
 // The answer of an estimator to a problem, judged; its samples are of that stream.
-MotionEstimate Answered(const MotionProblem& problem, const MotionEstimator& estimator,
+MotionEstimate AnswerTo(const MotionProblem& problem, const MotionEstimator& estimator,
                         const StreamName& name);
 
 }  // namespace rcme
