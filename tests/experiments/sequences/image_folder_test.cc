@@ -37,7 +37,10 @@ std::string WithCameraSegments(const std::string& jpeg) {
   std::string segments = "\xFF\xE1\0"s;
   segments += static_cast<char>(exif.size() + 2);
   segments += exif;
-  for (int i = 0; i < 2; ++i) segments += "\xFF\xE2\xFF\xFF"s + std::string(0xFFFF - 2, 'p');
+  for (int i = 0; i < 2; ++i) {
+    segments += "\xFF\xE2\xFF\xFF"s;
+    segments.append(0xFFFF - 2, 'p');
+  }
   return jpeg.substr(0, 2) + segments + jpeg.substr(2);
 }
 
