@@ -14,9 +14,9 @@
 //        1.25: what blocks see and a correlation that falls with the distance does not
 //   a    from the motion to the least-squares optimum p* of the matches that agree with it, whose covariance
 //        the former is. Nil for an estimator that has fitted these; else the distance is known, and part of
-//        the error: p - p_true = a + (p* - p_true). Where p* is efficient, p* and a are uncorrelated (Hausman
-//        1978). Wrong matches of great leverage within the reach of an M-estimator's loss, or a motion that
-//        was not refined, are seen in it.
+//        the error: p - q = a + (p* - q), q the true motion. Where p* is efficient, p* and a are uncorrelated
+//        (Hausman 1978). Wrong matches of great leverage within the reach of an M-estimator's loss, or a
+//        motion that was not refined, are seen in it.
 //   factor  what residuals cannot see: errors that reach as far as the image, of the lens or the calibration
 //   G Sigma_K G'  what an uncertain calibration adds (uncertainty/calibration_prior.h)
 #pragma once

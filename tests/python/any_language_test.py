@@ -76,7 +76,7 @@ class AnyLanguage(unittest.TestCase):
         for line in lines:
             problem = json.loads(line)
             self.assertEqual(set(problem), set(SCHEMA["problem"]["required"]))
-            self.assertEqual(set(problem), set(SCHEMA["problem"]["properties"]))
+            self.assertEqual(set(problem) | {"noise_scale"}, set(SCHEMA["problem"]["properties"]))  # which is optional
             self.assertEqual(set(problem["camera1"]), set(SCHEMA["camera"]["required"]))
             answer = example().answer_to(problem)
             self.assertLessEqual(set(answer), set(SCHEMA["answer"]["properties"]))
