@@ -6,9 +6,8 @@
 //        (clustered_covariance.h), which holds where some matches are noisier than others and is uncertain
 //        with few, and s^2 A^-1, s^2 the residuals' variance, which is neither
 //   s_0  the share of the residuals' variance that is each match's own; C_shared is what the rest adds:
-//   matches
-//        of one key point (within 1 px of each other in either image) and neighbours err alike, as far as the
-//        residuals themselves say so (residual_variances.h)
+//        matches of one key point (within 1 px of each other in either image) and neighbours err alike, as
+//        far as the residuals themselves say so (residual_variances.h)
 //   d    design effect: how much greater the sandwich is, on average over the five directions, if the matches
 //        in one of 8x8 blocks of image 1 are a group, tr((s_0 C_0 + C_shared)^-1 C_B) / 5, where it exceeds
 //        1.25: what blocks see and a correlation that falls with the distance does not

@@ -213,6 +213,12 @@ TEST(CalibrationCovariance, OfTheDistortionIsThatOfFitsToDistortedImages) {
   EXPECT_LT((added - expected).norm(), 0.1 * expected.norm()) << added << "\n\n" << expected;
 }
 
+// Whether the 95 % region holds the truth; that of a covariance that is none, or singular, holds nothing.
+bool Covers(const Matrix5d& covariance, const Vector5d& error) {
+  const Eigen::LLT<Matrix5d> llt(covariance);
+  return llt.info() == Eigen::Success && error.dot(llt.solve(error)) <= ChiSquareQuantile(5, 0.95);
+}
+
 // Least squares over all matches of scenes with no wrong ones.
 struct Coverages {
   CoverageCount first_order, robust;
@@ -220,7 +226,6 @@ struct Coverages {
 };
 
 Coverages CoverageUnder(const NoiseModel& noise, int num_matches, int num_trials) {
-  const double bound = ChiSquareQuantile(5, 0.95);
   Coverages coverages;
   for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(num_trials); ++trial) {
     const Scene scene = TwoCameraScene(num_matches, trial);
@@ -233,11 +238,8 @@ Coverages CoverageUnder(const NoiseModel& noise, int num_matches, int num_trials
     const Matrix5d robust = RobustCovariance(problem, motion.cam2_from_cam1, Separate(problem.matches.size()),
                                              RobustCovarianceOptions())
                                 .value_or(Matrix5d::Zero());
-    const auto covers = [&](const Matrix5d& covariance) {
-      return error.dot(covariance.ldlt().solve(error)) <= bound;
-    };
-    coverages.first_order.Add(covers(motion.pose_cov));
-    coverages.robust.Add(covers(robust));
+    coverages.first_order.Add(Covers(motion.pose_cov, error));
+    coverages.robust.Add(Covers(robust, error));
     coverages.mean_log_ratio +=
         0.1 * std::log(robust.determinant() / motion.pose_cov.determinant()) / num_trials;
   }
@@ -278,8 +280,7 @@ EstimatorCoverages CoverageOf(const std::string& name, Settings options, const N
       RandomStream rng({1, 0, trial, 4});
       const MotionEstimate estimate = estimator.Estimate(problem, rng);
       if (estimate.status != MotionStatus::kOk) return false;
-      const Vector5d error = LocalCoordinates(estimate.cam2_from_cam1, scene.cam2_from_cam1_true);
-      return error.dot(estimate.pose_cov.ldlt().solve(error)) <= ChiSquareQuantile(5, 0.95);
+      return Covers(estimate.pose_cov, LocalCoordinates(estimate.cam2_from_cam1, scene.cam2_from_cam1_true));
     };
     coverages.own.Add(covers(*with_own));
     coverages.robust.Add(covers(*with_robust));
