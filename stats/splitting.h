@@ -113,14 +113,15 @@ class SplittingPopulation {
       if (p.value > level) ancestors.push_back(p.ancestor);
     }
     std::ranges::sort(ancestors);
-    return static_cast<int>(std::ranges::unique(ancestors).begin() - ancestors.begin());
+    return static_cast<int>(std::unique(ancestors.begin(), ancestors.end()) - ancestors.begin());
   }
 
   // Puts copies of the particles above the level, of which there are some, in the place of the others: each
   // as often as the others, but for one copy that goes to some of them at random.
   void KeepAbove(double level) {
-    const auto kept = std::ranges::partition(particles_, [&](const Particle& p) { return p.value > level; });
-    const auto num_kept = static_cast<size_t>(kept.begin() - particles_.begin());
+    const auto end = std::partition(particles_.begin(), particles_.end(),
+                                    [&](const Particle& p) { return p.value > level; });
+    const auto num_kept = static_cast<size_t>(end - particles_.begin());
     rng_.Shuffle(std::span(particles_).first(num_kept));
     for (size_t i = num_kept; i < particles_.size(); ++i) particles_[i] = particles_[i % num_kept];
   }

@@ -61,7 +61,7 @@ std::vector<size_t> StatisticsOf(const Check& check) {
   for (const Target& target : check.targets) statistics.push_back(target.statistic);
   if (check.difficulty_statistic) statistics.push_back(*check.difficulty_statistic);
   std::ranges::sort(statistics);
-  statistics.erase(std::ranges::unique(statistics).begin(), statistics.end());
+  statistics.erase(std::unique(statistics.begin(), statistics.end()), statistics.end());
   return statistics;
 }
 

@@ -78,7 +78,8 @@ DescribedCommand Described(const CLI::App& command) {
       command.get_parent() ? command.get_name() : "", command.get_description(), command.get_footer(), {}};
   for (const CLI::Option* option : command.get_options())
     described.options.push_back(DescribedOptionOf(*option));
-  std::ranges::stable_partition(described.options, [](const DescribedOption& o) { return o.is_positional; });
+  std::stable_partition(described.options.begin(), described.options.end(),
+                        [](const DescribedOption& o) { return o.is_positional; });
   return described;
 }
 
