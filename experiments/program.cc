@@ -12,6 +12,7 @@
 #include "experiments/base/message.h"
 #include "experiments/base/program_name.h"
 #include "experiments/base/scratch_folder.h"
+#include "experiments/base/shared_files.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
@@ -33,8 +34,9 @@ void CheckArguments(int argc, const char* const* argv) {
 
 }  // namespace
 
-int RunProgram(int argc, const char* const* argv) {
+int RunProgram(int argc, const char* const* argv, const char* installed_share) {
   HoldStandardStreams();
+  if (FindShare().empty()) UseShare(installed_share);
   if (argc > 0) NameProgram(argv[0]);
   RemoveAbandonedScratchFolders();
   std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill

@@ -15,6 +15,7 @@
 #include "experiments/analysis/summarize_counts.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/base/program_name.h"
+#include "experiments/base/shared_files.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/claims/audit_output.h"
 #include "experiments/claims/case.h"
@@ -346,6 +347,7 @@ PYBIND11_MODULE(_rcme, module) {
   });
   py::class_<Camera>(module, "Camera").def(py::init(&CameraOf));
   AddStudySource(module);
+  module.def("use_share", &UseShare);
   module.def("estimate", &Estimate);
   module.def("conditions", &Conditions);
   module.def("simulate", &Simulate);

@@ -16,7 +16,15 @@ namespace fs = std::filesystem;
 constexpr const char* kEnding = ".yaml";
 
 const char* NameOf(SharedFolder folder) {
-  return folder == SharedFolder::kStudies ? "studies" : "estimators";
+  switch (folder) {
+    case SharedFolder::kStudies:
+      return "studies";
+    case SharedFolder::kEstimators:
+      return "estimators";
+    case SharedFolder::kPlots:
+      break;
+  }
+  return "plots";
 }
 
 std::string ListOf(SharedFolder folder) {
@@ -26,19 +34,29 @@ std::string ListOf(SharedFolder folder) {
 fs::path BesideProgram() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? fs::path() : program.parent_path().parent_path() / "share/rcme";
+  return error ? fs::path() : (program.parent_path() / RCME_SHARE_FROM_PROGRAM).lexically_normal();
+}
+
+std::string& Share() {
+  static std::string share = BesideProgram().string();
+  return share;
+}
+
+bool IsFolder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
 }
 
 }  // namespace
 
+std::string FindShare() { return IsFolder(Share()) ? Share() : std::string(); }
+
+void UseShare(const std::string& folder) { Share() = folder; }
+
 std::string PathOf(SharedFolder folder) {
-  for (const fs::path& shared :
-       {BesideProgram(), fs::path(RCME_SOURCE_SHARED), fs::path(RCME_INSTALLED_SHARED)}) {
-    std::error_code ignored;
-    const fs::path path = shared / NameOf(folder);
-    if (!shared.empty() && fs::is_directory(path, ignored)) return path.string();
-  }
-  return {};
+  const std::string share = FindShare();
+  const fs::path path = fs::path(share) / NameOf(folder);
+  return !share.empty() && IsFolder(path) ? path.string() : std::string();
 }
 
 std::vector<std::string> NamesIn(SharedFolder folder) {

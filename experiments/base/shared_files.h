@@ -1,4 +1,5 @@
-// Studies and estimator files that come with the program, by name, from any folder.
+// What comes with the program and is read while it runs: studies and estimator files, by name from any
+// folder, and the scripts that draw figures.
 #pragma once
 
 #include <string>
@@ -8,10 +9,17 @@
 
 namespace rcme {
 
-enum class SharedFolder { kStudies, kEstimators };
+// The folder that holds all of it: share/rcme beside the folder bin of the running program, wherever that was
+// moved to. In a build folder it holds links to the source tree. Empty: there is none.
+std::string FindShare();
 
-// Where they lie: beside the running program (../share/rcme/studies), else in the source tree that it was
-// built from, else where that was to be installed. Empty: nowhere.
+// Takes another folder instead, for code in a program of somebody else's, such as Python. To be called before
+// anything is looked for, from one thread.
+void UseShare(const std::string& folder);
+
+enum class SharedFolder { kStudies, kEstimators, kPlots };
+
+// Where its files lie. Empty: nowhere.
 std::string PathOf(SharedFolder folder);
 
 // The names of what lies there, without .yaml, in their order; of folders within it with the folder:

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "experiments/base/message.h"
+#include "experiments/base/shared_files.h"
 #include "parameters/input_error.h"
 
 extern char** environ;
@@ -20,12 +21,14 @@ namespace {
 constexpr const char* kHasPackages =
     "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('matplotlib', 'pandas'))))";
 
-// The plots of the source tree this was built from, else the installed ones.
-std::string ScriptPath(const std::string& kind) {
-  const std::string script = kind + ".py";
-  const std::filesystem::path in_source = std::filesystem::path(RCME_SOURCE_PLOTS) / script;
-  const std::filesystem::path installed = std::filesystem::path(RCME_INSTALLED_PLOTS) / script;
-  return (std::filesystem::exists(in_source) ? in_source : installed).string();
+std::string FindScript(const std::string& kind) {
+  const std::string folder = PathOf(SharedFolder::kPlots);
+  if (folder.empty())
+    throw InputError(
+        "the scripts that draw figures are not there: they come with the program, in share/rcme/plots beside "
+        "its "
+        "folder bin; move the whole installation, or install it again with cmake --install");
+  return (std::filesystem::path(folder) / (kind + ".py")).string();
 }
 
 // Whether a program of PATH ends with exit code 0.
@@ -49,10 +52,11 @@ bool RunsWell(std::vector<std::string> command, ScriptOutput output) {
 
 ScriptEnd RunPlotScript(const std::string& kind, const std::vector<std::string>& arguments,
                         ScriptOutput output) {
+  const std::string script = FindScript(kind);
   // Debian's own Python first: another one may stand before it on PATH, without matplotlib.
   for (const char* python : {"/usr/bin/python3", "python3"}) {
     if (!RunsWell({python, "-c", kHasPackages}, ScriptOutput::kDropped)) continue;
-    std::vector<std::string> command = {python, ScriptPath(kind)};
+    std::vector<std::string> command = {python, script};
     command.insert(command.end(), arguments.begin(), arguments.end());
     return RunsWell(std::move(command), output) ? ScriptEnd::kDone : ScriptEnd::kFailed;
   }
@@ -75,10 +79,15 @@ void DrawOrThrow(const std::string& command, const std::string& kind,
 }
 
 void DrawFigures(const std::string& kind, const std::vector<std::string>& arguments) {
-  const ScriptEnd end = RunPlotScript(kind, arguments, ScriptOutput::kDropped);
-  if (end == ScriptEnd::kDone) return;
-  const char* way = end == ScriptEnd::kNoPython ? "with matplotlib and pandas installed" : "see above; again";
-  PrintMessage("the figures were not drawn; {}: rcme plot {} {}\n", way, kind, fmt::join(arguments, " "));
+  try {
+    const ScriptEnd end = RunPlotScript(kind, arguments, ScriptOutput::kDropped);
+    if (end == ScriptEnd::kDone) return;
+    const char* way =
+        end == ScriptEnd::kNoPython ? "with matplotlib and pandas installed" : "see above; again";
+    PrintMessage("the figures were not drawn; {}: rcme plot {} {}\n", way, kind, fmt::join(arguments, " "));
+  } catch (const InputError& error) {
+    PrintMessage("the figures were not drawn: {}\n", error.what());
+  }
 }
 
 }  // namespace rcme

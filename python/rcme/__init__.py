@@ -19,7 +19,9 @@ Conventions, everywhere:
   exception but a status.
 """
 
-from rcme import plot
+import pathlib
+
+from rcme import _rcme, plot
 from rcme._estimate import Pose, estimate_relative_pose, estimators
 from rcme._rcme import __version__
 from rcme._study import conditions, run, simulate, tune
@@ -27,3 +29,6 @@ from rcme._tables import audit, compare, reliability, summarize
 
 __all__ = ["Pose", "audit", "compare", "conditions", "estimate_relative_pose", "estimators", "plot", "reliability", "run",
            "simulate", "summarize", "tune", "__version__"]
+
+# The studies and estimator files that come with the package, by name.
+_rcme.use_share(str(pathlib.Path(__file__).resolve().parent / "share"))

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the build into a scratch prefix, then builds and runs a small project that finds it with find_package(rcme).
+# Installs the build into a scratch prefix and moves that, then builds and runs a small project that finds it with find_package(rcme).
 #   install_test.sh CMAKE BUILD_DIR [PREFIXES]    (where the build found its libraries, separated by semicolons)
 set -eu
 cmake=$1
@@ -7,7 +7,8 @@ build=$2
 prefixes=${3-}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-"$cmake" --install "$build" --prefix "$scratch/prefix" >/dev/null
+"$cmake" --install "$build" --prefix "$scratch/first" >/dev/null
+mv "$scratch/first" "$scratch/prefix"
 "$scratch/prefix/bin/rcme" --version
 
 # Studies and estimator files by their names, manual pages and completion, wherever the program was put.

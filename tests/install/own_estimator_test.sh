@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the build into a scratch prefix, builds examples/own_estimator against it as a user would, and runs its contract,
+# Installs the build into a scratch prefix and moves that, builds examples/own_estimator against it as a user would, and runs its contract,
 # its audit and its study: the estimator that the example adds must be in all of them.
 #   own_estimator_test.sh CMAKE BUILD_DIR [PREFIXES]    (where the build found its libraries, separated by semicolons)
 set -eu
@@ -9,13 +9,15 @@ prefixes=${3-}
 root=$(cd "$(dirname "$0")/../.." && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-"$cmake" --install "$build" --prefix "$scratch/prefix" >/dev/null
+"$cmake" --install "$build" --prefix "$scratch/first" >/dev/null
+mv "$scratch/first" "$scratch/prefix"
 "$cmake" -G Ninja -S "$root/examples/own_estimator" -B "$scratch/own" -DCMAKE_PREFIX_PATH="$scratch/prefix;$prefixes" \
   -DCMAKE_BUILD_TYPE=Release >/dev/null
 "$cmake" --build "$scratch/own"
 own=$scratch/own/own_rcme
 
 "$own" list estimators | grep -q '^opencv '
+"$own" list studies | grep -q '^failure_vs_outliers '  # those of the installation that it was built with
 "$own" check-estimator opencv
 "$own" audit --only estimator.coverage.opencv --out "$scratch/audit" | grep '^estimator.coverage.opencv '
 grep -q '"id": "estimator.coverage.opencv"' "$scratch/audit/audit.json"

@@ -19,6 +19,8 @@ rng = np.random.default_rng(1)
 x1 = rng.uniform(0, 600, (50, 2))
 pose, info = rcme.estimate_relative_pose(x1, x1 + rng.normal(size=(50, 2)), np.diag([700, 700, 1]), np.diag([700, 700, 1]))
 print("status", info["status"])
+assert len(rcme.conditions("no_outliers_low_noise")) > 0  # the package's own copy: the module knows no other place
+assert SOURCE.encode() not in (folder / rcme._rcme.__file__).read_bytes(), "the module holds the path of its source tree"
 """
 
 
@@ -32,7 +34,7 @@ class Pip(unittest.TestCase):
             python = f"{folder}/venv/bin/python"
             subprocess.run([python, "-m", "pip", "install", "--quiet", str(ROOT), "--config-settings", f"build-dir={BUILD}"],
                            check=True, env=environment, cwd=folder)
-            said = subprocess.run([python, "-c", SCRIPT], check=True, env=environment, cwd=folder, capture_output=True,
+            said = subprocess.run([python, "-c", f"SOURCE = {str(ROOT)!r}\n{SCRIPT}"], check=True, env=environment, cwd=folder, capture_output=True,
                                   text=True).stdout
             self.assertIn("status", said)
             listed = subprocess.run([python, "-m", "pip", "show", "--files", "rcme"], check=True, env=environment,
