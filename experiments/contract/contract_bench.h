@@ -3,9 +3,9 @@
 
 #include <mutex>
 
+#include "experiments/base/isolated_call.h"
 #include "experiments/contract/contract_problems.h"
 #include "experiments/contract/estimator_contract.h"
-#include "experiments/contract/isolated_call.h"
 
 namespace rcme {
 

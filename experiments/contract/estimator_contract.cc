@@ -8,9 +8,9 @@
 #include <optional>
 #include <thread>
 
+#include "experiments/base/isolated_call.h"
 #include "experiments/contract/contract_bench.h"
 #include "experiments/contract/estimate_difference.h"
-#include "experiments/contract/isolated_call.h"
 #include "experiments/study/study.h"
 #include "experiments/trial/answer_check.h"
 #include "parameters/input_error.h"

@@ -32,9 +32,10 @@ class ListedPairs {
 // the top-left one; half a pixel is taken from key points and principal point.
 std::unique_ptr<ListedPairs> OpenColmap(const DatasetOptions& options);
 
-// An HDF5 file as posebench keeps pairs, a group each with x1, x2, R, t, camera1, camera2, taken one at a time. Cameras
-// and pixels are COLMAP's. Links out of the file are not followed. The library is not made for files that were
-// damaged on purpose. Throws InputError where the program was built without it.
+// An HDF5 file as posebench keeps pairs, a group each with x1, x2, R, t, camera1, camera2, taken one at a time.
+// Cameras and pixels are COLMAP's. Each pair is read in a process of its own (posebench_file.h): a file that crashes
+// libhdf5 is an InputError. To be called where no other thread runs. Throws InputError where the program was built
+// without the library.
 std::unique_ptr<ListedPairs> OpenPosebench(const DatasetOptions& options);
 
 // A folder of match files (match_file.h).

@@ -1,219 +1,236 @@
-// HDF5 files of pairs as posebench keeps them: a group per pair with x1, x2 (N x 2), R (3 x 3), t (3) and the
-// groups camera1, camera2 with model, width, height, params.
+// HDF5 files of pairs as posebench keeps them. What is in the file is read by a process of its own, which can
+// open no other file, a pair at a time; what it means is decided here.
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <Eigen/LU>
 #include <cmath>
-#include <memory>
+#include <cstring>
+#include <functional>
+#include <nlohmann/json.hpp>
 
-#include "experiments/data/match_file.h"
+#include "experiments/base/isolated_call.h"
 #include "experiments/sequences/colmap_camera.h"
 #include "experiments/sequences/layout_files.h"
 #include "experiments/sequences/listed_pairs.h"
+#include "experiments/sequences/posebench_file.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
 
-constexpr size_t kMaxPosebenchPairs = 1'000'000, kMaxHdf5NameBytes = 1000, kMaxModelNameBytes = 64;
+using Json = nlohmann::json;
 
-// An identifier of the library, closed when it goes. Negative: what was asked for is not there.
-class Hdf5Id {
- public:
-  Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Hdf5Id() {
-    if (id_ >= 0) close_(id_);
-  }
-  Hdf5Id(const Hdf5Id&) = delete;
-  Hdf5Id& operator=(const Hdf5Id&) = delete;
-  operator hid_t() const { return id_; }
+constexpr size_t kReaderMemoryBytes = size_t{512} << 20;  // beyond what the program has
+constexpr int kProcessorSeconds = 10;
+constexpr double kReaderSeconds = 60.0;
+// All pairs of a file together: a group that stands in it under a thousand names is unpacked a thousand
+// times.
+constexpr double kMaxNumbersPerByte = 12.5, kNumbersAlwaysAllowed = 1e6;
 
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-// An entry of a group that is in this file: links to others are not followed.
-void CheckIsHere(hid_t group, const char* name, const std::string& place) {
-  H5L_info_t link;
-  if (H5Lget_info(group, name, &link, H5P_DEFAULT) < 0)
-    throw InputError(fmt::format("{}: {} is not there", place, name));
-  if (link.type != H5L_TYPE_HARD)
-    throw InputError(fmt::format("{}: {} is a link to elsewhere; links are not followed", place, name));
+// Numbers as bytes, and back.
+Json PackNumbers(const std::vector<double>& numbers) {
+  Json::binary_t bytes;
+  bytes.resize(numbers.size() * sizeof(double));
+  if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
+  return bytes;
 }
-
-// A dataset of at most this many numbers, row by row, and its shape.
-struct Hdf5Numbers {
-  std::vector<double> values;
-  std::vector<hsize_t> shape;
-};
-Hdf5Numbers NumbersOf(hid_t group, const char* name, size_t most, const std::string& place) {
-  CheckIsHere(group, name, place);
-  const Hdf5Id data(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
-  if (data < 0) throw InputError(fmt::format("{}: {} is no dataset", place, name));
-  const Hdf5Id type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
-  const H5T_class_t kind = H5Tget_class(type);
-  if (kind != H5T_FLOAT && kind != H5T_INTEGER)
-    throw InputError(fmt::format("{}: {} does not hold numbers", place, name));
-  Hdf5Numbers numbers;
-  const int rank = H5Sget_simple_extent_ndims(space);
-  if (rank < 0 || rank > 2) throw InputError(fmt::format("{}: {} has {} dimensions", place, name, rank));
-  numbers.shape.resize(static_cast<size_t>(rank));
-  H5Sget_simple_extent_dims(space, numbers.shape.data(), nullptr);
-  size_t count = 1;
-  for (const hsize_t length : numbers.shape) {
-    if (length > most || count * length > most)
-      throw InputError(fmt::format("{}: {} holds more than {} numbers", place, name, most));
-    count *= length;
-  }
-  numbers.values.resize(count);
-  if (count > 0 && H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.values.data()) < 0)
-    throw InputError(fmt::format("{}: {} cannot be read: the file is cut off or damaged", place, name));
-  for (const double value : numbers.values) {
-    if (!std::isfinite(value))
-      throw InputError(fmt::format("{}: {} holds a number that is not finite", place, name));
-  }
+// Of a key of the answer; `count`: so many, where that is known. Throws std::exception: the answer is none.
+std::vector<double> UnpackNumbers(const Json& answer, const char* key, size_t count = 0) {
+  const Json::binary_t& bytes = answer.at(key).get_binary();
+  std::vector<double> numbers(count > 0 ? count : bytes.size() / sizeof(double));
+  if (numbers.size() * sizeof(double) != bytes.size()) throw std::length_error(key);
+  if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
   return numbers;
 }
 
-// As many numbers, of any shape.
-std::vector<double> NumbersOfCount(hid_t group, const char* name, size_t count, const std::string& place) {
-  Hdf5Numbers numbers = NumbersOf(group, name, 10 * count, place);
-  if (numbers.values.size() != count)
-    throw InputError(
-        fmt::format("{}: {} holds {} numbers; {} are needed", place, name, numbers.values.size(), count));
-  return std::move(numbers.values);
+Json PackCamera(const StoredCamera& camera) {
+  return {{"model", Json::binary({camera.model.begin(), camera.model.end()})},
+          {"size", PackNumbers({camera.width, camera.height})},
+          {"params", PackNumbers(camera.params)}};
+}
+StoredCamera UnpackCamera(const Json& packed) {
+  const Json::binary_t& model = packed.at("model").get_binary();
+  const std::vector<double> size = UnpackNumbers(packed, "size", 2);
+  return {{model.begin(), model.end()}, size[0], size[1], UnpackNumbers(packed, "params")};
 }
 
-std::vector<Eigen::Vector2d> PointsOf(hid_t group, const char* name, const std::string& place) {
-  const Hdf5Numbers numbers = NumbersOf(group, name, 2 * kMaxMatchesPerFile, place);
-  if (numbers.shape.size() != 2 || numbers.shape[1] != 2)
-    throw InputError(fmt::format("{}: {} is not of N x 2 numbers", place, name));
+Json PackPair(const StoredPair& pair) {
+  return {{"x1", PackNumbers(pair.x1)},
+          {"x2", PackNumbers(pair.x2)},
+          {"R", PackNumbers(pair.R)},
+          {"t", PackNumbers(pair.t)},
+          {"camera1", PackCamera(pair.camera1)},
+          {"camera2", PackCamera(pair.camera2)}};
+}
+StoredPair UnpackPair(const Json& packed) {
+  return {UnpackNumbers(packed, "x1"),        UnpackNumbers(packed, "x2"),
+          UnpackNumbers(packed, "R", 9),      UnpackNumbers(packed, "t", 3),
+          UnpackCamera(packed.at("camera1")), UnpackCamera(packed.at("camera2"))};
+}
+
+// What `read` packs of the file, in a process of its own, is taken by `take` here. A file that crashes its
+// reader, takes too much memory or does not end is an InputError that begins with `place`.
+void ReadApart(const std::string& path, const std::string& place,
+               const std::function<Json(const PosebenchFile&)>& read,
+               const std::function<void(const Json&)>& take) {
+  const auto work = [&](const Announce&) -> std::string {
+    Json answer;
+    try {
+      LimitProcess(kReaderMemoryBytes, kProcessorSeconds);
+      const PosebenchFile file(path);
+      ForbidOpeningFiles();
+      answer = read(file);
+    } catch (const InputError& error) {
+      answer = {{"error", error.what()}};
+    } catch (const std::bad_alloc&) {
+      answer = {{"error", fmt::format("{}: reading it takes more than {} MB of memory: it is damaged", place,
+                                      kReaderMemoryBytes >> 20)}};
+    }
+    std::string bytes;
+    Json::to_cbor(answer, bytes);
+    return bytes;
+  };
+  const IsolatedEnd end = RunIsolated(work, kReaderSeconds);
+  const Json answer = Json::from_cbor(end.result, true, false);
+  if (answer.contains("error") && answer.at("error").is_string())
+    throw InputError(answer.at("error").get<std::string>());
+  try {
+    if (end.kind == IsolatedEnd::Kind::kDone) return take(answer);
+  } catch (const std::exception&) {
+    // What came is no answer.
+  }
+  throw InputError(fmt::format("{}: is damaged, perhaps on purpose: the process that read it {}", place,
+                               end.kind == IsolatedEnd::Kind::kSignal
+                                   ? fmt::format("was ended by signal {} ({})", end.code, strsignal(end.code))
+                                   : DescribeEnd(end, kReaderSeconds)));
+}
+
+void CheckFinite(const std::vector<double>& numbers, const char* name, const std::string& place) {
+  for (const double value : numbers) {
+    if (!std::isfinite(value))
+      throw InputError(fmt::format("{}: {} holds a number that is not finite", place, name));
+  }
+}
+
+std::vector<Eigen::Vector2d> MakePoints(const std::vector<double>& stored, const char* name,
+                                        const std::string& place) {
+  CheckFinite(stored, name, place);
   std::vector<Eigen::Vector2d> points;
-  for (size_t i = 0; i < numbers.values.size(); i += 2)
-    points.emplace_back(numbers.values[i] - kColmapHalfPixel, numbers.values[i + 1] - kColmapHalfPixel);
+  for (size_t i = 0; i + 1 < stored.size(); i += 2)
+    points.emplace_back(stored[i] - kColmapHalfPixel, stored[i + 1] - kColmapHalfPixel);
   return points;
 }
 
-// The first text of a dataset, of a fixed length or not.
-std::string TextOf(hid_t group, const char* name, const std::string& place) {
-  CheckIsHere(group, name, place);
-  const Hdf5Id data(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
-  if (data < 0) throw InputError(fmt::format("{}: {} is no dataset", place, name));
-  const Hdf5Id type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
-  const size_t size = H5Tget_size(type);
-  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1 ||
-      size > kMaxModelNameBytes)
-    throw InputError(fmt::format("{}: {} is not one short text", place, name));
-  if (H5Tis_variable_str(type) <= 0) {
-    std::string text(size, '\0');
-    if (H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
-      throw InputError(fmt::format("{}: {} cannot be read", place, name));
-    return text.substr(0, text.find('\0'));
-  }
-  char* text = nullptr;
-  if (H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) < 0 || !text)
-    throw InputError(fmt::format("{}: {} cannot be read", place, name));
-  const std::string copy(text, strnlen(text, kMaxModelNameBytes));
-  H5Dvlen_reclaim(type, space, H5P_DEFAULT, &text);
-  return copy;
+std::int64_t CheckLength(double value, const char* name, const std::string& place) {
+  if (!(value >= 0.0 && value <= 1e9 && value == std::floor(value)))
+    throw InputError(fmt::format("{}: {} is {}; a whole number of pixels is needed", place, name, value));
+  return static_cast<std::int64_t>(value);
 }
 
-Lens LensOfGroup(hid_t pair, const char* name, const std::string& place) {
-  CheckIsHere(pair, name, place);
-  const Hdf5Id group(H5Gopen2(pair, name, H5P_DEFAULT), H5Gclose);
-  if (group < 0) throw InputError(fmt::format("{}: {} is no group", place, name));
-  const std::string here = fmt::format("{}: {}", place, name);
+Lens MakeStoredLens(const StoredCamera& stored, const std::string& place) {
   ColmapCamera camera;
-  camera.model = ColmapModelNumber(TextOf(group, "model", here), here);
-  for (const auto& [length, key] : {std::pair{&camera.width, "width"}, std::pair{&camera.height, "height"}}) {
-    const double value = NumbersOfCount(group, key, 1, here)[0];
-    if (!(value >= 0.0 && value <= 1e9 && value == std::floor(value)))
-      throw InputError(fmt::format("{}: {} is {}; a whole number of pixels is needed", here, key, value));
-    *length = static_cast<std::int64_t>(value);
+  camera.model = ColmapModelNumber(stored.model, place);
+  camera.width = CheckLength(stored.width, "width", place);
+  camera.height = CheckLength(stored.height, "height", place);
+  CheckFinite(stored.params, "params", place);
+  const size_t num_params = NumColmapParameters(camera.model, place);
+  if (stored.params.size() != num_params)
+    throw InputError(
+        fmt::format("{}: params holds {} numbers; {} are needed", place, stored.params.size(), num_params));
+  camera.parameters = stored.params;
+  return LensOfColmapCamera(camera, place);
+}
+
+void FillMatches(const StoredPair& stored, const std::string& place, MatchFile* file) {
+  const std::vector<Eigen::Vector2d> x1 = MakePoints(stored.x1, "x1", place),
+                                     x2 = MakePoints(stored.x2, "x2", place);
+  if (x1.size() != x2.size())
+    throw InputError(fmt::format("{}: x1 holds {} points, x2 {}", place, x1.size(), x2.size()));
+  const Lens lens1 = MakeStoredLens(stored.camera1, place + ": camera1"),
+             lens2 = MakeStoredLens(stored.camera2, place + ": camera2");
+  file->camera1 = lens1.camera;
+  file->camera2 = lens2.camera;
+  for (size_t i = 0; i < x1.size(); ++i) {
+    const auto ideal1 = Undistort(lens1, x1[i]), ideal2 = Undistort(lens2, x2[i]);
+    if (ideal1 && ideal2) file->matches.push_back({*ideal1, *ideal2});
   }
-  camera.parameters = NumbersOfCount(group, "params", NumColmapParameters(camera.model, here), here);
-  return LensOfColmapCamera(camera, here);
+}
+
+// X2 = R X1 + t; the unit of t is not said.
+void FillMotion(const StoredPair& stored, const std::string& place, ListedPair* listed) {
+  CheckFinite(stored.R, "R", place);
+  CheckFinite(stored.t, "t", place);
+  const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(stored.R.data());
+  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3) || R.determinant() < 0.0)
+    throw InputError(fmt::format("{}: R is not a rotation", place));
+  const Eigen::Vector3d translation(stored.t[0], stored.t[1], stored.t[2]);
+  listed->is_direction_weak = !(translation.norm() > 0.0);
+  listed->file.cam2_from_cam1_true = {
+      R, listed->is_direction_weak ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : translation.normalized()};
 }
 
 class PosebenchPairs : public ListedPairs {
  public:
   explicit PosebenchPairs(const DatasetOptions& options)
       : path_(options.folder),
-        scene_(options.name.empty() ? std::filesystem::path(path_).stem().string() : options.name),
-        file_(Open(path_), H5Fclose) {
-    const Hdf5Id root(H5Gopen2(file_, "/", H5P_DEFAULT), H5Gclose);
-    if (root < 0 || H5Literate(root, H5_INDEX_NAME, H5_ITER_INC, nullptr, AddName, &names_) < 0)
-      throw InputError(
-          fmt::format("{}: its groups cannot be listed: it is damaged, or has more than {} pairs or names "
-                      "of more than {} bytes",
-                      path_, kMaxPosebenchPairs, kMaxHdf5NameBytes));
+        scene_(options.name.empty() ? std::filesystem::path(path_).stem().string() : options.name) {
+    CheckIsThere(path_, "give an HDF5 file of posebench");
+    RegularFile(path_, {"HDF5 file", "an HDF5 file"});
+    const auto num_bytes = static_cast<double>(std::filesystem::file_size(path_));
+    num_numbers_left_ = kNumbersAlwaysAllowed + kMaxNumbersPerByte * num_bytes;
+    names_ = ReadNames(path_);
     if (names_.empty()) throw InputError(fmt::format("{}: holds no pairs", path_));
   }
 
   size_t size() const override { return names_.size(); }
   std::string IdOf(size_t i) const override { return fmt::format("{}_{:06}", scene_, i); }
   ListedPair Read(size_t i) override {
-    const std::string place = fmt::format("{}: group {}", path_, Quoted(names_.at(i)));
-    CheckIsHere(file_, names_[i].c_str(), place);
-    const Hdf5Id pair(H5Gopen2(file_, names_[i].c_str(), H5P_DEFAULT), H5Gclose);
-    if (pair < 0) throw InputError(fmt::format("{}: is no group; a group per pair is needed", place));
+    const std::string& name = names_.at(i);
+    const std::string place = fmt::format("{}: group {}", path_, Quoted(name));
+    StoredPair stored;
+    ReadApart(
+        path_, place, [&](const PosebenchFile& file) { return PackPair(file.ReadGroup(name)); },
+        [&](const Json& answer) { stored = UnpackPair(answer); });
+    CountNumbers(stored, place);
     ListedPair listed;
     listed.file.scene = scene_;
-    ReadMatches(pair, place, &listed.file);
-    ReadMotion(pair, place, &listed);
+    FillMatches(stored, place, &listed.file);
+    FillMotion(stored, place, &listed);
     return listed;
   }
 
  private:
-  static hid_t Open(const std::string& path) {
-    CheckIsThere(path, "give an HDF5 file of posebench");
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what is wrong is said here
-    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (file < 0)
+  // Names may be of any bytes.
+  static std::vector<std::string> ReadNames(const std::string& path) {
+    const auto list = [](const PosebenchFile& file) {
+      Json names = Json::array();
+      for (const std::string& name : file.ListGroups())
+        names.push_back(Json::binary({name.begin(), name.end()}));
+      return Json{{"names", std::move(names)}};
+    };
+    std::vector<std::string> names;
+    ReadApart(path, path, list, [&](const Json& answer) {
+      for (const Json& name : answer.at("names")) {
+        const Json::binary_t& bytes = name.get_binary();
+        names.emplace_back(bytes.begin(), bytes.end());
+      }
+    });
+    return names;
+  }
+
+  void CountNumbers(const StoredPair& pair, const std::string& place) {
+    num_numbers_left_ -= static_cast<double>(pair.x1.size() + pair.x2.size());
+    if (num_numbers_left_ < 0.0)
       throw InputError(
-          fmt::format("{}: cannot be read as an HDF5 file: it is cut off, damaged or something else", path));
-    return file;
-  }
-  static herr_t AddName(hid_t, const char* name, const H5L_info_t*, void* names) {
-    auto* all = static_cast<std::vector<std::string>*>(names);
-    if (all->size() == kMaxPosebenchPairs || strnlen(name, kMaxHdf5NameBytes + 1) > kMaxHdf5NameBytes)
-      return -1;
-    all->emplace_back(name);
-    return 0;
-  }
-
-  static void ReadMatches(hid_t pair, const std::string& place, MatchFile* file) {
-    const std::vector<Eigen::Vector2d> x1 = PointsOf(pair, "x1", place), x2 = PointsOf(pair, "x2", place);
-    if (x1.size() != x2.size())
-      throw InputError(fmt::format("{}: x1 holds {} points, x2 {}", place, x1.size(), x2.size()));
-    const Lens lens1 = LensOfGroup(pair, "camera1", place), lens2 = LensOfGroup(pair, "camera2", place);
-    file->camera1 = lens1.camera;
-    file->camera2 = lens2.camera;
-    for (size_t i = 0; i < x1.size(); ++i) {
-      const auto ideal1 = Undistort(lens1, x1[i]), ideal2 = Undistort(lens2, x2[i]);
-      if (ideal1 && ideal2) file->matches.push_back({*ideal1, *ideal2});
-    }
-  }
-
-  // X2 = R X1 + t; the unit of t is not said.
-  static void ReadMotion(hid_t pair, const std::string& place, ListedPair* listed) {
-    const std::vector<double> r = NumbersOfCount(pair, "R", 9, place),
-                              t = NumbersOfCount(pair, "t", 3, place);
-    const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r.data());
-    if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3) || R.determinant() < 0.0)
-      throw InputError(fmt::format("{}: R is not a rotation", place));
-    const Eigen::Vector3d translation(t[0], t[1], t[2]);
-    listed->is_direction_weak = !(translation.norm() > 0.0);
-    listed->file.cam2_from_cam1_true = {
-        R, listed->is_direction_weak ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : translation.normalized()};
+          fmt::format("{}: the file's pairs so far unpack to more than a hundred times its size: it is "
+                      "damaged, perhaps on purpose",
+                      place));
   }
 
   std::string path_, scene_;
-  Hdf5Id file_;
   std::vector<std::string> names_;  // in their order
+  double num_numbers_left_ = 0.0;
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 // HDF5 files as posebench keeps pairs, written with the same library.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -9,7 +10,9 @@
 #include <vector>
 
 #include "experiments/sequences/listed_pairs.h"
+#include "stats/random.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/paths.h"
 #include "tests/test_support/temp_folder.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -167,7 +170,7 @@ TEST_F(Posebench, WhatIsBrokenIsNamedByFileAndGroup) {
     H5Ldelete(file, "a/x1", H5P_DEFAULT);
     PutText(file, "a/x1", "1 2", true);
   };
-  EXPECT_TRUE(Refuses(text_for_x1, {place + "x1 does not hold numbers"}));
+  EXPECT_TRUE(Refuses(text_for_x1, {place + "x1 does not hold numbers of up to 64 bits"}));
   const auto unknown_model = [](hid_t file) {
     H5Ldelete(file, "a/camera1/model", H5P_DEFAULT);
     PutText(file, "a/camera1/model", "FOV", false);
@@ -194,6 +197,153 @@ TEST_F(Posebench, LinksAndClaimsAreNotFollowed) {
     H5Sclose(space);
   };
   EXPECT_TRUE(Refuses(huge, {"x1 holds more than 2000000 numbers"}));
+}
+
+hid_t MakeSpace(const std::vector<hsize_t>& shape, const std::vector<hsize_t>& most = {}) {
+  return H5Screate_simple(static_cast<int>(shape.size()), shape.data(), most.empty() ? nullptr : most.data());
+}
+
+// A dataset a/x1 of 64-bit numbers in the place of that of the file; `how` is closed.
+void PutX1(hid_t file, hid_t space, hid_t how, const std::vector<double>& values = {}) {
+  H5Ldelete(file, "a/x1", H5P_DEFAULT);
+  const hid_t data = H5Dcreate2(file, "a/x1", H5T_IEEE_F64LE, space, H5P_DEFAULT, how, H5P_DEFAULT);
+  ASSERT_GE(data, 0);
+  if (!values.empty()) H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Dclose(data);
+  H5Pclose(how);
+  H5Sclose(space);
+}
+
+// The bytes of another file, by each of the ways that the format has.
+TEST_F(Posebench, NoOtherFileIsRead) {
+  const std::string secret = folder_.Write("secret", std::string(4096, 's'));
+  const auto external = [&](hid_t file) {
+    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_external(how, secret.c_str(), 0, 2 * kMatches * sizeof(double));
+    PutX1(file, MakeSpace({kMatches, 2}), how);
+  };
+  EXPECT_TRUE(Refuses(external, {"group 'a': x1 is kept in another file, and no other file is read"}));
+  const auto from_another = [&](hid_t file) {
+    const hid_t how = H5Pcreate(H5P_DATASET_CREATE), space = MakeSpace({kMatches, 2});
+    H5Pset_virtual(how, space, path_.c_str(), "/a/x2", space);
+    PutX1(file, space, how);
+  };
+  EXPECT_TRUE(Refuses(from_another, {"group 'a': x1 is kept in another file, and no other file is read"}));
+  const auto outward = [&](hid_t file) {
+    H5Ldelete(file, "a/camera1", H5P_DEFAULT);
+    H5Lcreate_external(path_.c_str(), "/a/camera1", file, "a/camera1", H5P_DEFAULT, H5P_DEFAULT);
+  };
+  EXPECT_TRUE(Refuses(outward, {"group 'a': camera1 is a link to elsewhere"}));
+}
+
+TEST_F(Posebench, PackedNumbersAreReadWhereTheyUnpackToLittle) {
+  std::vector<double> x1;
+  for (const Correspondence& match : observed_.matches)
+    x1.insert(x1.end(), {match.x1_px.x(), match.x1_px.y()});
+  const auto pack = [](const std::vector<hsize_t>& chunk) {
+    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(how, 2, chunk.data());
+    H5Pset_shuffle(how);
+    H5Pset_deflate(how, 9);
+    H5Pset_fletcher32(how);
+    return how;
+  };
+  const std::string copy = folder_.Path("packed.h5");
+  std::filesystem::copy_file(path_, copy);
+  const hid_t file = H5Fopen(copy.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  PutX1(file, MakeSpace({kMatches, 2}), pack({16, 2}), x1);
+  H5Fclose(file);
+  DatasetOptions options;
+  options.folder = copy;
+  const Eigen::Vector2d first = OpenPosebench(options)->Read(0).file.matches.at(0).x1_px;
+  EXPECT_LT((first - observed_.matches[0].x1_px + Eigen::Vector2d(0.5, 0.5)).norm(), 1e-12);
+
+  // A chunk of 1.6 GB for 40 points, and 16 MB of zeros in 16 kB.
+  const auto chunk = [&](hid_t changed) {
+    PutX1(changed, MakeSpace({kMatches, 2}, {H5S_UNLIMITED, 2}), pack({100'000'000, 2}));
+  };
+  EXPECT_TRUE(
+      Refuses(chunk, {"x1 takes 0 bytes and would unpack to 1600000000; up to 100 times as many are read"}));
+  const auto zeros = [&](hid_t changed) {
+    PutX1(changed, MakeSpace({1'000'000, 2}), pack({100'000, 2}), std::vector<double>(2'000'000));
+  };
+  EXPECT_TRUE(Refuses(zeros, {"x1 takes ", "and would unpack to 16000000"}));
+  const auto by_another_filter = [](hid_t changed) {
+    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    const hsize_t rows[] = {16, 2};
+    H5Pset_chunk(how, 2, rows);
+    H5Pset_scaleoffset(how, H5Z_SO_FLOAT_DSCALE, 2);
+    PutX1(changed, MakeSpace({kMatches, 2}), how, std::vector<double>(2 * kMatches, 1.0));
+  };
+  EXPECT_TRUE(
+      Refuses(by_another_filter, {"x1 is packed by filter 6; gzip, shuffle and fletcher32 are read"}));
+  EXPECT_TRUE(Refuses(
+      [](hid_t changed) {
+        H5Ldelete(changed, "a/x1", H5P_DEFAULT);
+        PutNumbers(changed, "a/x1", {kMatches, 2}, std::vector<double>(2 * kMatches), H5T_NATIVE_LDOUBLE);
+      },
+      {"x1 does not hold numbers of up to 64 bits"}));
+}
+
+// 200,000 numbers, of which every 16th is random: packed to a tenth, but unpacked under twelve names.
+TEST_F(Posebench, AGroupOfManyNamesIsNotUnpackedForEach) {
+  RandomStream rng({.seed = 1, .purpose = 92});
+  std::vector<double> numbers(200'000, 1.0);
+  for (size_t i = 0; i < numbers.size(); i += 16) numbers[i] = rng.Uniform(0.0, 600.0);
+  const auto repeat = [&](hid_t file) {
+    for (const char* name : {"a/x1", "a/x2"}) {
+      H5Ldelete(file, name, H5P_DEFAULT);
+      const hid_t how = H5Pcreate(H5P_DATASET_CREATE), space = MakeSpace({numbers.size() / 2, 2});
+      const hsize_t chunk[] = {10'000, 2};
+      H5Pset_chunk(how, 2, chunk);
+      H5Pset_deflate(how, 9);
+      const hid_t data = H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, how, H5P_DEFAULT);
+      H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data());
+      H5Dclose(data);
+      H5Sclose(space);
+      H5Pclose(how);
+    }
+    for (int i = 0; i < 30; ++i)
+      H5Lcreate_hard(file, "a", file, fmt::format("a{:02}", i).c_str(), H5P_DEFAULT, H5P_DEFAULT);
+  };
+  EXPECT_TRUE(Refuses(repeat, {"the file's pairs so far unpack to more than a hundred times its size"}));
+}
+
+// Files by which libhdf5 1.10.8 ends with a segmentation fault or not at all: each is an error that names it,
+// or is read.
+TEST_F(Posebench, FilesThatCrashTheLibraryAreErrors) {
+  const std::string crashes = SourceFolder() + "/tests/fuzz/corpus/posebench";
+  int num_files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(crashes)) {
+    ++num_files;
+    try {
+      ReadAll(entry.path().string());
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find(entry.path().string()), 0u) << error.what();
+    }
+  }
+  EXPECT_GE(num_files, 2);
+}
+
+// 200 files with some bytes changed. Whatever the library does of them, the process is still there.
+TEST_F(Posebench, FilesWithChangedBytesAreReadOrRefused) {
+  const std::string whole = ReadBytes(path_);
+  RandomStream rng({.seed = 1, .purpose = 93});
+  int num_refused = 0;
+  for (int k = 0; k < 200; ++k) {
+    std::string bytes = whole;
+    for (int i = 0; i < 1 + k % 8; ++i)
+      bytes[static_cast<size_t>(rng.Uniform(0.0, 1.0) * static_cast<double>(bytes.size()))] =
+          static_cast<char>(rng.Uniform(0.0, 256.0));
+    const std::string path = folder_.Write("changed.h5", bytes);
+    try {
+      ReadAll(path);
+    } catch (const InputError& error) {
+      ++num_refused;
+      EXPECT_EQ(std::string(error.what()).find(path), 0u) << error.what();
+    }
+  }
+  EXPECT_GT(num_refused, 20);
 }
 
 TEST_F(Posebench, FilesThatAreCutOffOrNone) {

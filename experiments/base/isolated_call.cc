@@ -1,7 +1,8 @@
-#include "experiments/contract/isolated_call.h"
+#include "experiments/base/isolated_call.h"
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <mutex>
 
 #include "parameters/input_error.h"
@@ -46,6 +48,11 @@ void Send(int file, Part part, const std::string& text) {
   });
   Send(file, Part::kResult, result);
   _exit(0);
+}
+
+void SetLimit(decltype(RLIMIT_AS) resource, rlim_t most) {
+  const rlimit limit{most, most};
+  setrlimit(resource, &limit);
 }
 
 // What the child sends, taken apart as it comes.
@@ -112,6 +119,18 @@ IsolatedEnd RunIsolated(const std::function<std::string(const Announce&)>& work,
   end.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
   return end;
 }
+
+void LimitProcess(size_t more_memory_bytes, int processor_seconds) {
+  size_t num_pages = 0;
+  std::ifstream("/proc/self/statm") >> num_pages;
+  if (num_pages > 0)
+    SetLimit(RLIMIT_AS, num_pages * static_cast<size_t>(sysconf(_SC_PAGESIZE)) + more_memory_bytes);
+  SetLimit(RLIMIT_CPU, static_cast<rlim_t>(processor_seconds));
+  SetLimit(RLIMIT_FSIZE, 0);
+  SetLimit(RLIMIT_CORE, 0);
+}
+
+void ForbidOpeningFiles() { SetLimit(RLIMIT_NOFILE, 0); }
 
 std::string DescribeEnd(const IsolatedEnd& end, double seconds_per_step) {
   switch (end.kind) {

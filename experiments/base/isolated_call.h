@@ -1,6 +1,7 @@
 // Work in a process of its own, so that a crash, an exit or an endless loop in code of others is an outcome.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 
@@ -21,6 +22,12 @@ struct IsolatedEnd {
 // The child shares nothing with this process but what was in memory before. To be called where no other
 // thread runs. An exception from `work` ends the child by SIGABRT.
 IsolatedEnd RunIsolated(const std::function<std::string(const Announce&)>& work, double seconds_per_step);
+
+// For `work` on what nobody vouches for. Limits this process: to so much memory beyond what it has, to so
+// many seconds of processor time; no file is written, and none when it ends by a signal.
+void LimitProcess(size_t more_memory_bytes, int processor_seconds);
+// From now on this process opens no file, pipe or socket, whatever its input makes a library do.
+void ForbidOpeningFiles();
 
 // How it ended, as part of a sentence: "ended the program by signal 11 (Segmentation fault)".
 std::string DescribeEnd(const IsolatedEnd& end, double seconds_per_step);
