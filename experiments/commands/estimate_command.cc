@@ -88,10 +88,11 @@ class Answerer {
   const EstimatorSpec& spec() const { return spec_; }
   const MotionEstimator& estimator() const { return *estimator_; }
 
-  // Throws InputError (match_file.h).
-  TrialData Read(const std::string& path) const {
+  // Throws InputError (match_file.h). `doubts`: about the file's cameras.
+  TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts) const {
     const bool is_input = path == kStandardInput;
     MatchFile file = is_input ? ReadMatchesFromInput(given_) : ReadMatchFile(path, given_);
+    *doubts = file.doubts;
     TrialData data;
     data.origin = file.path;
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
@@ -133,11 +134,24 @@ void PrintCaution(const RansacEstimator& estimator, const MotionProblem& problem
       StatusName(estimate.status), estimate.message);
 }
 
+// The answer as JSON, with the doubts about the file's cameras, if there are any.
+nlohmann::ordered_json MakeJson(const PairAnswer& answer, const EstimatorSpec& spec,
+                                const std::vector<CameraDoubt>& doubts) {
+  nlohmann::ordered_json json = AnswerAsJson(answer, spec);
+  for (const CameraDoubt& doubt : doubts)
+    json["warnings"].push_back(fmt::format("{}: {}", doubt.place, doubt.what));
+  return json;
+}
+
 void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
-  const TrialData data = answerer.Read(path);
+  std::vector<CameraDoubt> doubts;
+  const TrialData data = answerer.Read(path, &doubts);
+  CameraWarnings warnings;
+  warnings.Add(doubts);
+  warnings.Print();
   const PairAnswer answer = answerer.Answer(data);
   if (arguments.as_json) {
-    fmt::print("{}", JsonText(kEstimateFormat, AnswerAsJson(answer, answerer.spec())));
+    fmt::print("{}", JsonText(kEstimateFormat, MakeJson(answer, answerer.spec(), doubts)));
   } else {
     fmt::print("{}", AnswerAsText(answer, answerer.spec()));
     const RansacEstimator* const ransac = AsRansac(answerer.estimator());
@@ -188,13 +202,16 @@ void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
                 const std::vector<std::string>& files) {
   const StopOnSignals stop;
   AnswerTable table;
+  CameraWarnings warnings;
   bool is_any_bad = false;
   const auto answer_file = [&](const std::string& path) {
     try {
-      const TrialData data = answerer.Read(path);
+      std::vector<CameraDoubt> doubts;
+      const TrialData data = answerer.Read(path, &doubts);
+      warnings.Add(doubts);
       const PairAnswer answer = answerer.Answer(data);
       if (arguments.as_json) {
-        fmt::print("{}", JsonLine(path, AnswerAsJson(answer, answerer.spec())));
+        fmt::print("{}", JsonLine(path, MakeJson(answer, answerer.spec(), doubts)));
         std::fflush(stdout);  // whoever reads along gets each when it is there
       } else {
         table.Add(path, answer);
@@ -220,6 +237,7 @@ void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
     }
   }
   if (!arguments.as_json) fmt::print("{}", table.Text());
+  warnings.Print();
   if (IsStopRequested()) throw Stopped(fmt::format("stopped after {} of {} pairs", num_done, files.size()));
   if (is_any_bad) throw EndWith{2};
 }
@@ -245,7 +263,9 @@ void AddEstimateCommand(CLI::App& app) {
       "Several files, or a folder: a table with one line each; with --json one line of JSON each.\n"
       "'-' reads standard input. A file may be bare, four columns x1 y1 x2 y2 separated by commas or "
       "blanks;\n"
-      "then --K says the intrinsics, once for both images or once for each.\n"
+      "then --K says the intrinsics, once for both images or once for each. A K that does not fit the size "
+      "of\n"
+      "the images, or where the key points lie, is a warning; one that cannot be theirs is refused.\n"
       "\n"
       "Without a word about the estimator it is rcme_calibrated, which says how likely it is to be wrong; "
       "the\n"

@@ -18,15 +18,18 @@ void AddMatchCommand(CLI::App& app) {
   command->footer(
       "Every match carries the sigma that its key points' sizes stand for (sigma_px, "
       "experiments/data/features.h):\n"
-      "how noisy it is beside the others.");
+      "how noisy it is beside the others. A K that does not fit the size of its image is a warning, or "
+      "refused.");
   auto arguments = std::make_shared<MatchImagesOptions>();
   auto out = std::make_shared<std::string>();
   command
       ->add_option("image1", arguments->image1,
-                   "first image: PNG, JPEG, TIFF, BMP or PNM, at most 4096 x 4096 px")
+                   "first image: PNG, JPEG, TIFF, BMP or PNM; one of more than 4096 x 4096 px is scaled down "
+                   "to find key "
+                   "points, which are given in its own pixels")
       ->required();
   command->add_option("image2", arguments->image2, "second image")->required();
-  command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, px")
+  command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, px of the image as it is")
       ->transform(NumberIn())
       ->expected(4)
       ->required();
@@ -38,6 +41,9 @@ void AddMatchCommand(CLI::App& app) {
   command->callback([arguments, out] {
     CheckIsNoInput(*out, {arguments->image1, arguments->image2});
     const MatchFile file = MatchImages(*arguments);
+    CameraWarnings warnings;
+    warnings.Add(file.doubts);
+    warnings.Print();
     WriteMatchFile(file, *out);
     if (file.matches.empty()) {
       PrintMessage("no match was kept -> {}\n", *out);

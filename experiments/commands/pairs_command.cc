@@ -125,10 +125,9 @@ void RunPairs(PairsArguments arguments) {
   fmt::print("{}", WritePairTables(journal, notes, out));
   const bool is_any_kept =
       std::ranges::any_of(journal.rows(), [](const PairRow& row) { return row.reason == kKeptPair; });
-  if (!is_any_kept) {
-    PrintMessage("no pair was kept; {}/INDEX.csv says of each why\n", out);
-    return;
-  }
+  if (!is_any_kept)
+    throw InputError(fmt::format("{} ({}/INDEX.csv lists them; --gate off keeps all pairs)",
+                                 DescribeWhyNone(journal.rows(), journal.damaged()), out));
   PrintMessage(
       "match files and INDEX.csv -> {}; next: rcme run experiments/studies/real_pairs.yaml --set folder={} "
       "--out "
@@ -218,7 +217,7 @@ void AddPairsCommand(CLI::App& app) {
       "  EuRoC MAV\n"
       "  tum      NAME/{rgb.txt, rgb/*.png, groundtruth.txt}   TUM RGB-D; the camera by freiburg1, 2, 3 in "
       "the name, or --K\n"
-      "  images   *.png, *.jpg, ... of one folder, by name; needs --K\n"
+      "  images   *.png, *.jpg, ... of one folder, by name; needs --K, and skips images of another size\n"
       "  colmap   database.db {cameras, images, keypoints, matches}, and sparse/0, if it is there, as truth "
       "and for "
       "the cameras\n"
@@ -235,7 +234,10 @@ void AddPairsCommand(CLI::App& app) {
       "truth, where the layout has one, goes into the match files and plays no part in the choice. Damaged "
       "images\n"
       "are skipped and named; anything that is missing or contradicts itself ends with its path and exit "
-      "code 2.\n"
+      "code 2,\n"
+      "and so does a folder of which no pair is kept. A K that does not fit the images' size is a warning.\n"
+      "Images of more than 4096 x 4096 px are scaled down to find key points, which are given in their own "
+      "pixels.\n"
       "Key points are undistorted; the sizes of a match's are kept as its sigma_px: how noisy it is "
       "beside the others.\n"
       "Cut off, the same command goes on. --cache keeps features (1 MB an image) for other options of the "

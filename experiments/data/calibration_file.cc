@@ -32,6 +32,9 @@ void AddIntrinsics(const std::string& number, const Camera& camera, Settings* se
 
 Settings IntrinsicsIn(const std::string& path) {
   const MatchFile file = ReadMatchFile(path);
+  CameraWarnings warnings;
+  warnings.Add(file.doubts);
+  warnings.Print();
   Settings intrinsics;
   AddIntrinsics("1", file.camera1, &intrinsics);
   AddIntrinsics("2", file.camera2, &intrinsics);

@@ -16,6 +16,7 @@ namespace rcme {
 namespace {
 
 constexpr std::uint64_t kFnvStart = 0xcbf29ce484222325ULL;
+constexpr std::uint32_t kMaxScale = 1000;
 
 // FNV-1a. For accidents, not for adversaries.
 std::uint64_t Hash(std::string_view bytes, std::uint64_t hash = kFnvStart) {
@@ -27,17 +28,17 @@ std::uint64_t Hash(std::string_view bytes, std::uint64_t hash = kFnvStart) {
 // follow.
 struct CacheHeader {
   std::array<char, 16> magic = {'r', 'c', 'm', 'e', ' ', 'f', 'e', 'a',
-                                't', 'u', 'r', 'e', 's', ' ', '1', '\n'};
+                                't', 'u', 'r', 'e', 's', ' ', '2', '\n'};
   std::int32_t width = 0, height = 0;
   std::uint32_t num_key_points = 0, num_descriptor_bytes = 0;
-  std::uint32_t is_binary = 0, unused = 0;
+  std::uint32_t is_binary = 0, scale = 1;
 };
 static_assert(std::is_trivially_copyable_v<CacheHeader> && sizeof(CacheHeader) == 40);
 static_assert(std::is_trivially_copyable_v<KeyPoint> && sizeof(KeyPoint) == 12);
 
 std::string NameOf(const std::string& image, const DetectorOptions& options) {
   const std::string about =
-      fmt::format("1 {} {} {}", CV_VERSION, static_cast<int>(options.detector), options.max_features);
+      fmt::format("2 {} {} {}", CV_VERSION, static_cast<int>(options.detector), options.max_features);
   return fmt::format("{:016x}{:016x}.features", Hash(image), Hash(image, Hash(about)));
 }
 
@@ -51,6 +52,7 @@ std::string PackFeatures(const ImageFeatures& image) {
   header.num_key_points = static_cast<std::uint32_t>(features.key_points.size());
   header.num_descriptor_bytes = static_cast<std::uint32_t>(features.descriptors.size());
   header.is_binary = features.is_binary;
+  header.scale = static_cast<std::uint32_t>(features.scale);
   std::string bytes(reinterpret_cast<const char*>(&header), sizeof(header));
   bytes.append(reinterpret_cast<const char*>(features.key_points.data()),
                features.key_points.size() * sizeof(KeyPoint));
@@ -68,7 +70,7 @@ std::optional<ImageFeatures> UnpackFeatures(const std::string& bytes) {
   std::memcpy(&header, bytes.data(), sizeof(header));
   std::memcpy(&hash, bytes.data() + end, sizeof(hash));
   const size_t num_point_bytes = header.num_key_points * sizeof(KeyPoint);
-  if (header.magic != expected.magic ||
+  if (header.magic != expected.magic || header.scale < 1 || header.scale > kMaxScale ||
       end != sizeof(header) + num_point_bytes + header.num_descriptor_bytes ||
       hash != Hash(std::string_view(bytes).substr(0, end)))
     return std::nullopt;
@@ -78,6 +80,7 @@ std::optional<ImageFeatures> UnpackFeatures(const std::string& bytes) {
   if (num_point_bytes > 0) std::memcpy(image.features.key_points.data(), at, num_point_bytes);
   image.features.descriptors.assign(at + num_point_bytes, bytes.data() + end);
   image.features.is_binary = header.is_binary != 0;
+  image.features.scale = static_cast<int>(header.scale);
   return image;
 }
 
@@ -98,7 +101,7 @@ ImageFeatures FeatureCache::Get(const std::string& path, const DetectorOptions& 
     }
   }
   const GreyImage grey = UnpackImage(std::move(image_bytes), path);
-  ImageFeatures image{grey.width, grey.height, DetectFeatures(grey, options)};
+  ImageFeatures image{grey.full_width, grey.full_height, DetectFeatures(grey, options)};
   if (!kept.empty()) WriteFileWhole(kept, PackFeatures(image));
   return image;
 }

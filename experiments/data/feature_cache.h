@@ -11,7 +11,7 @@
 namespace rcme {
 
 struct ImageFeatures {
-  int width = 0, height = 0;
+  int width = 0, height = 0;  // of the file, px
   Features features;
 };
 

@@ -106,9 +106,12 @@ Features DetectFeatures(const GreyImage& image, const DetectorOptions& options) 
   const float shift = options.detector == Detector::kSift ? kSiftShiftPx : 0.0f;
   Features features;
   features.is_binary = descriptors.depth() == CV_8U;
+  features.scale = image.scale;
+  const float scale = static_cast<float>(image.scale), middle = 0.5f * (scale - 1.0f);
   for (const int i : order) {
     const cv::KeyPoint& point = key_points[static_cast<size_t>(i)];
-    features.key_points.push_back({point.pt.x - shift, point.pt.y - shift, point.size});
+    features.key_points.push_back(
+        {scale * (point.pt.x - shift) + middle, scale * (point.pt.y - shift) + middle, scale * point.size});
     const std::uint8_t* row = descriptors.ptr(i);
     features.descriptors.insert(features.descriptors.end(), row,
                                 row + descriptors.step1() * descriptors.elemSize1());
@@ -129,10 +132,14 @@ std::vector<FeatureMatch> MatchFeatures(const Features& features1, const Feature
   return matches;
 }
 
-double SigmaOfMatch(Detector detector, const KeyPoint& point1, const KeyPoint& point2) {
+double SigmaOfMatch(Detector detector, const KeyPoint& point1, const KeyPoint& point2, int scale1,
+                    int scale2) {
   constexpr double kFinestSigmaPx = 0.5, kGrowth = 0.7;
-  const double size = std::hypot(point1.size_px, point2.size_px) / std::sqrt(2.0);
-  return kFinestSigmaPx * std::pow(size / FinestSize(detector), kGrowth);
+  const double size =
+      std::hypot(point1.size_px / static_cast<float>(scale1), point2.size_px / static_cast<float>(scale2)) /
+      std::sqrt(2.0);
+  const double scale = std::hypot(scale1, scale2) / std::sqrt(2.0);
+  return scale * kFinestSigmaPx * std::pow(size / FinestSize(detector), kGrowth);
 }
 
 }  // namespace rcme

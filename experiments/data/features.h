@@ -38,11 +38,13 @@ struct Features {
   std::vector<KeyPoint> key_points;
   std::vector<std::uint8_t> descriptors;  // of all key points, one after another, each as long as the others
   bool is_binary = false;                 // bits, compared by Hamming's distance; else floats
+  int scale = 1;                          // of the image in which they were found (GreyImage)
 };
 
 // The same for the same image and options. OpenCV 4.6 places what SIFT finds a quarter of a pixel to the
 // right and below (it doubles the image about pixel borders and halves about pixel centres; later versions
-// have an option), which is taken back: a quarter of a pixel in the principal point.
+// have an option), which is taken back: a quarter of a pixel in the principal point. Places and sizes are
+// those in the file's pixels where the image was scaled down.
 Features DetectFeatures(const GreyImage& image, const DetectorOptions& options);
 
 struct MatcherOptions {
@@ -59,7 +61,9 @@ struct FeatureMatch {
 std::vector<FeatureMatch> MatchFeatures(const Features& features1, const Features& features2,
                                         const MatcherOptions& options);
 
-// As above.
-double SigmaOfMatch(Detector detector, const KeyPoint& point1, const KeyPoint& point2);
+// As above, of key points in images at these scales: one found in an image that was scaled down by two errs
+// by twice as many pixels of the file as one of the same size in that image.
+double SigmaOfMatch(Detector detector, const KeyPoint& point1, const KeyPoint& point2, int scale1 = 1,
+                    int scale2 = 1);
 
 }  // namespace rcme

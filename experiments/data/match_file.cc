@@ -71,6 +71,10 @@ class Header {
     if (!entries_.emplace(key, entry).second) lines.Fail(fmt::format("key '{}' stands twice", key));
   }
 
+  // "file:12: key".
+  std::string Place(const std::string& key) const {
+    return fmt::format("{}:{}: {}", path_, entries_.at(key).line_number, key);
+  }
   bool Has(const std::string& key) const { return entries_.count(key) > 0; }
   std::string Text(const std::string& key) const { return entries_.at(key).text; }
 
@@ -93,7 +97,7 @@ class Header {
   }
 
   [[noreturn]] void Fail(const std::string& key, const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}: {}", path_, entries_.at(key).line_number, key, what));
+    throw InputError(fmt::format("{}: {}", Place(key), what));
   }
 
  private:
@@ -148,6 +152,16 @@ Camera CameraFrom(const Header& header, const std::string& number, const Camera*
   camera.height = size[1];
   if (!given && !camera.IsValid()) header.Fail(k_key, "K is singular or mirrored; fx and fy must be > 0");
   return camera;
+}
+
+// What is suspicious about the cameras of a file whose K may be given.
+std::vector<CameraDoubt> FindDoubts(const Header& header, const MatchFile& file, bool is_given) {
+  const auto place = [&](const char* key) {
+    return is_given ? fmt::format("{}: --K", file.path) : header.Place(key);
+  };
+  return FindPairDoubts(file.camera1, file.camera2, file.matches,
+                        {place("K1_fx_fy_cx_cy"), place("K2_fx_fy_cx_cy")},
+                        {header.Has("size1"), header.Has("size2")});
 }
 
 std::optional<RelativePose> TruePoseFrom(const Header& header) {
@@ -289,6 +303,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
       CameraFrom(header, "1", given ? &given->front() : nullptr, file.matches, &Correspondence::x1_px);
   file.camera2 =
       CameraFrom(header, "2", given ? &given->back() : nullptr, file.matches, &Correspondence::x2_px);
+  file.doubts = FindDoubts(header, file, given.has_value());
   file.cam2_from_cam1_true = TruePoseFrom(header);
   file.truth_sd = TruthSdFrom(header);
   file.baseline = BaselineFrom(header);

@@ -7,6 +7,7 @@
 
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
+#include "experiments/data/camera_plausibility.h"
 #include "experiments/data/truth_sd.h"
 
 namespace rcme {
@@ -46,6 +47,7 @@ struct MatchFile {
   std::vector<double> sigma_px;  // per match; empty: the file has no such column
   double baseline = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
   double noise_level = 1.0;                                    // of a template
+  std::vector<CameraDoubt> doubts = {};                        // about K, as the reader found them
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
@@ -54,10 +56,10 @@ inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
 using GivenCameras = std::optional<std::array<Camera, 2>>;
 
 // Reads line by line; memory is that of the matches. Throws InputError that names the file, the line, what is
-// wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible, an invalid
-// rotation, columns in another order, a coordinate that is not finite, a sigma_px that is not positive, more
-// than kMaxMatchesPerFile matches, 1,000 columns or what GzipLines allows. Columns are separated by commas
-// or, in a line without one, by blanks.
+// wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible or cannot be
+// that of the image (camera_plausibility.h), an invalid rotation, columns in another order, a coordinate that
+// is not finite, a sigma_px that is not positive, more than kMaxMatchesPerFile matches, 1,000 columns or what
+// GzipLines allows. Columns are separated by commas or, in a line without one, by blanks.
 //
 // Where the intrinsics are given the file must have none; where it does not say the size of the images
 // either, it is twice the principal point, or what holds all points if that is more.

@@ -160,8 +160,10 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   std::map<std::string, Group> groups;
   size_t num_matches = 0;
   const Redraw redraw(settings.redraw);
+  CameraWarnings warnings;
   for (const fs::path& path : paths) {
     MatchFile file = ReadMatchFile(path.string());
+    warnings.Add(file.doubts);
     num_matches += file.matches.size();
     if (num_matches > kMaxMatches) {
       throw InputError(fmt::format("folder: '{}' holds too many matches; at most {} are allowed",
@@ -185,6 +187,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     if (redraw.IsOn()) Redraw::Label(&data);
     group.pairs.push_back(std::move(data));
   }
+  warnings.Print();
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;
   for (auto& [scene, group] : groups) {
     std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);

@@ -15,9 +15,9 @@ struct MatchImagesOptions {
   MatcherOptions matcher;
 };
 
-// Putative matches of two images (PNG, JPEG, TIFF, BMP, PNM; at most 4096 x 4096 px), outliers kept, each
-// with its sigma (features.h). Throws InputError if an image cannot be read, is of another format or too
-// large, or a K is singular.
+// Putative matches of two images (PNG, JPEG, TIFF, BMP, PNM; grey_image.h), outliers kept, each
+// with its sigma (features.h); what is suspicious about K is in `doubts`. Throws InputError if an image
+// cannot be read, is of another format or too large, or a K is singular or not that of the image.
 MatchFile MatchImages(const MatchImagesOptions& options);
 
 }  // namespace rcme

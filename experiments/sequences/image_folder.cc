@@ -43,7 +43,7 @@ std::vector<Sequence> ReadImageFolder(const DatasetOptions& options) {
   std::sort(images.begin(), images.end());
   for (const fs::path& image : images)
     sequence.frames.push_back({image.filename().string(), image.string(), Frame().time_s, std::nullopt});
-  FinishSequence(options, folder, &sequence);
+  FinishSequence(options, folder, &sequence, OtherSizes::kSkipped);
   return {sequence};
 }
 

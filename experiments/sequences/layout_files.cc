@@ -73,28 +73,77 @@ void CheckTimes(const Sequence& sequence, const fs::path& times) {
   }
 }
 
-void CheckImages(Sequence* sequence) {
-  Camera& camera = sequence->lens.camera;
-  std::string first;
-  for (const Frame& frame : sequence->frames) {
+// Of each frame's image, as its header says it; 0: the header is damaged.
+using Size = std::pair<std::int64_t, std::int64_t>;
+std::vector<Size> ReadSizes(const Sequence& sequence) {
+  std::vector<Size> sizes;
+  for (const Frame& frame : sequence.frames) {
     if (FindNotPlain(frame.name) != std::string::npos)
       throw InputError(fmt::format(
           "{}: the image's name is not allowed; give UTF-8 without control characters", Quoted(frame.path)));
-    const ImageHeader header = HeaderOfImage(frame, sequence->name);
-    if (header.width == 0) continue;
-    if (camera.width == 0) {
-      camera.width = static_cast<int>(std::min<std::int64_t>(header.width, 1'000'000));
-      camera.height = static_cast<int>(std::min<std::int64_t>(header.height, 1'000'000));
-      first = fmt::format(" as {}", frame.path);
-    }
-    if (header.width == camera.width && header.height == camera.height) continue;
-    throw InputError(fmt::format("{}: is of {} x {} px; the sequence's images must be of {} x {} px{}",
-                                 frame.path, header.width, header.height, camera.width, camera.height,
-                                 first.empty() ? ", as its calibration says" : first));
+    const ImageHeader header = HeaderOfImage(frame, sequence.name);
+    sizes.emplace_back(header.width, header.height);
   }
-  if (camera.width == 0)
+  return sizes;
+}
+
+// Of the sizes that images have the one that K was measured in: its centre is nearest to the principal point.
+// Those about as near are told apart by their numbers.
+Size FindSizeOfK(const std::vector<Size>& sizes, const Camera& camera) {
+  constexpr double kAboutAsNear = 0.02;
+  std::map<Size, int> counts;
+  for (const Size& size : sizes) ++counts[size];
+  const auto measure = [&](const Size& size) {
+    const auto width = static_cast<double>(size.first), height = static_cast<double>(size.second);
+    return std::max(std::abs((camera.cx + 0.5) / width - 0.5), std::abs((camera.cy + 0.5) / height - 0.5));
+  };
+  std::pair<double, int> best;  // offset, - number
+  Size found;
+  for (const auto& [size, count] : counts) {
+    if (size.first == 0) continue;
+    const std::pair<double, int> rank(std::round(measure(size) / kAboutAsNear), -count);
+    if (found.first > 0 && best <= rank) continue;
+    best = rank;
+    found = size;
+  }
+  return found;
+}
+
+void SkipOtherSize(const Size& size, const Camera& camera, Frame* frame) {
+  const bool is_turned = size.first == camera.height && size.second == camera.width;
+  frame->why_skipped =
+      fmt::format("{}: is of {} x {} px; K is of images of {} x {} px: {}", frame->path, size.first,
+                  size.second, camera.width, camera.height,
+                  is_turned ? "turn it back to how the sensor had it"
+                            : "put images of another size into a folder of their own, with their K");
+}
+
+void CheckImages(Sequence* sequence, OtherSizes other_sizes) {
+  Camera& camera = sequence->lens.camera;
+  const std::vector<Size> sizes = ReadSizes(*sequence);
+  const auto first = std::ranges::find_if(sizes, [](const Size& size) { return size.first > 0; });
+  if (first == sizes.end() && camera.width == 0)
     throw InputError(fmt::format("{}: none of the sequence's {} images can be read",
                                  sequence->frames.front().path, sequence->frames.size()));
+  const bool is_calibrated = camera.width > 0;
+  if (!is_calibrated) {
+    const Size size = other_sizes == OtherSizes::kSkipped ? FindSizeOfK(sizes, camera) : *first;
+    camera.width = static_cast<int>(std::min<std::int64_t>(size.first, 1'000'000));
+    camera.height = static_cast<int>(std::min<std::int64_t>(size.second, 1'000'000));
+  }
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    Frame& frame = sequence->frames[i];
+    if (sizes[i].first == 0 || sizes[i] == Size(camera.width, camera.height)) continue;
+    if (other_sizes == OtherSizes::kRefused) {
+      throw InputError(fmt::format(
+          "{}: is of {} x {} px; the sequence's images must be of {} x {} px{}", frame.path, sizes[i].first,
+          sizes[i].second, camera.width, camera.height,
+          is_calibrated
+              ? ", as its calibration says"
+              : fmt::format(" as {}", sequence->frames[static_cast<size_t>(first - sizes.begin())].path)));
+    }
+    SkipOtherSize(sizes[i], camera, &frame);
+  }
 }
 
 }  // namespace
@@ -175,14 +224,15 @@ Eigen::Matrix3d RotationFromFields(const TableFile& table, size_t w, size_t x, s
   return q.normalized().toRotationMatrix();
 }
 
-void FinishSequence(const DatasetOptions& options, const fs::path& times, Sequence* sequence) {
+void FinishSequence(const DatasetOptions& options, const fs::path& times, Sequence* sequence,
+                    OtherSizes other_sizes) {
   if (options.max_frames > 0 && sequence->frames.size() > static_cast<size_t>(options.max_frames))
     sequence->frames.resize(static_cast<size_t>(options.max_frames));
   if (sequence->frames.size() < 2)
     throw InputError(
         fmt::format("{}: names {} images; a pair needs two", times.string(), sequence->frames.size()));
   CheckTimes(*sequence, times);
-  CheckImages(sequence);
+  CheckImages(sequence, other_sizes);
 }
 
 }  // namespace rcme

@@ -50,9 +50,16 @@ std::string FolderName(const std::filesystem::path& folder);
 // A rotation from a quaternion of length 1 to within 1e-2, at fields w, x, y, z of a table.
 Eigen::Matrix3d RotationFromFields(const TableFile& table, size_t w, size_t x, size_t y, size_t z);
 
+// Images of another size than the camera's contradict a data set; of a folder of anybody's photographs they
+// are skipped.
+enum class OtherSizes { kRefused, kSkipped };
+
 // Cuts the sequence to max_frames and checks it: two frames at least, times that grow, every image there and
-// of the camera's size as its header says it. A camera without a size gets that of the first image. Damaged
-// headers pass: such images are skipped when their turn comes. `times` is the file the times are from.
-void FinishSequence(const DatasetOptions& options, const std::filesystem::path& times, Sequence* sequence);
+// of the camera's size as its header says it. A camera without a size gets that of the first image; where
+// others are skipped, that of the images, the more of them the rather, whose centre is nearest to the
+// principal point. Damaged headers pass: such images are skipped when their turn comes. `times` is the file
+// the times are from.
+void FinishSequence(const DatasetOptions& options, const std::filesystem::path& times, Sequence* sequence,
+                    OtherSizes other_sizes = OtherSizes::kRefused);
 
 }  // namespace rcme

@@ -140,17 +140,18 @@ class SequencePairs {
       if (!x1 || !x2) continue;
       file.matches.push_back({Rounded(*x1), Rounded(*x2)});
       const double sigma_px = SigmaOfMatch(options_.detector.detector, features1.key_points[match.at1],
-                                           features2.key_points[match.at2]);
+                                           features2.key_points[match.at2], features1.scale, features2.scale);
       file.sigma_px.push_back(std::round(1e4 * sigma_px) / 1e4);
     }
     return file;
   }
 
-  // False, and entered: the image is damaged.
+  // False, and entered: the image is damaged or skipped.
   bool Load(LoadedFrame* frame) {
     if (frame->image) return true;
     const Camera& camera = sequence_.lens.camera;
     try {
+      if (!frame->frame->why_skipped.empty()) throw InputError(frame->frame->why_skipped);
       frame->image = std::make_shared<ImageFeatures>(cache_->Get(frame->frame->path, options_.detector));
     } catch (const InputError& error) {
       journal_->Add(DamagedImage{sequence_.name, frame->frame->name, error.what()});
@@ -191,17 +192,24 @@ void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOption
     num_frames += static_cast<std::int64_t>((sequence.frames.size() + every - 1) / every);
   Progress progress("images", num_frames);
   FeatureCache cache(options.cache);
+  CameraWarnings warnings;
+  for (const Sequence& sequence : sequences)
+    warnings.Add(FindCameraDoubts(sequence.lens.camera, sequence.name + ": K"));
+  warnings.Print();
   for (const Sequence& sequence : sequences) SequencePairs(sequence, options, &cache, journal).Run(&progress);
 }
 
 void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJournal* journal) {
   Progress progress("pairs", static_cast<std::int64_t>(pairs.size()), journal->num_before());
+  CameraWarnings warnings;
   for (size_t i = 0; i < pairs.size(); ++i) {
     StopIfRequested(*journal);
     PairRow row;
     row.pair_id = pairs.IdOf(i);
     if (journal->Find(row.pair_id)) continue;
     ListedPair listed = pairs.Read(i);
+    warnings.Add(FindPairDoubts(listed.file.camera1, listed.file.camera2, listed.file.matches,
+                                {row.pair_id + ": camera 1", row.pair_id + ": camera 2"}));
     row.scene = listed.file.scene;
     row.image1 = listed.file.image1;
     row.image2 = listed.file.image2;
@@ -211,6 +219,7 @@ void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJourna
     Decide(std::move(listed.file), row, options, journal);
     progress.Advance(1);
   }
+  warnings.Print();
 }
 
 std::string WritePairTables(const PairJournal& journal, const std::vector<std::string>& notes,

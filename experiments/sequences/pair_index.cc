@@ -173,6 +173,18 @@ std::string IndexAsCsv(const std::vector<PairRow>& rows) {
   return text;
 }
 
+std::string DescribeWhyNone(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged) {
+  std::map<std::string, int> counts;
+  for (const PairRow& row : rows) ++counts[row.reason];
+  std::vector<std::string> reasons;
+  for (const auto& [reason, count] : counts) reasons.push_back(fmt::format("{} {}", count, reason));
+  if (reasons.empty()) reasons.emplace_back("none could be made");
+  std::string text = fmt::format("no pair was kept: of {} {}", rows.size(), fmt::join(reasons, ", "));
+  if (!damaged.empty())
+    text += fmt::format("; {} images were skipped, the first: {}", damaged.size(), damaged[0].message);
+  return text;
+}
+
 std::string PairsAsTable(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged) {
   struct Counts {
     int looked_at = 0, with_truth = 0, damaged = 0;
@@ -190,7 +202,7 @@ std::string PairsAsTable(const std::vector<PairRow>& rows, const std::vector<Dam
   for (const DamagedImage& image : damaged) ++scenes[image.scene].damaged;
   std::vector<std::vector<std::string>> table = {{"scene", "pairs looked at", "kept", "with truth"}};
   for (const auto& [reason, count] : reasons) table[0].push_back(reason);
-  table[0].emplace_back("damaged images");
+  table[0].emplace_back("skipped images");
   for (auto& [scene, counts] : scenes) {
     table.push_back({scene, fmt::format("{}", counts.looked_at),
                      fmt::format("{}", counts.by_reason[kKeptPair]), fmt::format("{}", counts.with_truth)});

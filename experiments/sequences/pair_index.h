@@ -21,7 +21,7 @@ struct PairRow {
   bool is_direction_weak = false;                     // its direction is not to be scored
 };
 
-// An image that could not be unpacked.
+// An image that could not be unpacked, or is not of the size that K is of.
 struct DamagedImage {
   std::string scene, image, message;
 };
@@ -61,6 +61,9 @@ class PairJournal {
 
 // INDEX.csv: a row per pair, kept or dropped. pair_id and t_gt_weak are what studies read (match_folder.h).
 std::string IndexAsCsv(const std::vector<PairRow>& rows);
+
+// Why no pair was kept, as a sentence: how many pairs were dropped for which reason, and images skipped.
+std::string DescribeWhyNone(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged);
 
 // Per scene how many pairs were kept, and dropped why; then the damaged images.
 std::string PairsAsTable(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged);

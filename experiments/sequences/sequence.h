@@ -17,6 +17,7 @@ struct Frame {
   std::string path;
   double time_s = std::numeric_limits<double>::quiet_NaN();  // NaN: the data set does not say
   std::optional<CameraPose> pose_true;
+  std::string why_skipped = {};  // a sentence that begins with the path; empty: it is not
 };
 
 struct Sequence {

@@ -12,14 +12,17 @@ namespace rcme {
 
 std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px) {
   std::map<std::string, PairSet> sets;
+  CameraWarnings warnings;
   for (const std::filesystem::path& path : MatchFilesIn(folder)) {
     MatchFile file = ReadMatchFile(path.string());
+    warnings.Add(file.doubts);
     PairSet& set = sets[file.scene];
     set.name = file.scene;
     NamedPair pair{path.filename().string(), file.image1, file.image2, {}};
     pair.problem = ProblemOf(std::move(file), sigma_px);
     set.pairs.push_back(std::move(pair));
   }
+  warnings.Print();
   std::vector<PairSet> all;
   for (auto& [scene, set] : sets) all.push_back(std::move(set));
   return all;

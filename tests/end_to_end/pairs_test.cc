@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,50 @@ TEST(PairsProgram, FromKittiToARateAndToAValidation) {
       RunRcme({"validate", out, "--out", folder.Path("validation"), "--no-figure", "--twins", "1"});
   EXPECT_EQ(validated.exit_code, 0) << validated.err;
   EXPECT_EQ(validated.out.find(" 0 loops"), std::string::npos) << validated.out;
+}
+
+// Without a pair there is nothing for a study to read: exit code 2, and how many were dropped for which
+// reason.
+TEST(PairsProgram, EndsWithTwoAndTheReasonsWhereNoPairIsKept) {
+  const TempFolder folder;
+  const std::string dataset = folder.Path("dataset");
+  WriteKittiSequence(dataset, "04", 3);
+  const std::vector<std::string> strict = {"pairs", dataset,           "--layout",
+                                           "kitti", "--least-matches", "100000"};
+  std::vector<std::string> command = strict;
+  command.insert(command.end(), {"--out", folder.Path("strict")});
+  EXPECT_TRUE(
+      IsRefused(RunRcme(command), {"no pair was kept: of 2 2 too_few_matches", "INDEX.csv lists them"}));
+  EXPECT_TRUE(fs::exists(folder.Path("strict") + "/INDEX.csv"));
+  for (const char* image : {"000000", "000001", "000002"})
+    std::ofstream(dataset + "/sequences/04/image_0/" + image + ".png") << "no image";
+  command = strict;
+  command.insert(command.end(), {"--out", folder.Path("damaged")});
+  EXPECT_TRUE(IsRefused(RunRcme(command),
+                        {"no pair was kept: of 0 none could be made; 3 images were skipped, the first: ",
+                         "000000.png: is not a PNG"}));
+}
+
+// Half of K: a warning that says so, once for all pairs.
+TEST(PairsProgram, WarnsWhereKIsNotOfTheImages) {
+  const TempFolder folder;
+  const std::string images = folder.Path("images"), out = folder.Path("out");
+  WriteImageFolder(images, 3, RenderedCamera());
+  const ProgramResult half = RunRcme({"pairs", images, "--layout", "images", "--gate", "off", "--out", out,
+                                      "--K", "130", "131", "78.9", "60.5"});
+  EXPECT_EQ(half.exit_code, 0) << half.err;
+  EXPECT_NE(
+      half.err.find("warning: images: K: the principal point is the centre of an image of 160 x 120 px"),
+      std::string::npos)
+      << half.err;
+  const ProgramResult estimated = RunRcme({"estimate", out, "--json"});
+  EXPECT_NE(estimated.err.find("(and 1 more): the principal point is the centre of an image of"),
+            std::string::npos)
+      << estimated.err;
+  EXPECT_NE(estimated.out.find("\"warnings\":[\"" + out), std::string::npos) << estimated.out;
+  EXPECT_TRUE(IsRefused(RunRcme({"pairs", images, "--layout", "images", "--out", folder.Path("other"), "--K",
+                                 "158.3", "121.6", "260", "262"}),
+                        {"images: K: 158.3 121.6 260 262", "the numbers look like cx cy fx fy"}));
 }
 
 TEST(PairsProgram, EndsWithTwoAndThePathWhereSomethingIsWrong) {

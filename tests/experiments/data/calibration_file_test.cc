@@ -93,8 +93,10 @@ TEST_F(CalibrationFile, ErrorsNameFileLineAndKey) {
   EXPECT_TRUE(refuses("# size1: 848 480\n", {"bad.csv", "K1_fx_fy_cx_cy", "missing"}));
   EXPECT_TRUE(
       refuses("# size1: 848 480\n# size2: 9 9\n# K1_fx_fy_cx_cy: 1 2 3\n", {"bad.csv:3", "K1_fx_fy_cx_cy"}));
-  EXPECT_TRUE(refuses(std::string(kTwoCameras).replace(2, 14, "size1: 8 480"),
-                      {"bad.csv", "image1_width", "'8'", "[16, 100000]"}));
+  EXPECT_TRUE(
+      refuses("# size1: 8 480\n# size2: 8 480\n# K1_fx_fy_cx_cy: 520 520 3.5 239\n# K2_fx_fy_cx_cy: 520 520 "
+              "3.5 239\n",
+              {"bad.csv", "image1_width", "'8'", "[16, 100000]"}));
   EXPECT_TRUE(ThrowsInputError([&] { MakeSimulatedData(From(folder_.Path("none"))); }, {"none"}));
   EXPECT_TRUE(ThrowsInputError(
       [&] {

@@ -65,6 +65,35 @@ TEST_F(ImageFolder, PhotographsOfACameraAreReadAsTheSensorHasThem) {
   EXPECT_EQ(ReadBytes(camera + file), ReadBytes(plain + file));
 }
 
+// A folder as it is found: photographs of the camera of K, two that were turned by a quarter, a thumbnail.
+// Those of the size that K is of make pairs, whichever comes first by name; the others are skipped, each with
+// its reason.
+TEST_F(ImageFolder, ImagesOfAnotherSizeAreSkippedAndNamed) {
+  const std::string mixed = folder_.Path("mixed"), out = folder_.Path("out");
+  fs::create_directories(mixed);
+  for (const int i : {0, 2, 4})
+    WriteImage(mixed + "/" + std::to_string(i) + ".png", RenderedCamera().camera,
+               RenderHall(FisheyeCamera(), PoseOnWalk(i)));
+  const std::vector<std::uint8_t> grey(320 * 240, 100);
+  for (const char* name : {"/00.png", "/1.png"}) WriteImage(mixed + name, {1, 1, 0, 0, 240, 320}, grey);
+  WriteImage(mixed + "/3.png", {1, 1, 0, 0, 80, 60}, std::vector<std::uint8_t>(80 * 60));
+  const std::vector<Sequence> read = ReadImageFolder(WithCamera(mixed));
+  EXPECT_EQ(read[0].lens.camera.width, 320);
+  EXPECT_EQ(read[0].lens.camera.height, 240);
+  int num_kept = 0;
+  for (const PairRow& row : MakePairsInto(out, read)) {
+    num_kept += row.reason == kKeptPair;
+    EXPECT_TRUE(row.image1 == "0.png" || row.image1 == "2.png") << row.image1;
+  }
+  EXPECT_GE(num_kept, 1);
+  const std::string text = ReadBytes(out + "/pairs.txt");
+  for (const std::string& said :
+       {"skipped: " + mixed + "/00.png: is of 240 x 320 px; K is of images of 320 x 240 px: turn it back",
+        "skipped: " + mixed + "/1.png: is of 240 x 320 px", "skipped: " + mixed + "/3.png: is of 80 x 60 px",
+        std::string("put images of another size into a folder of their own")})
+    EXPECT_NE(text.find(said), std::string::npos) << text;
+}
+
 TEST_F(ImageFolder, WhatIsBrokenIsNamedByPath) {
   DatasetOptions images = WithCamera(Folder());
   images.distortion.pop_back();

@@ -1,0 +1,264 @@
+#include "experiments/data/camera_plausibility.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "experiments/base/message.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+// Of the longer side: crops to a strip move the principal point by up to .12 (the side cameras of Waymo),
+// half a K by .25.
+constexpr double kFarFromCentre = 0.2;
+// Of width and of height: as far as a sensor is mounted off its lens's axis.
+constexpr double kNearCentre = 0.1;
+// fx / fy of pixels that are square, and of those that are not: 1080-line anamorphic video has 1.33.
+constexpr double kSquarePixels = 1.1, kOddPixels = 1.2, kLongestPixel = 2.0;
+// Tangents of the angle from the axis to a corner: 71.6 degrees, more than any pinhole image shows, and 89.4.
+constexpr double kWideCorner = 3.0, kImpossibleCorner = 100.0;
+// Focal length over the longer side: an angle of view of 1.9 degrees.
+constexpr double kLongLens = 30.0;
+
+using Numbers = std::array<double, 4>;  // fx fy cx cy
+
+// The offset of the principal point from the centre, over width and height.
+Eigen::Vector2d ComputeOffset(const Numbers& K, const Eigen::Vector2d& size) {
+  return {(K[2] + 0.5) / size.x() - 0.5, (K[3] + 0.5) / size.y() - 0.5};
+}
+
+// max(fx / fy, fy / fx).
+double ComputePixelLength(const Numbers& K) { return std::max(K[0] / K[1], K[1] / K[0]); }
+
+// Tangent of the largest angle between the axis and a corner.
+double ComputeCornerTangent(const Numbers& K, const Eigen::Vector2d& size) {
+  const double x = std::max(K[2] + 0.5, size.x() - 0.5 - K[2]),
+               y = std::max(K[3] + 0.5, size.y() - 0.5 - K[3]);
+  return std::hypot(x / K[0], y / K[1]);
+}
+
+bool IsFarFromCentre(const Numbers& K, const Eigen::Vector2d& size) {
+  return ComputeOffset(K, size).cwiseProduct(size).cwiseAbs().maxCoeff() > kFarFromCentre * size.maxCoeff();
+}
+
+// Square pixels, the principal point near the centre, an ordinary angle of view.
+bool IsOrdinary(const Numbers& K, const Eigen::Vector2d& size, double near) {
+  return K[0] > 0.0 && K[1] > 0.0 && ComputePixelLength(K) < kSquarePixels &&
+         ComputeOffset(K, size).cwiseAbs().maxCoeff() < near && ComputeCornerTangent(K, size) < kWideCorner;
+}
+
+// Another order in which the numbers are those of an ordinary camera.
+std::optional<std::string> FindOrder(const Numbers& K, const Eigen::Vector2d& size, double near) {
+  constexpr std::array<std::pair<const char*, std::array<size_t, 4>>, 3> kOrders = {
+      {{"cx cy fx fy", {2, 3, 0, 1}}, {"fx cx fy cy", {0, 2, 1, 3}}, {"cx fx cy fy", {1, 3, 0, 2}}}};
+  for (const auto& [name, at] : kOrders) {
+    if (IsOrdinary({K[at[0]], K[at[1]], K[at[2]], K[at[3]]}, size, near)) return name;
+  }
+  return std::nullopt;
+}
+
+std::string DescribeSize(const Eigen::Vector2d& size) {
+  return fmt::format("{:.0f} x {:.0f} px", size.x(), size.y());
+}
+
+std::string DescribeOrder(const std::string& order) {
+  return fmt::format("the numbers look like {} and are read as fx fy cx cy; give them in that order", order);
+}
+
+// K of the image in another size has its principal point in the middle of that one.
+std::optional<std::string> DoubtScale(const Eigen::Vector2d& offset, const Eigen::Vector2d& size) {
+  constexpr double kLeast = 0.06, kSame = 0.04;
+  if (std::min(std::abs(offset.x()), std::abs(offset.y())) < kLeast ||
+      std::abs(offset.x() - offset.y()) > kSame)
+    return std::nullopt;
+  const double scale = 1.0 + offset.x() + offset.y();
+  return fmt::format(
+      "the principal point is the centre of an image of {}, the image has {}; if it was scaled, divide "
+      "fx, fy, cx and cy by about {:.2f}",
+      DescribeSize(scale * size), DescribeSize(size), scale);
+}
+
+// K of the image before a quarter turn.
+std::optional<std::string> DoubtTurn(const Numbers& K, const Eigen::Vector2d& offset,
+                                     const Eigen::Vector2d& size) {
+  constexpr double kNear = 0.05;
+  const Eigen::Vector2d turned(size.y(), size.x());
+  if (ComputeOffset(K, turned).cwiseAbs().maxCoeff() > kNear || offset.cwiseAbs().minCoeff() < kNearCentre)
+    return std::nullopt;
+  return fmt::format(
+      "the principal point is the centre of an image of {}, the image has {}; if it was turned, give K "
+      "of the turned image",
+      DescribeSize(turned), DescribeSize(size));
+}
+
+std::optional<std::string> DoubtPrincipalPoint(const Numbers& K, const Eigen::Vector2d& size) {
+  const Eigen::Vector2d offset = ComputeOffset(K, size);
+  if (auto doubt = DoubtTurn(K, offset, size)) return doubt;
+  if (auto doubt = DoubtScale(offset, size)) return doubt;
+  if (!IsFarFromCentre(K, size)) return std::nullopt;
+  return fmt::format(
+      "the principal point ({:.6g}, {:.6g}) is far from the centre of the image of {}; unless the image "
+      "was cut out of a larger one, K is of other images",
+      K[2], K[3], DescribeSize(size));
+}
+
+std::optional<std::string> DoubtOrder(const Numbers& K, const Eigen::Vector2d& size) {
+  if (!IsFarFromCentre(K, size)) return std::nullopt;
+  const std::optional<std::string> order = FindOrder(K, size, kNearCentre);
+  if (!order) return std::nullopt;
+  return DescribeOrder(*order);
+}
+
+std::vector<std::string> DoubtFocalLength(const Numbers& K, const Eigen::Vector2d& size) {
+  constexpr double kDegPerRad = 57.29577951308232;
+  std::vector<std::string> doubts;
+  const double corner = ComputeCornerTangent(K, size), focal = std::max(K[0], K[1]);
+  if (corner > kWideCorner)
+    doubts.push_back(
+        fmt::format("with fx = {:.6g} a corner of the image of {} is {:.1f} degrees off the axis; no "
+                    "pinhole image shows that much, so check that fx and fy are in px",
+                    K[0], DescribeSize(size), kDegPerRad * std::atan(corner)));
+  if (focal > kLongLens * size.maxCoeff())
+    doubts.push_back(
+        fmt::format("with fx = {:.6g} the image of {} shows {:.2f} degrees; check that fx and fy are in px "
+                    "of this image",
+                    K[0], DescribeSize(size), kDegPerRad * size.maxCoeff() / focal));
+  if (ComputePixelLength(K) > kLongestPixel)
+    doubts.push_back(
+        fmt::format("fx = {:.6g} and fy = {:.6g} differ by more than a factor of two; the order is fx fy "
+                    "cx cy",
+                    K[0], K[1]));
+  return doubts;
+}
+
+// Throws where K is wrong beyond doubt.
+void CheckPossible(const Numbers& K, const Eigen::Vector2d& size, const std::string& place) {
+  const std::string given = fmt::format("{}: {:.6g} {:.6g} {:.6g} {:.6g}", place, K[0], K[1], K[2], K[3]);
+  const bool is_outside = ComputeOffset(K, size).cwiseAbs().maxCoeff() > 0.5;
+  const std::optional<std::string> order = FindOrder(K, size, kNearCentre);
+  if (order && (is_outside || ComputePixelLength(K) > kOddPixels))
+    throw InputError(
+        fmt::format("{} in an image of {}: {}", given, DescribeSize(size), DescribeOrder(*order)));
+  if (ComputeCornerTangent(K, size) > kImpossibleCorner)
+    throw InputError(
+        fmt::format("{} in an image of {}: a corner would be more than 89 degrees off the axis; give fx, "
+                    "fy, cx and cy in px, not in mm or in shares of the image",
+                    given, DescribeSize(size)));
+  if (is_outside)
+    throw InputError(
+        fmt::format("{}: the principal point is outside of the image of {}; K and image are of different "
+                    "sizes, or the order is not fx fy cx cy; of an image cut out of a larger one give "
+                    "size, K and key points of the larger one",
+                    given, DescribeSize(size)));
+}
+
+// Where all but a twentieth of the points lie.
+struct PointSpread {
+  Eigen::Vector2d least, greatest;
+};
+PointSpread MeasureSpread(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px) {
+  PointSpread spread;
+  std::vector<double> values(matches.size());
+  const auto quantile = [&](double share) {
+    const auto at =
+        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  for (int i = 0; i < 2; ++i) {
+    std::ranges::transform(matches, values.begin(),
+                           [&](const Correspondence& match) { return (match.*x_px)[i]; });
+    spread.least[i] = quantile(0.025);
+    spread.greatest[i] = quantile(0.975);
+  }
+  return spread;
+}
+
+}  // namespace
+
+std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::string& place) {
+  const Numbers K = {camera.fx, camera.fy, camera.cx, camera.cy};
+  const Eigen::Vector2d size(camera.width, camera.height);
+  CheckPossible(K, size, place);
+  std::vector<CameraDoubt> doubts;
+  for (const std::string& what : DoubtFocalLength(K, size)) doubts.push_back({place, what});
+  for (const auto& what : {DoubtPrincipalPoint(K, size), DoubtOrder(K, size)}) {
+    if (what) doubts.push_back({place, *what});
+  }
+  return doubts;
+}
+
+std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
+                                            Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
+                                            const std::string& place) {
+  constexpr size_t kFewest = 50;
+  constexpr double kBeyond = 1.25,
+                   kBefore = 0.02;  // of the size; without distortion points lie outside on all sides
+  if (matches.size() < kFewest) return {};
+  const auto [least, greatest] = MeasureSpread(matches, x_px);
+  const Eigen::Vector2d centre(camera.cx, camera.cy), implied = 2.0 * centre + Eigen::Vector2d::Ones();
+  const Eigen::Vector2d size = is_size_known ? Eigen::Vector2d(camera.width, camera.height) : implied;
+  std::vector<CameraDoubt> doubts;
+  if ((greatest.array() > kBeyond * size.array()).any() && (least.array() > -kBefore * size.array()).all())
+    doubts.push_back(
+        {place, fmt::format("key points lie far to the right of or below an image of {}, {}; K is of a "
+                            "smaller image, unless this one was cut out of a larger one",
+                            DescribeSize(size), is_size_known ? "its size" : "twice the principal point")});
+  if (is_size_known) return doubts;
+  if ((greatest.array() < centre.array()).all())
+    doubts.push_back(
+        {place, fmt::format("key points lie to the left of and above the principal point ({:.6g}, {:.6g}); "
+                            "K is of a larger image, unless the matches are of one corner",
+                            camera.cx, camera.cy)});
+  const Numbers K = {camera.fx, camera.fy, camera.cx, camera.cy};
+  if (const auto order = FindOrder(K, least + greatest, kFarFromCentre);
+      order && ComputePixelLength(K) > kOddPixels)
+    doubts.push_back({place, DescribeOrder(*order)});
+  return doubts;
+}
+
+std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
+                                        const std::vector<Correspondence>& matches,
+                                        const std::array<std::string, 2>& places,
+                                        const std::array<bool, 2>& are_sizes_known) {
+  std::vector<CameraDoubt> doubts;
+  const auto add = [&](const std::vector<CameraDoubt>& more) {
+    for (const CameraDoubt& doubt : more) {
+      const bool is_known =
+          std::ranges::any_of(doubts, [&](const CameraDoubt& d) { return d.what == doubt.what; });
+      if (!is_known) doubts.push_back(doubt);
+    }
+  };
+  if (are_sizes_known[0]) add(FindCameraDoubts(camera1, places[0]));
+  if (are_sizes_known[1]) add(FindCameraDoubts(camera2, places[1]));
+  add(FindKeyPointDoubts(camera1, matches, &Correspondence::x1_px, are_sizes_known[0], places[0]));
+  add(FindKeyPointDoubts(camera2, matches, &Correspondence::x2_px, are_sizes_known[1], places[1]));
+  return doubts;
+}
+
+void CameraWarnings::Add(const std::vector<CameraDoubt>& doubts) {
+  for (const CameraDoubt& doubt : doubts) {
+    const auto known = std::ranges::find_if(
+        warnings_, [&](const Warning& warning) { return warning.first.what == doubt.what; });
+    if (known == warnings_.end()) {
+      warnings_.push_back({doubt, 1});
+    } else {
+      ++known->count;
+    }
+  }
+}
+
+void CameraWarnings::Print() const {
+  for (const auto& [first, count] : warnings_) {
+    const std::string more = count > 1 ? fmt::format(" (and {} more)", count - 1) : "";
+    PrintMessage("warning: {}{}: {}\n", Printable(first.place), more, first.what);
+  }
+}
+
+}  // namespace rcme
