@@ -12,8 +12,12 @@ namespace rcme {
 // of the audit's coverage claims.
 inline constexpr double kNominalCoverage = 0.95, kCoverageMargin = 0.01;
 
+// Too narrow: the region covers less often than it says; too wide: more often.
+enum class RegionVerdict { kCovers, kTooNarrow, kTooWide, kUndecided };
+const char* Name(RegionVerdict verdict);  // "covers", "too narrow", "too wide", "undecided"
+
 struct CoverageVerdict {
-  Verdict verdict = Verdict::kUndecided;
+  RegionVerdict verdict = RegionVerdict::kUndecided;
   // Where undecided: about how many trials in all decide with probability 0.9, if the measured coverage is
   // the truth; infinite on a border of the margin.
   double trials_to_decide = 0.0;
@@ -24,8 +28,7 @@ struct CoverageVerdict {
 CoverageVerdict JudgeCoverage(double coverage, const Interval& interval, std::int64_t n,
                               std::int64_t num_trials, bool is_of_fixed_n);
 
-std::string CoverageVerdictName(Verdict verdict);  // "covers", "does not cover", "undecided"
-std::string CoverageVerdictInWords(
-    const CoverageVerdict& verdict);  // "undecided, about 12000 trials would do"
+// "undecided, about 12000 trials would do"
+std::string CoverageVerdictInWords(const CoverageVerdict& verdict);
 
 }  // namespace rcme

@@ -91,9 +91,9 @@ std::string IntervalKindName(IntervalKind kind) {
 // The last two columns: the verdict of a coverage, and how many trials would decide it.
 std::string VerdictFields(const SummaryRow& row) {
   if (!row.coverage_verdict) return ",";
-  const bool is_undecided = row.coverage_verdict->verdict == Verdict::kUndecided;
-  return CoverageVerdictName(row.coverage_verdict->verdict) + "," +
-         (is_undecided ? CsvFinite(row.coverage_verdict->trials_to_decide) : "");
+  const bool is_undecided = row.coverage_verdict->verdict == RegionVerdict::kUndecided;
+  return fmt::format("{},{}", Name(row.coverage_verdict->verdict),
+                     is_undecided ? CsvFinite(row.coverage_verdict->trials_to_decide) : "");
 }
 
 // How hard the problems were: one row per condition. Empty where nothing was measured.
@@ -224,8 +224,9 @@ std::string SummaryAsTable(const Summary& summary) {
       "failure: motion beyond a bound. no_candidate: the paper's detect-fail. kappa_flag: the paper's own "
       "flag.\n"
       "nees_coverage: truth inside the reported 95 % region; covers: the whole interval within 95 +- 1 %, "
-      "does\n"
-      "not cover: wholly outside. nees_median: 4.35 expected. auc_T_deg: mean of max(0, 1 - error / T).\n"
+      "too\n"
+      "narrow: wholly below, too wide: wholly above. nees_median: 4.35 expected.\n"
+      "auc_T_deg: mean of max(0, 1 - error / T).\n"
       "maa_10_deg: mean share of errors up to 1, 2, ..., 10 deg. All quantities, those with refusals left\n"
       "out among them: --format csv or json.\n";
   if (!summary.truth_quality.empty()) text += summary.truth_quality + "\n";
@@ -276,8 +277,8 @@ std::string SummaryAsJson(const Summary& summary) {
     if (HasKindOfInterval(row)) entry["interval_kind"] = IntervalKindName(row.interval_kind);
     entry["n"] = row.n;
     if (row.coverage_verdict) {
-      entry["verdict"] = CoverageVerdictName(row.coverage_verdict->verdict);
-      entry["trials_to_decide"] = row.coverage_verdict->verdict == Verdict::kUndecided
+      entry["verdict"] = Name(row.coverage_verdict->verdict);
+      entry["trials_to_decide"] = row.coverage_verdict->verdict == RegionVerdict::kUndecided
                                       ? JsonNumber(row.coverage_verdict->trials_to_decide)
                                       : nlohmann::ordered_json();
     }

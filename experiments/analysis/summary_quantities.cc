@@ -73,8 +73,8 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       {"kappa_flag", kRate, "the paper's failure flag n*_I / n_I <= kappa, of returned motions",
        [](R r, B) { return If(IsOk(r), r.failed_by_kappa); }},
       {"nees_coverage", kRate,
-       "truth within the 95 % region of the reported covariance (an answer that is not valid does not "
-       "cover), of returned motions",
+       "truth within the 95 % region of the reported covariance (never of an answer that is not valid), of "
+       "returned motions",
        [](R r, B) { return If(!HasRefused(r) && !std::isnan(r.nees), r.nees <= nees_bound); }},
       {"nees_median", kMedian,
        "normalised estimation error squared (4.35 expected; infinite where not valid), of returned motions",

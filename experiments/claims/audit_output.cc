@@ -48,19 +48,49 @@ std::string PowerInWords(const Audit& audit, const Check& check, const Target& t
   return FoundInWords(PowerOf(target, check.limits.Max(audit.options.budget), audit.confidence));
 }
 
+// How the regions of a check or a claim are wrong.
+std::optional<Side> FindSide(const Check& check, const CheckResult& result) {
+  std::vector<std::optional<Side>> sides;
+  for (size_t t = 0; t < result.targets.size(); ++t)
+    sides.push_back(SideOf(check.targets[t], result.targets[t]));
+  return JoinSides(sides);
+}
+
+std::optional<Side> FindSide(const Claim& claim, const ClaimResult& result) {
+  std::vector<std::optional<Side>> sides;
+  for (size_t c = 0; c < claim.checks.size(); ++c)
+    sides.push_back(FindSide(claim.checks[c], result.checks[c]));
+  return JoinSides(sides);
+}
+
+// Empty: none.
+std::string SideName(const std::optional<Side>& side) { return side ? Name(*side) : ""; }
+
+// "does not hold: too narrow"
+std::string AddSide(const std::string& verdict, const std::optional<Side>& side) {
+  return side ? fmt::format("{}: {}", verdict, Name(*side)) : verdict;
+}
+
 std::string VerdictInWords(const Claim& claim, const ClaimResult& result) {
-  const std::string words = Name(result.verdict);
+  std::string words = Name(result.verdict);
   if (result.verdict == ClaimVerdict::kSmallNoiseOnly) {
     return fmt::format("{} (up to {} px)", words, *result.holds_up_to_sigma_px);
   }
-  const auto num_impossible =
-      std::ranges::count_if(claim.checks, [](const Check& check) { return !check.not_possible.empty(); });
+  if (result.verdict == ClaimVerdict::kDoesNotHold) words = AddSide(words, FindSide(claim, result));
+  const auto num_impossible = std::ranges::count_if(
+      result.checks, [](const CheckResult& check) { return !check.not_possible.empty(); });
   if (num_impossible == 0 || result.verdict == ClaimVerdict::kNotPossible) return words;
   return fmt::format("{} (not possible in {} of {} conditions)", words, num_impossible, claim.checks.size());
 }
 
 std::string VerdictInWords(const Check& check, const CheckResult& result) {
-  return check.not_possible.empty() ? VerdictName(result.verdict) : Name(ClaimVerdict::kNotPossible);
+  if (!result.not_possible.empty()) return Name(ClaimVerdict::kNotPossible);
+  return AddSide(VerdictName(result.verdict), FindSide(check, result));
+}
+
+// A target of which no answer states anything is left out.
+bool IsLeftOut(const Target& target, const TargetResult& result) {
+  return target.is_if_stated && result.n == 0;
 }
 
 // The target that decided the checks [begin, end) of a claim: of the check at the asserted noise level (or
@@ -82,7 +112,7 @@ Decisive DecisiveOf(const Claim& claim, const ClaimResult& result, size_t begin,
   };
   Decisive best{nullptr, nullptr, nullptr};
   for (size_t c = begin; c < end; ++c) {
-    for (size_t t = 0; t < claim.checks[c].targets.size(); ++t) {
+    for (size_t t = 0; t < result.checks[c].targets.size(); ++t) {
       const Decisive candidate{&claim.checks[c], &claim.checks[c].targets[t], &result.checks[c].targets[t]};
       const bool is_nearer = !best.check || distance(*candidate.check) < distance(*best.check);
       const bool is_as_near = best.check && distance(*candidate.check) == distance(*best.check);
@@ -111,7 +141,8 @@ Json TargetAsJson(const Target& target, const TargetResult& result) {
                {"measured", Number(result.measured)},
                {"interval", {Number(result.interval.lower), Number(result.interval.upper)}},
                {"n", result.n},
-               {"verdict", VerdictName(result.verdict)}};
+               {"verdict", VerdictName(result.verdict)},
+               {"side", SideName(SideOf(target, result))}};
   json["trials_to_decide"] = result.verdict == Verdict::kUndecided ? Number(result.trials_to_decide) : Json();
   return json;
 }
@@ -128,14 +159,13 @@ Json FifthsAsJson(const std::vector<DifficultyFifth>& fifths) {
 }
 
 Json CheckAsJson(const Audit& audit, const Check& check, const CheckResult& result) {
-  Json json = {{"conditions", Json::object()},
-               {"num_trials", result.num_trials},
-               {"verdict", VerdictName(result.verdict)},
-               {"not_possible", check.not_possible},
-               {"targets", Json::array()}};
+  Json json = {{"conditions", Json::object()},           {"num_trials", result.num_trials},
+               {"verdict", VerdictName(result.verdict)}, {"side", SideName(FindSide(check, result))},
+               {"not_possible", result.not_possible},    {"targets", Json::array()}};
   if (check.sigma_px) json["conditions"]["sigma_px"] = fmt::format("{}", *check.sigma_px);
   for (const auto& [key, value] : check.conditions) json["conditions"][key] = value;
-  for (size_t t = 0; t < check.targets.size(); ++t) {
+  for (size_t t = 0; t < result.targets.size(); ++t) {
+    if (IsLeftOut(check.targets[t], result.targets[t])) continue;
     json["targets"].push_back(TargetAsJson(check.targets[t], result.targets[t]));
     if (!check.targets[t].IsClaimed()) continue;
     json["targets"].back()["power"] =
@@ -146,13 +176,15 @@ Json CheckAsJson(const Audit& audit, const Check& check, const CheckResult& resu
 }
 
 Json ClaimAsJson(const Audit& audit, const Claim& claim, const ClaimResult& result) {
-  Json json = {{"id", claim.id},
-               {"family", claim.family()},
-               {"label", claim.label},
-               {"reading", claim.reading},
-               {"sentence", claim.sentence},
-               {"statistic", claim.statistic},
-               {"verdict", Name(result.verdict)}};
+  Json json = {
+      {"id", claim.id},
+      {"family", claim.family()},
+      {"label", claim.label},
+      {"reading", claim.reading},
+      {"sentence", claim.sentence},
+      {"statistic", claim.statistic},
+      {"verdict", Name(result.verdict)},
+      {"side", result.verdict == ClaimVerdict::kDoesNotHold ? SideName(FindSide(claim, result)) : ""}};
   json["holds_up_to_sigma_px"] = result.holds_up_to_sigma_px ? Json(*result.holds_up_to_sigma_px) : Json();
   json["holds_at_nominal"] = HoldsAtNominal(claim, audit.options.budget, audit.confidence);
   json["figure_x"] = claim.figure_x;
@@ -198,13 +230,14 @@ std::string ClaimAsMarkdown(const Audit& audit, const Claim& claim, const ClaimR
       "| conditions | quantity | claimed | found with p = 0.9 | measured | n | verdict "
       "|\n|---|---|---|---|---|---|---|\n";
   for (size_t c = 0; c < claim.checks.size(); ++c) {
-    if (!claim.checks[c].not_possible.empty()) {
+    if (!result.checks[c].not_possible.empty()) {
       text += fmt::format("| {} | | | | | 0 | not possible: {} |\n", ConditionsInWords(claim.checks[c]),
-                          claim.checks[c].not_possible);
+                          result.checks[c].not_possible);
     }
-    for (size_t t = 0; t < claim.checks[c].targets.size(); ++t) {
+    for (size_t t = 0; t < result.checks[c].targets.size(); ++t) {
       const TargetResult& target = result.checks[c].targets[t];
-      std::string verdict = VerdictName(target.verdict);
+      if (IsLeftOut(claim.checks[c].targets[t], target)) continue;
+      std::string verdict = AddSide(VerdictName(target.verdict), SideOf(claim.checks[c].targets[t], target));
       if (target.verdict == Verdict::kUndecided) {
         verdict += std::isfinite(target.trials_to_decide)
                        ? fmt::format(" (about {:.2g} trials would do)", target.trials_to_decide)
@@ -243,8 +276,8 @@ std::vector<std::vector<std::string>> RowsPerCondition(const Audit& audit) {
     for (size_t c = 0; c < claim.checks.size(); ++c) {
       const Decisive decisive = DecisiveOf(claim, result, c, c + 1);
       rows.push_back({claim.id, ConditionsInWords(claim.checks[c]),
-                      VerdictInWords(claim.checks[c], result.checks[c]), claim.checks[c].not_possible, "", "",
-                      ""});
+                      VerdictInWords(claim.checks[c], result.checks[c]), result.checks[c].not_possible, "",
+                      "", ""});
       if (!decisive.target) continue;
       rows.back()[3] = decisive.target->quantity;
       rows.back()[4] = ClaimedInWords(*decisive.target);
@@ -306,6 +339,11 @@ std::string AuditAsTable(const Audit& audit) {
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
     const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
+    if (!decisive.target) {
+      rows.push_back({claim.id, VerdictInWords(claim, audit.results[i]),
+                      audit.results[i].checks.front().not_possible, "", "", "", "", ""});
+      continue;
+    }
     rows.push_back({claim.id, VerdictInWords(claim, audit.results[i]), decisive.target->quantity,
                     fmt::format("{}", decisive.check->sigma_px.value_or(kAssertedSigmaPx)),
                     ClaimedInWords(*decisive.target), PowerInWords(audit, *decisive.check, *decisive.target),

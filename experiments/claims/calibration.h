@@ -17,12 +17,18 @@ std::vector<CaseClaim> MleCalibration();         // coverage of maximum likeliho
 CaseClaim EstimatorCalibration(const std::string& label, const std::string& reading,
                                std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds);
 
-// That its stated probabilities of failure are right. Only of an estimator that states them
-// (StatesProbability).
-CaseClaim ProbabilityCalibration(const std::string& label, const std::string& reading,
-                                 std::shared_ptr<const MotionEstimator> estimator,
-                                 const FailureBounds& bounds);
-// Who states a probability can refuse by it: an estimator with the option max_failure_probability.
-bool StatesProbability(const std::string& estimator);
+// That no more of its motions are beyond the bounds than its answers say, and that the probabilities of
+// failure are right where it states them.
+CaseClaim FailureCalibration(const std::string& label, const std::string& reading,
+                             std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds);
+
+// That the noise level is right where it states one.
+CaseClaim SigmaCalibration(const std::string& label, const std::string& reading,
+                           std::shared_ptr<const MotionEstimator> estimator);
+
+// All of them. What an estimator states its answers say, never its name or its options.
+std::vector<CaseClaim> AnswerCalibration(const std::string& label, const std::string& reading,
+                                         std::shared_ptr<const MotionEstimator> estimator,
+                                         const FailureBounds& bounds);
 
 }  // namespace rcme

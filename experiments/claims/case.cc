@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "experiments/claims/design.h"
 #include "experiments/data/make_data.h"
 #include "stats/coverage.h"
 #include "stats/distributions.h"
@@ -24,6 +23,7 @@ CaseMaker CasesFrom(std::shared_ptr<const SimulatedData> simulated) {
   return [simulated = std::move(simulated)](const StreamName& name) {
     Case made{name, simulated->DrawScene(name), {}, StreamFor(name, StreamPurpose::kCheck)};
     made.data = simulated->MakeFrom(made.scene, name);
+    made.sigma_px_true = simulated->sigma_px();
     return made;
   };
 }
@@ -62,22 +62,22 @@ std::vector<Check> ChecksAtNoiseLevels(const std::vector<double>& sigmas_px, con
   return checks;
 }
 
-std::vector<Target> CoverageTargets(int degrees_of_freedom, size_t statistic) {
+std::vector<Target> CoverageTargets(int degrees_of_freedom, const ScaleTolerance& tolerance) {
   constexpr double kFirstAlpha = 0.05;
   std::vector<Target> targets;
   for (const double alpha : Coverage::kSignificanceLevels) {
     Target target{fmt::format("coverage at alpha {}", alpha),
                   Target::Kind::kCoverage,
                   1.0 - alpha,
-                  CoverageWithin(degrees_of_freedom, alpha, kCoverageTolerance),
+                  CoverageWithin(degrees_of_freedom, alpha, tolerance.coverage),
                   ChiSquareQuantile(degrees_of_freedom, 1.0 - alpha),
-                  statistic,
+                  0,
                   degrees_of_freedom};
     targets.insert(alpha == kFirstAlpha ? targets.begin() : targets.end(), std::move(target));
   }
   targets.push_back({"mean PIT", Target::Kind::kMeanPit, 0.5,
-                     MeanPitWithin(degrees_of_freedom, kMeanPitTolerance),
-                     std::numeric_limits<double>::quiet_NaN(), statistic, degrees_of_freedom});
+                     MeanPitWithin(degrees_of_freedom, tolerance.mean_pit),
+                     std::numeric_limits<double>::quiet_NaN(), 0, degrees_of_freedom});
   return targets;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 
 #include "experiments/claims/claim.h"
+#include "experiments/claims/design.h"
 #include "experiments/data/simulated_data.h"
 #include "simulator/scene.h"
 
@@ -14,6 +16,8 @@ struct Case {
   Scene scene;       // exact
   TrialData data;    // its noisy matches in random order, and the truth
   RandomStream rng;  // for what the check itself draws
+  double sigma_px_true =
+      std::numeric_limits<double>::quiet_NaN();  // of the noise; the problem has the assumed
 
   const MotionProblem& problem() const { return data.problem; }
   const RelativePose& pose_true() const { return scene.cam2_from_cam1_true; }
@@ -46,8 +50,9 @@ std::vector<Check> ChecksAtNoiseLevels(const std::vector<double>& sigmas_px, con
 
 // Coverage of the 1 - alpha regions of a chi-square law at alpha = .5, .2, .1, .05, .01, alpha = .05 first,
 // and the mean of its probability integral transform. What counts as nominal: what sigmas wrong by the
-// tolerances of design.h would do.
-std::vector<Target> CoverageTargets(int degrees_of_freedom, size_t statistic = 0);
+// tolerance would do.
+std::vector<Target> CoverageTargets(int degrees_of_freedom,
+                                    const ScaleTolerance& tolerance = kFormulaTolerance);
 
 // An identity that holds in at least 999 of 1,000 trials: the statistic, a relative deviation, is within
 // `tolerance`.

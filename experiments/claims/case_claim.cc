@@ -7,6 +7,7 @@ Claim OnBuiltInScene(const CaseClaim& claim, const std::vector<Settings>& settin
   for (const Settings& each : settings) {
     on_scene.checks.push_back(MakeCheck(each, claim.statistic, claim.targets, claim.limits));
     on_scene.checks.back().difficulty_statistic = claim.difficulty_statistic;
+    on_scene.checks.back().not_stated = claim.not_stated;
   }
   return on_scene;
 }

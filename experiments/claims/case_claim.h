@@ -28,6 +28,7 @@ struct CaseClaim {
   TrialLimits limits;
   CaseNeeds needs;
   std::optional<size_t> difficulty_statistic = std::nullopt;  // as of Check
+  std::string not_stated = {};                                // likewise
 };
 
 // The claim on the built-in scene, one check for each of the settings.

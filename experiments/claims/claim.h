@@ -41,13 +41,21 @@ struct Target {
   size_t statistic = 0;        // index into the outcome
   int degrees_of_freedom = 0;  // of the chi-square law the statistic is claimed to have; 0: another law
   Interval range{0.0, 1.0};
+  // Not every estimator states the statistic. As long as none of the trials says anything of it, and there
+  // were kMostSilentTrials or more, nothing is claimed.
+  bool is_if_stated = false;
   // What the design expects, for planning alone (power.h).
   double planned_share = 1.0;
   double planned_spread = std::numeric_limits<double>::quiet_NaN();
 
   bool IsMean() const { return kind == Kind::kMean || kind == Kind::kMeanPit || kind == Kind::kBoundedMean; }
   bool IsClaimed() const { return std::isfinite(allowed.lower) || std::isfinite(allowed.upper); }
+  // Whether it is a confidence region's: of a coverage or of the law that regions are made of.
+  bool IsOfRegion() const { return degrees_of_freedom > 0; }
 };
+
+// Who states something in one answer of a hundred is missed with probability 0.007.
+inline constexpr std::int64_t kMostSilentTrials = 500;
 
 // A rate or mean with what is claimed of it, or only measured.
 inline Target ClaimedRate(const std::string& quantity, double nominal, const Interval& allowed,
@@ -60,6 +68,10 @@ inline Target ClaimedMean(const std::string& quantity, double nominal, const Int
                           size_t statistic = 0) {
   Target target = ClaimedRate(quantity, nominal, allowed, statistic);
   target.kind = Target::Kind::kMean;
+  return target;
+}
+inline Target IfStated(Target target) {
+  target.is_if_stated = true;
   return target;
 }
 inline Target MeasuredRate(const std::string& quantity, size_t statistic = 0) {
@@ -90,6 +102,7 @@ struct Check {
   TrialLimits limits;
   std::function<Outcome(const StreamName&)> trial;  // a pure function of the name
   std::string not_possible;  // why there are no trials (and then no targets either); empty: there are
+  std::string not_stated;    // what is said where every claimed target is if stated, and none is
   // The statistic that says how hard a trial's problem is: the coverage of the first target is given by
   // fifths of the trials in its order.
   std::optional<size_t> difficulty_statistic;

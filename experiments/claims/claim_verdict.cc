@@ -23,6 +23,33 @@ const char* Name(ClaimVerdict verdict) {
   return Name(Verdict::kUndecided);
 }
 
+const char* Name(Side side) {
+  switch (side) {
+    case Side::kTooNarrow:
+      return "too narrow";
+    case Side::kTooWide:
+      return "too wide";
+    case Side::kBoth:
+      break;
+  }
+  return "too narrow and too wide";
+}
+
+std::optional<Side> SideOf(const Target& target, const TargetResult& result) {
+  if (!target.IsOfRegion() || result.verdict != Verdict::kDoesNotHold) return std::nullopt;
+  // A region that is too narrow covers too seldom, and the truth lies too far out in its law.
+  const bool is_below = result.interval.upper < target.allowed.lower;
+  return is_below == (target.kind == Target::Kind::kCoverage) ? Side::kTooNarrow : Side::kTooWide;
+}
+
+std::optional<Side> JoinSides(const std::vector<std::optional<Side>>& sides) {
+  std::optional<Side> joined;
+  for (const std::optional<Side>& side : sides) {
+    if (side) joined = !joined || joined == side ? side : Side::kBoth;
+  }
+  return joined;
+}
+
 std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdicts) {
   std::optional<Verdict> all;
   for (const std::optional<Verdict>& verdict : verdicts) {
@@ -31,10 +58,6 @@ std::optional<Verdict> Together(const std::vector<std::optional<Verdict>>& verdi
     if (!all || *verdict == Verdict::kUndecided) all = verdict;
   }
   return all;
-}
-
-bool IsPossible(const Claim& claim) {
-  return std::ranges::any_of(claim.checks, [](const Check& check) { return check.not_possible.empty(); });
 }
 
 void JudgeClaim(const Claim& claim, ClaimResult* result) {
@@ -49,7 +72,9 @@ void JudgeClaim(const Claim& claim, ClaimResult* result) {
       noise_levels.emplace_back(sigma_px, *verdict);
   }
   result->holds_up_to_sigma_px.reset();
-  result->verdict = IsPossible(claim) ? ClaimVerdict::kMeasured : ClaimVerdict::kNotPossible;
+  const bool is_possible = std::ranges::any_of(
+      result->checks, [](const CheckResult& check) { return check.not_possible.empty(); });
+  result->verdict = is_possible ? ClaimVerdict::kMeasured : ClaimVerdict::kNotPossible;
   if (noise_levels.empty()) return;
 
   const bool has_noise_levels = claim.checks.front().sigma_px.has_value();

@@ -1,5 +1,7 @@
 #include "experiments/claims/decide_check.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -52,7 +54,8 @@ double TrialsToDecideMean(const TargetResult& result, const Interval& allowed) {
 TargetResult LookAt(const Target& target, const TargetTally& tally, std::int64_t num_trials,
                     double confidence, bool is_last) {
   TargetResult result = Measure(target, tally, confidence);
-  if (!target.IsClaimed()) return result;
+  const bool is_silent = target.is_if_stated && result.n == 0 && num_trials >= kMostSilentTrials;
+  if (!target.IsClaimed() || is_silent) return result;
   const bool must_wait = target.kind == Target::Kind::kMean && !is_last;
   result.verdict = must_wait ? Verdict::kUndecided : DecideEquivalence(result.interval, target.allowed);
   if (result.verdict == Verdict::kUndecided && result.n > 0) {
@@ -106,6 +109,7 @@ std::vector<Outcome> RunTrials(const Check& check, const CheckRun& run, std::int
 }
 
 CheckDecision::CheckDecision(const Check& check, const CheckRun& run) : check_(check), run_(run) {
+  result_.not_possible = check.not_possible;
   is_done_ = !check.not_possible.empty();
   if (is_done_) return;
   for (const Target& target : check.targets) tallies_.emplace_back(target);
@@ -141,7 +145,23 @@ void CheckDecision::Look() {
   result_.verdict = Together(verdicts);
   const bool is_decided = CanEndEarly(check_) && result_.verdict && *result_.verdict != Verdict::kUndecided;
   is_done_ = is_last || (is_decided && num_trials_ >= check_.limits.min);
+  if (IsSilent()) {
+    result_.targets.clear();
+    result_.not_possible = fmt::format("{} in {} trials", check_.not_stated, num_trials_);
+    is_done_ = true;
+  }
   next_look_ = NextLook(check_, run_.budget, num_trials_);
+}
+
+bool CheckDecision::IsSilent() const {
+  if (num_trials_ < kMostSilentTrials) return false;
+  bool is_claimed = false;
+  for (size_t t = 0; t < check_.targets.size(); ++t) {
+    if (!check_.targets[t].IsClaimed()) continue;
+    if (!check_.targets[t].is_if_stated || result_.targets[t].n > 0) return false;
+    is_claimed = true;
+  }
+  return is_claimed;
 }
 
 std::vector<DifficultyFifth> CheckDecision::Fifths() const {

@@ -42,7 +42,9 @@ std::int64_t NextLook(const Check& check, Budget budget, std::int64_t num_trials
 // Outcomes of the trials begin, ..., end - 1.
 std::vector<Outcome> RunTrials(const Check& check, const CheckRun& run, std::int64_t begin, std::int64_t end);
 
-// A check in the making. A check that is not possible is done from the beginning, without results.
+// A check in the making. A check that is not possible is done from the beginning, without results; one of
+// whose claims nothing is stated (Target::is_if_stated) is done after kMostSilentTrials, and not possible
+// either.
 class CheckDecision {
  public:
   // `check` must live longer.
@@ -63,6 +65,8 @@ class CheckDecision {
   };
   void Rate(const Outcome& outcome);
   void Look();
+  // Whether everything that is claimed is if stated, and nothing was, in so many trials that nothing will be.
+  bool IsSilent() const;
   std::vector<DifficultyFifth> Fifths() const;
 
   const Check& check_;

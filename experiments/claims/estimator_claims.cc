@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "experiments/claims/calibration.h"
 #include "experiments/claims/call_estimator.h"
 #include "experiments/claims/design.h"
@@ -10,62 +8,79 @@ namespace rcme {
 CaseClaim EstimatorCalibration(const std::string& label, const std::string& reading,
                                std::shared_ptr<const MotionEstimator> estimator,
                                const FailureBounds& bounds) {
-  return {{"estimator.coverage." + label,
-           "Sec. model selection, MLE",
-           reading,
-           "The covariance that comes with a motion within the failure bounds is that of its error",
-           "NEES of the motions that are no failures, chi2_5; an answer that is not valid does not cover",
-           "outlier_ratio",
-           {}},
-          [estimator, bounds](Case& made) { return ReportedCovarianceStatistic(*estimator, made, bounds); },
-          ReportedCovarianceTargets(),
-          kEstimatorCoverage.limits,
-          {.num_true_matches = 0, .matches = MatchesOf::kPair},
-          kDifficultyStatistic};
+  return {
+      {"estimator.coverage." + label,
+       "Sec. model selection, MLE",
+       reading,
+       "The covariance that comes with a motion within the failure bounds is that of its error",
+       "NEES of the motions that are no failures, chi2_5; that of an answer that is not valid is infinite",
+       "outlier_ratio",
+       {}},
+      [estimator, bounds](Case& made) { return ReportedCovarianceStatistic(*estimator, made, bounds); },
+      ReportedCovarianceTargets(),
+      kEstimatorCoverage.limits,
+      {.num_true_matches = 0, .matches = MatchesOf::kPair},
+      kDifficultyStatistic};
 }
 
-CaseClaim ProbabilityCalibration(const std::string& label, const std::string& reading,
-                                 std::shared_ptr<const MotionEstimator> estimator,
-                                 const FailureBounds& bounds) {
-  return {{"estimator.probability." + label,
-           "of one's own",
-           reading,
-           "Motions fail as often as their stated probabilities of failure say",
-           "stated probability less 1 for a failure, 0 for none; and the failures among the sure answers",
-           "outlier_ratio",
-           {}},
-          [estimator, bounds](Case& made) {
-            return StatedProbabilityStatistic(CallEstimator(*estimator, made), bounds);
-          },
-          StatedProbabilityTargets(),
-          kStatedProbability.limits,
-          {.num_true_matches = 0, .matches = MatchesOf::kPair}};
+CaseClaim FailureCalibration(const std::string& label, const std::string& reading,
+                             std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds) {
+  return {
+      {"estimator.failures." + label,
+       "of one's own",
+       reading,
+       "No more sure motions are beyond the failure bounds than the answers say, and stated probabilities "
+       "are "
+       "right",
+       "1 for a failure, 0 for none, less its probability as the answer states it, or as follows from its "
+       "covariance, where that is small; of stated ones also all, both ways",
+       "outlier_ratio",
+       {}},
+      [estimator, bounds](Case& made) { return StatedFailureStatistic(*estimator, made, bounds); },
+      StatedFailureTargets(),
+      kFailures.limits,
+      {.num_true_matches = 0, .matches = MatchesOf::kPair}};
 }
 
-bool StatesProbability(const std::string& estimator) {
-  const std::unique_ptr<EstimatorModel> model = FindEstimator(estimator).make();
-  return std::ranges::any_of(model->Parameters(), [](const Parameter& option) {
-    return option.name() == "max_failure_probability";
-  });
+CaseClaim SigmaCalibration(const std::string& label, const std::string& reading,
+                           std::shared_ptr<const MotionEstimator> estimator) {
+  return {
+      {"estimator.sigma." + label,
+       "of one's own",
+       reading,
+       "The noise level that comes with a motion is that of the matches, up to its stated standard deviation",
+       "stated over true sigma, less 1; its squared error over the stated variance, chi2_1",
+       "outlier_ratio",
+       {}},
+      [estimator](Case& made) { return SigmaStatistic(CallEstimator(*estimator, made), made.sigma_px_true); },
+      StatedSigmaTargets(),
+      kStatedSigma.limits,
+      {.num_true_matches = 0, .matches = MatchesOf::kPair, .true_motion = false},
+      std::nullopt,
+      "no answer states sigma"};
+}
+
+std::vector<CaseClaim> AnswerCalibration(const std::string& label, const std::string& reading,
+                                         std::shared_ptr<const MotionEstimator> estimator,
+                                         const FailureBounds& bounds) {
+  return {EstimatorCalibration(label, reading, estimator, bounds),
+          FailureCalibration(label, reading, estimator, bounds), SigmaCalibration(label, reading, estimator)};
 }
 
 std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators) {
+  const auto settings_with = [](const std::vector<const char*>& outlier_ratios) {
+    std::vector<Settings> settings;
+    for (const char* ratio : outlier_ratios)
+      settings.push_back({{"num_matches", "100"}, {"outlier_ratio", ratio}});
+    return settings;
+  };
   std::vector<Claim> claims;
   for (const EstimatorEntry& entry : estimators) {
-    const CaseClaim claim =
-        EstimatorCalibration(entry.name, entry.name + ", defaults", entry.make()->Make(), FailureBounds());
-    std::vector<Settings> settings;
-    for (const char* outlier_ratio : {"0", "0.2"}) {
-      settings.push_back({{"num_matches", "100"}, {"outlier_ratio", outlier_ratio}});
-    }
-    claims.push_back(OnBuiltInScene(claim, settings));
-  }
-  for (const EstimatorEntry& entry : estimators) {
-    if (!StatesProbability(entry.name)) continue;
-    claims.push_back(OnBuiltInScene(
-        ProbabilityCalibration(entry.name, entry.name + ", defaults", entry.make()->Make(), FailureBounds()),
-        {{{"num_matches", "100"}, {"outlier_ratio", "0.2"}},
-         {{"num_matches", "100"}, {"outlier_ratio", "0.8"}}}));
+    const std::vector<CaseClaim> answers =
+        AnswerCalibration(entry.name, entry.name + ", defaults", entry.make()->Make(), FailureBounds());
+    claims.push_back(OnBuiltInScene(answers[0], settings_with({"0", "0.2"})));
+    claims.push_back(OnBuiltInScene(answers[1], settings_with({"0.2", "0.8"})));
+    claims.push_back(OnBuiltInScene(answers[2], settings_with({"0.2"})));
   }
   return claims;
 }

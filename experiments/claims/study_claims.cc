@@ -20,11 +20,9 @@ std::vector<CaseClaim> CalibrationOf(const StudyPlan& plan) {
   }
   for (size_t e = 0; e < plan.estimators.size(); ++e) {
     const EstimatorSpec& spec = plan.study.estimators[e];
-    all.push_back(EstimatorCalibration(spec.label, spec.name + ", options of the study", plan.estimators[e],
-                                       plan.study.failure));
-    if (!StatesProbability(spec.name)) continue;
-    all.push_back(ProbabilityCalibration(spec.label, spec.name + ", options of the study", plan.estimators[e],
-                                         plan.study.failure));
+    const std::vector<CaseClaim> of_answers = AnswerCalibration(
+        spec.label, spec.name + ", options of the study", plan.estimators[e], plan.study.failure);
+    all.insert(all.end(), of_answers.begin(), of_answers.end());
   }
   return all;
 }
@@ -73,6 +71,7 @@ Check CheckOn(const ConditionCases& cases, const CaseClaim& claim) {
   check.targets = claim.targets;
   check.limits = claim.limits;
   check.difficulty_statistic = claim.difficulty_statistic;
+  check.not_stated = claim.not_stated;
   const Outcome nothing(NumStatistics(claim.targets), kNaN);
   check.trial = [make = cases.make, statistic = claim.statistic, needs = claim.needs,
                  nothing](const StreamName& name) {

@@ -51,6 +51,8 @@ class SimulatedData : public DataSource {
   Scene DrawSceneOf(const Motion& motion, RandomStream& rng) const;
   std::optional<Scene> DrawSceneNear(const Motion& motion, double step, RandomStream& rng) const;
 
+  // Root mean square of the noise over the coordinates of matches, as the noise's law has it.
+  double sigma_px() const { return noise_->sigma_px(); }
   // Whether the noise is sigma_px times standard normal numbers (`noise: gaussian`).
   bool HasNormalNoise() const { return choices_.noise == "gaussian"; }
   // The second half with these numbers, four for each point of the scene (x1, y1, x2, y2), and outliers from

@@ -3,7 +3,7 @@
     audit: format, study, seed, budget, confidence_per_target, claims
     claim: id, family, reading, verdict, holds_up_to_sigma_px, figure_x, evidence
     evidence (one combination of conditions): conditions, targets
-    target (one measured quantity): quantity, kind, nominal, low, high, threshold, measured, interval, n, verdict
+    target (one measured quantity): quantity, kind, nominal, low, high, threshold, measured, interval, n, verdict, side
 Keys beyond these are not drawn and not looked at. A null is "none": no nominal value, no bound on that side, no finite
 measured value.
 """
@@ -21,6 +21,7 @@ UNDECIDED, MEASURED, NOT_POSSIBLE = "undecided", "measured", "not possible"
 TARGET_VERDICTS = (HOLDS, DOES_NOT_HOLD, UNDECIDED, MEASURED)
 CLAIM_VERDICTS = (HOLDS, HOLDS_AT_SMALL_NOISE, DOES_NOT_HOLD, UNDECIDED, MEASURED, NOT_POSSIBLE)
 KINDS = ("rate", "mean")
+SIDES = ("", "too narrow", "too wide", "too narrow and too wide")  # how a confidence region is wrong
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class Target:
     upper: float
     n: int
     verdict: str
+    side: str = ""
 
     @property
     def is_claim(self):
@@ -64,6 +66,7 @@ class Claim:
     label: str = ""  # where the paper says it
     sentence: str = ""
     statistic: str = ""  # what was measured, in words
+    side: str = ""
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,7 @@ def read_target(node):
         low=node.number_or("low", -math.inf), high=node.number_or("high", math.inf),
         threshold=node.number_or("threshold", math.nan), measured=node.number_or("measured", math.nan),
         lower=-math.inf if lower is None else lower, upper=math.inf if upper is None else upper,
-        n=node.count("n"), verdict=node.one_of("verdict", TARGET_VERDICTS))
+        n=node.count("n"), verdict=node.one_of("verdict", TARGET_VERDICTS), side=side_if_any(node))
     if target.low > target.high:
         raise node.error(f"has 'low' {target.low:g} above 'high' {target.high:g}")
     if target.kind == "rate" and not (math.isnan(target.measured) or 0 <= target.measured <= 1):
@@ -110,6 +113,10 @@ def read_evidence(node):
     return Evidence(conditions, tuple(map(read_target, node.nodes("targets", "target"))), text_if_any(node, "not_possible"))
 
 
+def side_if_any(node):
+    return node.one_of("side", SIDES) if "side" in node.value else ""
+
+
 def text_if_any(node, key):
     return node.text(key) if key in node.value else ""
 
@@ -122,7 +129,7 @@ def read_claim(node):
                   verdict=node.one_of("verdict", CLAIM_VERDICTS),
                   holds_up_to_sigma_px=node.number_or("holds_up_to_sigma_px", math.nan),
                   figure_x=node.text("figure_x"),
-                  evidence=tuple(map(read_evidence, node.nodes("evidence", "evidence"))),
+                  evidence=tuple(map(read_evidence, node.nodes("evidence", "evidence"))), side=side_if_any(node),
                   **{key: text_if_any(node, key) for key in ("label", "sentence", "statistic")})
     for number, evidence in enumerate(claim.evidence, 1):
         if claim.figure_x and claim.figure_x not in evidence.conditions:

@@ -64,7 +64,8 @@ def numbers_of(claim):
         if evidence.not_possible:
             rows.append([conditions_in_words(evidence), DASH, DASH, DASH, 0, f"not possible: {evidence.not_possible}"])
         rows += [[conditions_in_words(evidence), target.quantity, range_in_words(target), measured_in_words(target), target.n,
-                  verdict(target.verdict)] for target in evidence.targets]
+                  verdict(f"{look.LOOKS[target.verdict].glyph} {look.with_side(target.verdict, target.side)}", target.verdict)]
+                 for target in evidence.targets]
     return table("Every measured number with its interval; rates are in per cent, what counts as nominal is a fraction.",
                  ["conditions", "quantity", "counts as nominal", "measured", "n", "verdict"], [(None, rows)], 2, class_="words")
 

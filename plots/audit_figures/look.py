@@ -56,9 +56,14 @@ def series_look(position):
     return SERIES_COLORS[position % 6], SERIES_DASHES[position % 5]
 
 
+def with_side(verdict, side):
+    """'does not hold: too narrow'."""
+    return f"{verdict}: {side}" if side else verdict
+
+
 def verdict_text(claim):
     """'◐ holds in the small-noise limit only: sigma ≤ 0.5 px'."""
-    text = f"{LOOKS[claim.verdict].glyph} {claim.verdict}"
+    text = f"{LOOKS[claim.verdict].glyph} {with_side(claim.verdict, claim.side)}"
     if math.isnan(claim.holds_up_to_sigma_px):
         return text
     limit = f"sigma \u2264 {claim.holds_up_to_sigma_px:g} px"

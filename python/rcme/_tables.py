@@ -13,7 +13,7 @@ from rcme import _check, _rcme
 from rcme._study import Estimator, Study, add_estimators, alone, source_of
 
 AUDIT_COLUMNS = ["claim", "family", "reading", "claim_verdict", "conditions", "quantity", "kind", "nominal", "low", "high",
-                 "value", "lower", "upper", "n", "verdict"]
+                 "value", "lower", "upper", "n", "verdict", "side"]
 
 
 def summarize(run: str, *, times: bool = False, pooled: bool = False) -> pandas.DataFrame:
@@ -94,8 +94,8 @@ def audit(study: Optional[Study] = None, *, estimators: Optional[Mapping[str, Es
     -------
     DataFrame: a row per claimed or measured number with claim, family, reading, claim_verdict (of the whole claim),
     conditions (text), quantity, kind, nominal, low and high (what counts as nominal), value, lower and upper (its interval;
-    the whole audit has at most 5 % of false verdicts), n, and verdict ("holds", "does not hold", "undecided", ...; None: only
-    measured).
+    the whole audit has at most 5 % of false verdicts), n, verdict ("holds", "does not hold", "undecided", ...; "measured":
+    nothing is claimed), and side (of a confidence region that does not hold: "too narrow" or "too wide"; else "").
 
     Raises
     ------

@@ -4,7 +4,7 @@ import csv
 import io
 
 COLUMNS = ["claim", "family", "reading", "claim_verdict", "holds_up_to_sigma_px", "conditions", "quantity", "kind",
-           "nominal", "low", "high", "value", "lower", "upper", "n", "verdict"]
+           "nominal", "low", "high", "value", "lower", "upper", "n", "verdict", "side"]
 TIMED = ",complexity,"  # in every row of the family whose numbers are times
 
 
@@ -19,7 +19,7 @@ def audit_rows(audit):
                 yield head | {"conditions": place, "quantity": target["quantity"], "kind": target["kind"],
                               "nominal": target.get("nominal"), "low": target.get("low"), "high": target.get("high"),
                               "value": target["measured"], "lower": interval[0], "upper": interval[1],
-                              "n": target["n"], "verdict": target["verdict"]}
+                              "n": target["n"], "verdict": target["verdict"], "side": target["side"]}
 
 
 def text_of(value):

@@ -1,93 +1,39 @@
 // How sharp the audit is: the share of seeds in which it calls a faulty estimator faulty and a sound one
-// sound. Prints two tables (CSV; `scripts/results audit_power` makes those of
+// sound. Prints three tables (CSV; `scripts/results audit_power` makes those of
 // experiments/results/audit_power):
-//   rcme_audit_power faults [SEEDS, default 20] > faults.csv
+//   rcme_audit_power faults [SEEDS, default 50] > faults.csv
 //   rcme_audit_power sigma [SEEDS, default 20; half as many where cases are simulated] > sigma.csv
-// `faults`: test doubles answer the problems of the estimator claims with the true motion plus small errors,
-// and with one fault; decided at the quick budget. `sigma`: standard deviations wrong by 1 to 20 %, quick and
-// full; drawn: the statistic is drawn from its law, run: it comes from simulated cases.
+//   rcme_audit_power edges [SEEDS, default 400] > edges.csv
+// `faults`: each claim about an estimator's answers, of doubles that are sound or have one fault
+// (tests/test_support/answer_doubles.h); quick budget. `sigma`: standard deviations wrong by 1 to 20 %, quick
+// and full; drawn: the statistic is drawn from its law, run: it comes from simulated cases. `edges`: a target
+// whose truth lies on the border of what counts as nominal, at confidence 0.95: "holds" and "does not hold"
+// are both false there.
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <string_view>
 
 #include "experiments/claims/audit.h"
 #include "experiments/claims/call_estimator.h"
+#include "experiments/claims/case.h"
 #include "experiments/claims/claim_table.h"
 #include "experiments/claims/cramer_rao.h"
 #include "experiments/claims/decide_check.h"
 #include "experiments/claims/design.h"
 #include "experiments/claims/sample_statistics.h"
+#include "tests/test_support/answer_doubles.h"
 
 namespace rcme {
 namespace {
 
-using Spoil = void (*)(MotionEstimate* answer, RandomStream& rng);
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-bool InOneOfTen(RandomStream& rng) { return rng.Uniform() < 0.1; }
-
-struct Fault {
-  const char* name;
-  Spoil spoil;
-};
-
-// A right perturbation, R Exp(w'), has w = R w'.
-void ReportInRightCoordinates(MotionEstimate* answer, RandomStream&) {
-  Matrix5d turn = Matrix5d::Identity();
-  turn.topLeftCorner<3, 3>() = answer->cam2_from_cam1.R.transpose();
-  answer->pose_cov = turn * answer->pose_cov * turn.transpose();
-}
-
-const std::vector<Fault>& Faults() {
-  static const std::vector<Fault> faults = {
-      {"sound twin", [](MotionEstimate*, RandomStream&) {}},
-      {"NaN in R in 10 % of the trials",
-       [](MotionEstimate* a, RandomStream& rng) {
-         if (InOneOfTen(rng)) a->cam2_from_cam1.R(1, 2) = kNaN;
-       }},
-      {"NaN in t in 10 % of the trials",
-       [](MotionEstimate* a, RandomStream& rng) {
-         if (InOneOfTen(rng)) a->cam2_from_cam1.t(0) = kNaN;
-       }},
-      {"NaN in the covariance in 10 % of the trials",
-       [](MotionEstimate* a, RandomStream& rng) {
-         if (InOneOfTen(rng)) a->pose_cov(3, 3) = kNaN;
-       }},
-      {"t = 0", [](MotionEstimate* a, RandomStream&) { a->cam2_from_cam1.t.setZero(); }},
-      {"reflection instead of a rotation",
-       [](MotionEstimate* a, RandomStream&) { a->cam2_from_cam1.R.col(2) *= -1.0; }},
-      {"1000 R", [](MotionEstimate* a, RandomStream&) { a->cam2_from_cam1.R *= 1000.0; }},
-      {"asymmetric covariance",
-       [](MotionEstimate* a, RandomStream&) {
-         a->pose_cov(0, 1) += 0.1 * std::sqrt(a->pose_cov(0, 0) * a->pose_cov(1, 1));
-       }},
-      {"one axis of the covariance in degrees",
-       [](MotionEstimate* a, RandomStream&) {
-         a->pose_cov.row(1) *= kDegPerRad;
-         a->pose_cov.col(1) *= kDegPerRad;
-       }},
-      {"covariance of a right perturbation", ReportInRightCoordinates}};
-  return faults;
-}
-
-// The true motion with errors of a hundredth of the Cramer-Rao bound's, which is also what is reported: so
-// small that the tangent at the answer is that at the truth.
-MotionEstimate SoundAnswer(const Case& made, RandomStream& rng) {
-  MotionEstimate answer;
-  answer.status = MotionStatus::kOk;
-  answer.pose_cov = 1e-4 * CramerRaoBound(made).value();
-  Vector5d normal;
-  for (double& each : normal) each = rng.Normal();
-  answer.cam2_from_cam1 = Retract(made.pose_true(), answer.pose_cov.llt().matrixL() * normal);
-  return answer;
+// The true motion with errors of the Cramer-Rao bound, which is also what is reported.
+MotionEstimate SoundAnswer(Case& made) {
+  return AnswerWithErrors(made.pose_true(), CramerRaoBound(made).value(), made.rng);
 }
 
 // The claim about an estimator's covariance, with answers of a test double.
@@ -104,9 +50,10 @@ Claim ClaimOn(const std::function<MotionEstimate(Case&)>& answer) {
 
 // A check whose statistic is chi-square distributed, with assumed standard deviations too large by
 // `sigma_error`.
-Check DrawnCheck(int degrees_of_freedom, double sigma_error, const TrialLimits& limits) {
+Check DrawnCheck(int degrees_of_freedom, double sigma_error, const std::vector<Target>& targets,
+                 const TrialLimits& limits) {
   Check check;
-  check.targets = CoverageTargets(degrees_of_freedom);
+  check.targets = targets;
   check.limits = limits;
   check.trial = [degrees_of_freedom, assumed = 1.0 + sigma_error](const StreamName& name) -> Outcome {
     RandomStream rng(name);
@@ -119,74 +66,139 @@ Check DrawnCheck(int degrees_of_freedom, double sigma_error, const TrialLimits& 
 
 struct Verdicts {
   int caught = 0, holds = 0, seeds = 0;
+  std::int64_t most_trials = 0;
 };
 
 Verdicts Decide(const Claim& claim, Budget budget, int num_seeds, double confidence) {
   Verdicts verdicts;
   for (int seed = 1; seed <= num_seeds; ++seed) {
-    ClaimResult result;
+    std::vector<std::optional<Verdict>> of_checks;
     for (size_t c = 0; c < claim.checks.size(); ++c) {
       const CheckRun run{static_cast<std::uint64_t>(seed), static_cast<std::uint32_t>(7 + c), budget,
                          confidence, 0};
-      result.checks.push_back(DecideCheck(claim.checks[c], run));
-      if (result.checks.back().verdict == Verdict::kDoesNotHold) break;
+      const CheckResult result = DecideCheck(claim.checks[c], run);
+      of_checks.push_back(result.verdict);
+      verdicts.most_trials = std::max(verdicts.most_trials, result.num_trials);
+      if (result.verdict == Verdict::kDoesNotHold) break;
     }
-    const bool is_caught = result.checks.back().verdict == Verdict::kDoesNotHold;
-    bool holds = true;
-    for (const CheckResult& check : result.checks) holds &= check.verdict == Verdict::kHolds;
-    verdicts.caught += is_caught;
-    verdicts.holds += holds;
+    const std::optional<Verdict> together = Together(of_checks);
+    verdicts.caught += together == Verdict::kDoesNotHold;
+    verdicts.holds += together == Verdict::kHolds;
     ++verdicts.seeds;
   }
   return verdicts;
 }
 
-void PrintRow(const std::string& what, const Verdicts& verdicts) {
+// Both counts with exact 95 % intervals.
+std::string CountsAsCsv(const Verdicts& verdicts) {
   const Interval caught = ExactBinomialInterval(verdicts.caught, verdicts.seeds);
   const Interval holds = ExactBinomialInterval(verdicts.holds, verdicts.seeds);
-  fmt::print("{},{},{},{:.3f},{:.3f},{},{:.3f},{:.3f}\n", what, verdicts.seeds, verdicts.caught, caught.lower,
-             caught.upper, verdicts.holds, holds.lower, holds.upper);
+  return fmt::format("{},{},{:.3f},{:.3f},{},{:.3f},{:.3f}", verdicts.seeds, verdicts.caught, caught.lower,
+                     caught.upper, verdicts.holds, holds.lower, holds.upper);
+}
+
+void PrintLine(const std::string& line) {
+  fmt::print("{}\n", line);
   std::fflush(stdout);
 }
 
 constexpr const char* kColumns =
     "seeds,does_not_hold,does_not_hold_lower,does_not_hold_upper,holds,holds_lower,holds_upper";
 
+// Every claim about an estimator's answers, of every double.
 void PrintFaults(double confidence, int num_seeds) {
-  fmt::print("fault,{}\n", kColumns);
-  for (const Fault& fault : Faults()) {
-    const Claim claim = ClaimOn([spoil = fault.spoil](Case& made) {
-      MotionEstimate answer = SoundAnswer(made, made.rng);
-      spoil(&answer, made.rng);
-      return answer;
-    });
-    PrintRow(fault.name, Decide(claim, Budget::kQuick, num_seeds, confidence));
+  PrintLine(fmt::format("fault,claim,{},most_trials", kColumns));
+  for (const AnswerFault& fault : AnswerFaults()) {
+    for (const CaseClaim& claim :
+         AnswerCalibration("double", "double", std::make_shared<DoubledEstimator>(fault), FailureBounds())) {
+      Claim of_double;
+      of_double.checks = {CheckOfDoubles(claim)};
+      const Verdicts verdicts = Decide(of_double, Budget::kQuick, num_seeds, confidence);
+      const std::string name = claim.words.id.substr(0, claim.words.id.rfind('.'));
+      PrintLine(
+          fmt::format("\"{}\",{},{},{}", fault.name, name, CountsAsCsv(verdicts), verdicts.most_trials));
+    }
+  }
+}
+
+// A statistic of the target's kind whose rate or mean is `truth`.
+double DrawAt(const Target& target, double truth, RandomStream& rng) {
+  switch (target.kind) {
+    case Target::Kind::kMeanPit: {  // whose border is what such a sigma does
+      const double off = 1.0 + kEstimatorTolerance.mean_pit, scale = truth > 0.5 ? off : 1.0 / off;
+      double sum = 0.0;
+      for (int i = 0; i < target.degrees_of_freedom; ++i) sum += std::pow(scale * rng.Normal(), 2.0);
+      return sum;
+    }
+    case Target::Kind::kCoverage:
+      return rng.Uniform() < truth ? 0.0 : 2.0 * target.threshold;
+    case Target::Kind::kBoundedMean: {
+      const bool is_of_events =
+          target.allowed.lower <= target.range.lower;  // as failures are: 0, or rarely 1
+      return is_of_events ? (rng.Uniform() < truth ? 1.0 : 0.0) : truth + (rng.Uniform() < 0.5 ? 0.1 : -0.1);
+    }
+    default:
+      return rng.Uniform() < truth ? 1.0 : 0.0;
+  }
+}
+
+Check EdgeCheck(Target target, double truth) {
+  target.statistic = 0;
+  Check check;
+  check.targets = {target};
+  check.limits = {0, 16'000, 16'000};
+  check.trial = [target, truth](const StreamName& name) -> Outcome {
+    RandomStream rng(name);
+    return {DrawAt(target, truth, rng)};
+  };
+  return check;
+}
+
+// Both ends of what counts as nominal, of every target of the claims about an estimator's answers.
+void PrintEdges(int num_seeds) {
+  constexpr double kConfidence = 0.95;
+  PrintLine(fmt::format("claim,quantity,border,{}", kColumns));
+  const AnswerFault& sound = AnswerFaults().front();
+  for (const CaseClaim& claim :
+       AnswerCalibration("double", "double", std::make_shared<DoubledEstimator>(sound), FailureBounds())) {
+    const std::string name = claim.words.id.substr(0, claim.words.id.rfind('.'));
+    for (const Target& target : claim.targets) {
+      if (!target.IsClaimed()) continue;
+      for (const double border : {target.allowed.lower, target.allowed.upper}) {
+        if (border <= target.range.lower || border >= target.range.upper) continue;
+        Claim at_border;
+        at_border.checks = {EdgeCheck(target, border)};
+        const Verdicts verdicts = Decide(at_border, Budget::kQuick, num_seeds, kConfidence);
+        PrintLine(fmt::format("{},\"{}\",{:.6g},{}", name, target.quantity, border, CountsAsCsv(verdicts)));
+      }
+    }
   }
 }
 
 void PrintSigma(double confidence, int num_seeds) {
   const int num_run = (num_seeds + 1) / 2;
-  fmt::print("claim,statistic,budget,sigma_error,{}\n", kColumns);
+  PrintLine(fmt::format("claim,statistic,budget,sigma_error,{}", kColumns));
   const auto row = [&](const std::string& words, double error, const Claim& claim, Budget budget, int seeds) {
-    PrintRow(fmt::format("{},{},{:g}", words, budget == Budget::kQuick ? "quick" : "full", error),
-             Decide(claim, budget, seeds, confidence));
+    PrintLine(fmt::format("{},{},{:g},{}", words, budget == Budget::kQuick ? "quick" : "full", error,
+                          CountsAsCsv(Decide(claim, budget, seeds, confidence))));
   };
   for (const double size : {0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.15, 0.2}) {
     for (const double error : {size, -size}) {
       if (size == 0.0 && std::signbit(error)) continue;
       Claim covariance, point;
-      covariance.checks.assign(2, DrawnCheck(5, error, kEstimatorCoverage.limits));
-      point.checks = {DrawnCheck(1, error, kSampleCoverage.limits)};
+      covariance.checks.assign(
+          2, DrawnCheck(5, error, CoverageTargets(5, kEstimatorTolerance), kEstimatorCoverage.limits));
+      point.checks = {DrawnCheck(1, error, CoverageTargets(1), kSampleCoverage.limits)};
       for (const Budget budget : {Budget::kQuick, Budget::kFull}) {
         row("estimator,drawn", error, covariance, budget, num_seeds);
         row("known motion,drawn", error, point, budget, num_seeds);
       }
     }
   }
-  for (const double error : {-0.1, -0.05, 0.0, 0.05, 0.1}) {
+  for (const double error : {-0.1, -0.08, -0.05, 0.0, 0.05, 0.08, 0.1}) {
     const double assumed = (1.0 + error) * (1.0 + error);
     const auto answer = [assumed](Case& made) {
-      MotionEstimate estimate = SoundAnswer(made, made.rng);
+      MotionEstimate estimate = SoundAnswer(made);
       estimate.pose_cov *= assumed;
       return estimate;
     };
@@ -208,18 +220,23 @@ void PrintSigma(double confidence, int num_seeds) {
 
 int main(int argc, char** argv) {
   const std::string table = argc > 1 ? argv[1] : "";
-  const std::string_view seeds = argc > 2 ? argv[2] : "20";
+  const std::string_view seeds = argc > 2            ? argv[2]
+                                 : table == "edges"  ? "400"
+                                 : table == "faults" ? "50"
+                                                     : "20";
   int num_seeds = 0;
   std::from_chars(seeds.data(), seeds.data() + seeds.size(), num_seeds);
-  if (argc > 3 || num_seeds < 1 || (table != "faults" && table != "sigma")) {
-    fmt::print(stderr, "usage: rcme_audit_power faults|sigma [SEEDS] > TABLE.csv\n");
+  if (argc > 3 || num_seeds < 1 || (table != "faults" && table != "sigma" && table != "edges")) {
+    fmt::print(stderr, "usage: rcme_audit_power faults|sigma|edges [SEEDS] > TABLE.csv\n");
     return 2;
   }
   const double confidence = rcme::PlanAudit(rcme::AllClaims(rcme::EstimatorRegistry()), {}).confidence;
   if (table == "faults") {
     rcme::PrintFaults(confidence, num_seeds);
-  } else {
+  } else if (table == "sigma") {
     rcme::PrintSigma(confidence, num_seeds);
+  } else {
+    rcme::PrintEdges(num_seeds);
   }
   return 0;
 }

@@ -171,18 +171,19 @@ TEST_F(SummarizeTest, CoverageHasAVerdictAndWhatWouldDecide) {
     }
     return CoverageVerdict();
   };
-  EXPECT_EQ(verdict_of("covers", 4760, 5000).verdict, Verdict::kHolds);          // [.9457, .9577]
-  EXPECT_EQ(verdict_of("undecided", 95, 100).verdict, Verdict::kUndecided);      // [.887, .984]
-  EXPECT_EQ(verdict_of("near", 4700, 5000).verdict, Verdict::kUndecided);        // .940 [.933, .946]
-  EXPECT_EQ(verdict_of("too few", 180, 200).verdict, Verdict::kDoesNotHold);     // [.850, .938]
-  EXPECT_EQ(verdict_of("too many", 1990, 2000).verdict, Verdict::kDoesNotHold);  // [.991, .998]
+  EXPECT_EQ(verdict_of("covers", 4760, 5000).verdict, RegionVerdict::kCovers);     // [.9457, .9577]
+  EXPECT_EQ(verdict_of("undecided", 95, 100).verdict, RegionVerdict::kUndecided);  // [.887, .984]
+  EXPECT_EQ(verdict_of("near", 4700, 5000).verdict, RegionVerdict::kUndecided);    // .940 [.933, .946]
+  EXPECT_EQ(verdict_of("too few", 180, 200).verdict, RegionVerdict::kTooNarrow);   // [.850, .938]
+  EXPECT_EQ(verdict_of("too many", 1990, 2000).verdict, RegionVerdict::kTooWide);  // [.991, .998]
   EXPECT_NEAR(verdict_of("undecided", 0, 0).trials_to_decide, TrialsToDecide(0.95, {0.94, 0.96}), 1e-9);
   EXPECT_NE(SummaryAsTable(SummaryOf("covers")).find(": covers"), std::string::npos);
-  EXPECT_NE(SummaryAsTable(SummaryOf("too few")).find(": does not cover"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummaryOf("too few")).find(": too narrow"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummaryOf("too many")).find(": too wide"), std::string::npos);
   EXPECT_NE(SummaryAsTable(SummaryOf("undecided")).find(": undecided, about 6200 trials would do"),
             std::string::npos)
       << SummaryAsTable(SummaryOf("undecided"));
-  EXPECT_NE(SummaryAsCsv(SummaryOf("too few")).find(",200,exact,does not cover,\n"), std::string::npos);
+  EXPECT_NE(SummaryAsCsv(SummaryOf("too few")).find(",200,exact,too narrow,\n"), std::string::npos);
   EXPECT_FALSE(Row("success").coverage_verdict) << "a rate that nothing is claimed of";
   EXPECT_FALSE(Row("nees_coverage", 1).coverage_verdict) << "no trials";
 }

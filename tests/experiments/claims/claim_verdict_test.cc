@@ -58,8 +58,8 @@ TEST(JudgeClaim, WithOneNoiseLevelHoldsIfItHoldsInEveryCondition) {
     ClaimResult result;
     for (const std::optional<Verdict>& verdict : verdicts) {
       claim.checks.emplace_back().sigma_px.reset();
-      if (!verdict) claim.checks.back().not_possible = "fewer than 8 true matches";
       result.checks.emplace_back().verdict = verdict;
+      if (!verdict) result.checks.back().not_possible = "fewer than 8 true matches";
     }
     JudgeClaim(claim, &result);
     EXPECT_FALSE(result.holds_up_to_sigma_px);
@@ -71,6 +71,31 @@ TEST(JudgeClaim, WithOneNoiseLevelHoldsIfItHoldsInEveryCondition) {
   EXPECT_EQ(judge({kNo, kYes}), ClaimVerdict::kDoesNotHold);
   EXPECT_EQ(judge({kYes, kOpen}), ClaimVerdict::kUndecided);
   EXPECT_EQ(judge({std::nullopt, std::nullopt}), ClaimVerdict::kNotPossible);
+}
+
+// Catches sides exchanged, of a coverage or of its law's mean, and one of a rate that is no region's.
+TEST(SideOf, ARegionThatCoversTooSeldomIsTooNarrow) {
+  Target coverage = ClaimedRate("coverage", 0.95, {0.94, 0.96});
+  coverage.kind = Target::Kind::kCoverage;
+  const auto side = [](const Target& target, const Interval& interval) {
+    TargetResult result;
+    result.interval = interval;
+    result.verdict = DecideEquivalence(interval, target.allowed);
+    return SideOf(target, result);
+  };
+  EXPECT_EQ(side(coverage, {0.5, 0.6}), std::nullopt) << "a share within a threshold, of no region";
+  coverage.degrees_of_freedom = 5;
+  EXPECT_EQ(side(coverage, {0.5, 0.6}), Side::kTooNarrow);
+  EXPECT_EQ(side(coverage, {0.97, 0.98}), Side::kTooWide);
+  EXPECT_EQ(side(coverage, {0.945, 0.955}), std::nullopt);
+  EXPECT_EQ(side(coverage, {0.9, 0.98}), std::nullopt) << "undecided";
+  Target pit = coverage;
+  pit.kind = Target::Kind::kMeanPit;
+  EXPECT_EQ(side(pit, {0.5, 0.6}), Side::kTooWide);
+  EXPECT_EQ(side(pit, {0.97, 0.98}), Side::kTooNarrow);
+  EXPECT_EQ(JoinSides({std::nullopt, Side::kTooWide, Side::kTooWide}), Side::kTooWide);
+  EXPECT_EQ(JoinSides({Side::kTooNarrow, std::nullopt, Side::kTooWide}), Side::kBoth);
+  EXPECT_EQ(JoinSides({std::nullopt}), std::nullopt);
 }
 
 TEST(JudgeClaim, IsUndecidedWithoutEvidence) {

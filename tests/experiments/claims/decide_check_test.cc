@@ -161,6 +161,34 @@ TEST(DecideCheck, MeansAreLookedAtOnceAtTheEnd) {
   EXPECT_TRUE(covered.Admits(0.95)) << covered;
 }
 
+// A target that is claimed if stated: of 500 trials and more that say nothing of it nothing is claimed, and
+// one that speaks later claims it again. Catches a silent target that keeps its check undecided, one that
+// holds, and one that is let off although it was stated now and then.
+TEST(DecideCheck, WhatNobodyStatesIsNotClaimed) {
+  const auto decide = [](std::uint32_t every, bool has_other) {
+    Check check;
+    check.not_stated = "no answer states it";
+    check.limits = {1'000, 2'000, 2'000};
+    check.targets = {IfStated(RateWithin(0.9, 1.0))};
+    if (has_other) check.targets.push_back(ClaimedRate("other", 1.0, {0.9, 1.0}, 1));
+    check.trial = [every](const StreamName& name) -> Outcome {
+      return {every > 0 && name.trial % every == 0 ? 0.0 : kNaN, 1.0};
+    };
+    return DecideCheck(check, {});
+  };
+  const CheckResult silent = decide(0, false);
+  EXPECT_EQ(silent.not_possible, "no answer states it in 500 trials");
+  EXPECT_FALSE(silent.verdict);
+  EXPECT_TRUE(silent.targets.empty());
+  const CheckResult beside = decide(0, true);
+  EXPECT_EQ(beside.not_possible, "");
+  EXPECT_EQ(beside.verdict, Verdict::kHolds) << "the other target decides";
+  EXPECT_EQ(beside.num_trials, 1'000 + 220) << "the first look after the least number";
+  EXPECT_FALSE(beside.targets[0].verdict);
+  EXPECT_EQ(decide(100, true).verdict, Verdict::kDoesNotHold) << "stated rarely, and always wrong";
+  EXPECT_EQ(decide(5'000, true).verdict, Verdict::kUndecided) << "stated once: too seldom to decide";
+}
+
 // The truth lies on the border of what is allowed: "does not hold" is a false alarm, and an interval of fixed
 // n that is looked at again and again raises it far too often.
 TEST(DecideCheck, LookingOftenDoesNotInflateErrors) {

@@ -168,7 +168,7 @@ Matrix5d ErrorCovariance() {
 
 Check EstimatorCheck(const Matrix5d& reported_cov, const Vector5d& bias = Vector5d::Zero()) {
   Check check;
-  check.targets = CoverageTargets(5);
+  check.targets = ReportedCovarianceTargets();
   check.limits = kLimits;
   const auto estimator = std::make_shared<GaussianEstimator>(kTruth, ErrorCovariance(), reported_cov, bias);
   check.trial = [estimator](const StreamName& name) {

@@ -112,12 +112,21 @@ TEST(Design, EveryClaimCanHoldAndEveryTargetCanFail) {
 TEST(Design, FullFindsASigmaThatIsFivePercentWrong) {
   const Audit plan = PlanAudit(AllClaims(EstimatorRegistry()), {});
   for (const auto& [degrees_of_freedom, limits] :
-       {std::pair{5, kEstimatorCoverage.limits}, std::pair{1, kSampleCoverage.limits}}) {
+       {std::pair{5, kReprojectionCoverage.limits}, std::pair{1, kSampleCoverage.limits}}) {
     const Target pit = CoverageTargets(degrees_of_freedom).back();
     const TargetPower full = PowerOf(pit, limits.full, plan.confidence);
     EXPECT_GT(full.found_sigma.lower, -0.05) << degrees_of_freedom;
     EXPECT_LT(full.found_sigma.upper, 0.05) << degrees_of_freedom;
   }
+}
+
+// The quick budget finds 8 % of an estimator's covariance, either way.
+TEST(Design, QuickFindsAnEstimatorsSigmaThatIsEightPercentWrong) {
+  const Audit plan = PlanAudit(AllClaims(EstimatorRegistry()), {});
+  const Target pit = CoverageTargets(5, kEstimatorTolerance).back();
+  const TargetPower quick = PowerOf(pit, kEstimatorCoverage.limits.quick, plan.confidence);
+  EXPECT_GT(quick.found_sigma.lower, -0.08);
+  EXPECT_LT(quick.found_sigma.upper, 0.08);
 }
 
 }  // namespace
