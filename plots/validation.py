@@ -22,7 +22,7 @@ example:
   rcme plot validation validation/validation.json --out validation
 draws validation.png and validation.pdf.
 """
-FORMAT = "rcme validation 1"
+FORMAT = "rcme validation 2"
 CAPTION = ("In brackets: pairs of the scene; bars: intervals; grey: what counts as nominal; correlation of neighbouring residuals "
            "minus that of the simulated twin; camera faults over what is nominal (below 1), linear up to there.")
 TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "rotations around loops",

@@ -22,7 +22,7 @@ inline constexpr const char* kTransferFormat = "rcme transfer 1";
 inline constexpr const char* kTrialFormat = "rcme trial 2";
 inline constexpr const char* kTuningFormat = "rcme tuning 1";
 inline constexpr const char* kTwinFormat = "rcme twin 1";
-inline constexpr const char* kValidationFormat = "rcme validation 1";
+inline constexpr const char* kValidationFormat = "rcme validation 2";
 
 // The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no
 // UTF-8 is replaced.

@@ -11,30 +11,35 @@
 #include "experiments/commands/number_option.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/study/study_file.h"
+#include "experiments/truth_free/advice.h"
+#include "experiments/truth_free/planted_fault.h"
 #include "experiments/truth_free/validate_output.h"
 #include "parameters/input_error.h"
+#include "parameters/parameter.h"
 
 namespace rcme {
 namespace {
 
 struct ValidateArguments {
-  std::string pairs, out;
+  std::vector<std::string> pairs;
+  std::string out;
   EstimatorChoice estimator;
   std::vector<std::string> data;  // key=value each, of a study
   std::string scene;              // empty: all
   double sigma_px = 0.5;
   std::int64_t seed = 1;
   int num_twins = 3, trials = 0;
-  bool draws_no_figure = false;
+  std::vector<std::string> planted;  // NAME=VALUE each
+  bool draws_no_figure = false, tests_alone = false;
 };
 
-std::vector<PairSet> SetsOf(const ValidateArguments& arguments) {
-  if (std::filesystem::is_directory(arguments.pairs)) {
+std::vector<PairSet> ReadSets(const std::string& pairs, const ValidateArguments& arguments) {
+  if (std::filesystem::is_directory(pairs)) {
     if (!arguments.data.empty() || arguments.trials > 0)
       throw InputError("validate: --data and --trials are of a study; PAIRS is a folder");
-    return PairSetsOfFolder(arguments.pairs, arguments.sigma_px);
+    return PairSetsOfFolder(pairs, arguments.sigma_px);
   }
-  Study study = LoadStudy(arguments.pairs);
+  Study study = LoadStudy(pairs);
   for (const std::string& setting : arguments.data) {
     const size_t equals = setting.find('=');
     if (equals == std::string::npos)
@@ -45,10 +50,41 @@ std::vector<PairSet> SetsOf(const ValidateArguments& arguments) {
   return PairSetsOfStudy(MakePlan(study));
 }
 
+// Of several folders or studies a set has the name of its own before its name.
+std::vector<PairSet> ReadAllSets(const ValidateArguments& arguments) {
+  std::vector<PairSet> all;
+  for (const std::string& pairs : arguments.pairs) {
+    for (PairSet& set : ReadSets(pairs, arguments)) {
+      if (arguments.pairs.size() > 1)
+        set.name = std::filesystem::path(pairs).lexically_normal().filename().string() + "/" + set.name;
+      all.push_back(std::move(set));
+    }
+  }
+  return all;
+}
+
+// The chosen estimator, with what is planted in its covariances.
+AdvisedEstimator ChooseAdvised(const EstimatorChoice& choice, const PlantedFaults& planted) {
+  const EstimatorSpec spec = ChosenEstimator(choice);
+  AdvisedEstimator advised;
+  advised.make = [spec, factor = planted.covariance](const Settings& options) {
+    EstimatorSpec changed = spec;
+    SetOptions(&changed, options);
+    std::unique_ptr<MotionEstimator> estimator = Make(changed);
+    return factor == 1.0 ? std::move(estimator) : ScaleCovariances(std::move(estimator), factor);
+  };
+  for (const auto& [option, value] : spec.options) {
+    if (option == "covariance") advised.is_robust = value == "robust";
+    if (option == "covariance_factor") ParseReal(value, &advised.factor);
+  }
+  return advised;
+}
+
 void RunValidate(const ValidateArguments& arguments) {
   const StopOnSignals stop;
-  const std::unique_ptr<MotionEstimator> estimator = Make(ChosenEstimator(arguments.estimator));
-  std::vector<PairSet> sets = SetsOf(arguments);
+  const PlantedFaults planted = ParsePlantedFaults(arguments.planted);
+  const AdvisedEstimator estimator = ChooseAdvised(arguments.estimator, planted);
+  std::vector<PairSet> sets = ReadAllSets(arguments);
   if (!arguments.scene.empty()) {
     std::string names;
     for (const PairSet& set : sets) names += (names.empty() ? "" : ", ") + set.name;
@@ -57,10 +93,12 @@ void RunValidate(const ValidateArguments& arguments) {
       throw InputError(fmt::format("--scene: '{}' is not there; give one of: {}", arguments.scene, names));
   }
   if (!arguments.out.empty()) MakeResultFolder(arguments.out);
+  const ValidationOptions options = {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins};
   std::vector<SetReport> reports;
   for (const PairSet& set : sets) {
-    reports.push_back(
-        Validate(set, *estimator, {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins}));
+    const PairSet faulty = PlantFaultsIn(set, planted);
+    reports.push_back(arguments.tests_alone ? Validate(faulty, *estimator.make({}), options)
+                                            : ValidateAndAdvise(faulty, estimator, options));
   }
   const std::string table = ValidationAsTable(reports);
   fmt::print("{}", table);
@@ -83,22 +121,28 @@ void AddValidateCommand(CLI::App& app) {
       "PAIRS is a folder of match files (see `rcme estimate --help`; `# scene:` groups them, `# image1:` "
       "and\n"
       "`# image2:` say which share an image) or a study, whose trials are the pairs.\n"
-      "Each test holds differences of estimates against their covariances, and the same of simulated twins:\n"
+      "Each test holds differences of estimates against their covariances as these are stated, and says\n"
+      "whether simulated twins of the pairs have the same fault:\n"
       "  spatial_halves  left and right, upper and lower half of the matches\n"
       "  random_halves   the same of halves drawn at random: independent errors alone\n"
       "  closure         rotations around loops of three to six images, where pairs name them\n"
       "  directions      directions of translation around three images\n"
+      "  simulation      the answers to the twins against the motion that these were made of: the\n"
+      "                  estimator's own covariance, of independent errors\n"
       "Beside them: is the calibration right that all pairs share (focal length, principal point,\n"
-      "distortion, rolling shutter), does the noise grow as a column sigma_px of the files says, how great\n"
-      "is it, and how alike are the residuals of neighbours. A verdict for each scene (holds, too small by\n"
-      "..., undecided) and what to change.\n"
+      "distortion, key points of the second image; a rolling shutter where files state # seconds_between),\n"
+      "does the noise grow as a column sigma_px of the files says, how great is it, and how alike are the\n"
+      "residuals of neighbours. A verdict for each scene (holds, too small by ..., undecided and what it\n"
+      "would take), what it comes from (the data, or the estimator itself), and what to change: each change\n"
+      "is made and the scene validated again, and the advice says what came of it.\n"
       "\n"
       "Examples:\n"
       "  rcme validate PAIRS --out validation\n"
       "  rcme validate PAIRS --set covariance=robust --scene kitti00\n"
-      "  rcme validate experiments/studies/indoor_like.yaml --data noise=correlated --trials 40");
+      "  rcme validate experiments/studies/indoor_like.yaml --data noise=correlated --trials 40\n"
+      "  rcme validate PAIRS --plant focal_length=0.01 --no-advice      would these pairs show it?");
   auto arguments = std::make_shared<ValidateArguments>();
-  command->add_option("pairs", arguments->pairs, "folder of match files, or a study file (YAML)")->required();
+  command->add_option("pairs", arguments->pairs, "folders of match files, or study files (YAML)")->required();
   CLI::Option* estimator =
       command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
           ->capture_default_str();
@@ -121,6 +165,15 @@ void AddValidateCommand(CLI::App& app) {
   command->add_option("--seed", arguments->seed, "seed of samples, random halves and twins")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
+  command
+      ->add_option(
+          "--plant", arguments->planted,
+          "NAME=VALUE, repeatable: puts a fault in before validating, to see whether these pairs show "
+          "it. covariance and sigma are factors, the others as the report has them (focal_length 0.01 "
+          "is 1 %). NAME is one of: " +
+              PlantableFaults())
+      ->allow_extra_args(false);
+  command->add_flag("--no-advice", arguments->tests_alone, "the tests alone: no change is tried");
   command->add_flag("--no-figure", arguments->draws_no_figure, "write the tables alone");
   command->callback([arguments] { RunValidate(*arguments); });
 }

@@ -26,9 +26,9 @@ constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
 constexpr std::string_view kSigmaColumn = "sigma_px";
 constexpr size_t kMaxColumns = 1000;
 constexpr size_t kMaxSceneBytes = 200;
-constexpr std::array<std::string_view, 12> kHeaderKeys = {
-    "size1",    "size2",    "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit",
-    "truth_sd", "baseline", "noise_level",    "image1",         "image2",     "scene"};
+constexpr std::array<std::string_view, 13> kHeaderKeys = {
+    "size1",    "size2",       "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit",         "truth_sd",
+    "baseline", "noise_level", "image1",         "image2",         "scene",      "seconds_between"};
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 std::string_view Trim(std::string_view text) {
@@ -203,6 +203,13 @@ double NoiseLevelFrom(const Header& header) {
   return level;
 }
 
+double SecondsBetweenFrom(const Header& header) {
+  if (!header.Has("seconds_between")) return MatchFile().seconds_between;
+  const double seconds = header.Numbers("seconds_between", 1).front();
+  if (!(seconds > 0.0)) header.Fail("seconds_between", "must be > 0");
+  return seconds;
+}
+
 bool AreColumnNames(const std::vector<std::string>& fields) {
   return std::ranges::find_first_of(fields, kColumns) != fields.end();
 }
@@ -308,6 +315,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.truth_sd = TruthSdFrom(header);
   file.baseline = BaselineFrom(header);
   file.noise_level = NoiseLevelFrom(header);
+  file.seconds_between = SecondsBetweenFrom(header);
   file.scene = SceneFrom(header);
   if (header.Has("image1")) file.image1 = header.Text("image1");
   if (header.Has("image2")) file.image2 = header.Text("image2");
@@ -351,6 +359,7 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
   }
   if (file.baseline > 0.0) text += fmt::format("# baseline: {}\n", file.baseline);
   if (file.noise_level != 1.0) text += fmt::format("# noise_level: {}\n", file.noise_level);
+  if (file.seconds_between > 0.0) text += fmt::format("# seconds_between: {}\n", file.seconds_between);
   const bool has_sigma = !file.sigma_px.empty();
   text +=
       fmt::format("{}{}{}\n", fmt::join(kColumns, ","), has_sigma ? "," : "", has_sigma ? kSigmaColumn : "");

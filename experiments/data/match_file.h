@@ -28,6 +28,7 @@ namespace rcme {
 //   # noise_level: 1.2                     optional: a template (rcme twin) gets so many times the noise
 //   # image1: frames/0001.png                optional, with image2: pairs of one scene
 //   # image2: frames/0002.png                that share an image say so
+//   # seconds_between: 0.1                 optional: time from image 1 to image 2, of one moving camera
 //   # scene: name                            optional, groups pairs in a study
 //   # key: value                             any further one is skipped
 //   x1,y1,x2,y2[,...]                        column names, optional, before the first match
@@ -45,9 +46,10 @@ struct MatchFile {
   std::optional<TruthSd> truth_sd;
   std::string image1, image2;    // empty: not said
   std::vector<double> sigma_px;  // per match; empty: the file has no such column
-  double baseline = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
-  double noise_level = 1.0;                                    // of a template
-  std::vector<CameraDoubt> doubts = {};                        // about K, as the reader found them
+  double baseline = std::numeric_limits<double>::quiet_NaN();         // NaN: the file does not say
+  double noise_level = 1.0;                                           // of a template
+  double seconds_between = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
+  std::vector<CameraDoubt> doubts = {};                               // about K, as the reader found them
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;

@@ -118,6 +118,7 @@ class SequencePairs {
     row.time1_s = frame1->frame->time_s;
     row.time2_s = frame2->frame->time_s;
     MatchFile file = Match(*frame1, *frame2);
+    file.seconds_between = row.time2_s - row.time1_s;
     if (frame1->frame->pose_true && frame2->frame->pose_true) {
       const TrueMotion12 motion = MotionBetween(*frame1->frame->pose_true, *frame2->frame->pose_true);
       file.cam2_from_cam1_true = motion.cam2_from_cam1;

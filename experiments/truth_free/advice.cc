@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 namespace rcme {
 namespace {
@@ -14,7 +13,7 @@ const TruthFreeTest& Named(const SetReport& report, const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> AdviceOn(const SetReport& report) {
+std::vector<std::string> FindReasons(const SetReport& report) {
   std::vector<std::string> advice;
   const auto is_small = [&](const char* name) {
     return Named(report, name).verdict == TruthFreeVerdict::kTooSmall;
@@ -26,21 +25,20 @@ std::vector<std::string> AdviceOn(const SetReport& report) {
     advice.emplace_back(
         "random halves differ more than independent errors explain: wrong matches among the inliers, or an "
         "assumed "
-        "sigma that is too small (an estimator that estimates it, covariance=robust)");
+        "sigma that is too small (an estimator that estimates it)");
   if (report.correlations.front().difference.lower > kNominalCorrelation)
+    advice.emplace_back("points within 1 px of each other err alike: one point found twice");
+  if (is_correlated_far) advice.emplace_back("neighbours err alike");
+  if (is_small("spatial_halves") && !is_small("random_halves") && !is_correlated_far)
     advice.emplace_back(
-        "points within 1 px of each other err alike: one point found twice; covariance=robust counts it "
-        "once");
-  if (is_correlated_far)
-    advice.emplace_back("neighbours err alike: covariance=robust widens by what image blocks show");
-  if (is_small("spatial_halves") && !is_small("random_halves"))
+        "halves of the image disagree, with no correlation up to 64 px: look at calibration, distortion, "
+        "rolling shutter (focal_sd, principal_point_sd_px, distortion_sd)");
+  if (const TruthFreeTest& own = Named(report, kSimulationTest);
+      own.verdict == TruthFreeVerdict::kTooSmall || own.verdict == TruthFreeVerdict::kTooLarge)
     advice.push_back(fmt::format(
-        "halves of the image disagree: with covariance=robust, covariance_factor={:.2g} times its present "
-        "value; {}",
-        Named(report, "spatial_halves").ratio.value,
-        is_correlated_far ? "neighbours' errors are part of it"
-                          : "no correlation up to 64 px: look at calibration, distortion, rolling shutter "
-                            "(focal_sd, principal_point_sd_px, distortion_sd)"));
+        "the estimator's own covariance is {} by {:.2g} in variance where errors are independent and normal",
+        VerdictName(own.verdict),
+        own.verdict == TruthFreeVerdict::kTooSmall ? own.ratio.value : 1.0 / own.ratio.value));
   if (Named(report, "random_halves").verdict == TruthFreeVerdict::kTooLarge &&
       Named(report, "spatial_halves").verdict != TruthFreeVerdict::kTooLarge)
     advice.emplace_back(
@@ -56,16 +54,11 @@ std::vector<std::string> AdviceOn(const SetReport& report) {
     advice.emplace_back(
         "directions of translation around three images do not lie in a plane, though rotations close: "
         "directions are less certain than stated");
-  std::ranges::copy(CalibrationAdvice(report.calibration), std::back_inserter(advice));
   if (report.sizes.verdict == TruthFreeVerdict::kTooSmall ||
       report.sizes.verdict == TruthFreeVerdict::kTooLarge)
     advice.push_back(
         fmt::format("the noise {} between matches: take sigma_px to the power {:.2g}, or one noise for all",
                     SizeInWords(report.sizes), report.sizes.slope.value));
-  if (report.sigma_px.interval.upper < 0.8 * report.assumed_sigma_px ||
-      report.sigma_px.interval.lower > 1.25 * report.assumed_sigma_px)
-    advice.push_back(fmt::format("assumed sigma {:g} px, the residuals say {:.2g}: assume that (--sigma)",
-                                 report.assumed_sigma_px, report.sigma_px.value));
   return advice;
 }
 

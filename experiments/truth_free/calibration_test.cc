@@ -6,13 +6,14 @@
 #include <cmath>
 
 #include "experiments/truth_free/calibration_score.h"
+#include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr PooledParameter kUnknown = {kNaN, kNaN, {-kNaN, kNaN}, 0.0};
 constexpr double kTooWide = 50.0;  // times what is nominal: half of an interval that says nothing
-constexpr double kOfEach = 1.0 - (1.0 - kFaultConfidence) / kNumCameraFaults;
-
 bool IsOfCamera(const NamedPair& pair, const Camera& camera) {
   const auto same = [&](const Camera& other) {
     return other.K() == camera.K() && other.width == camera.width && other.height == camera.height;
@@ -20,16 +21,23 @@ bool IsOfCamera(const NamedPair& pair, const Camera& camera) {
   return same(pair.problem.camera1) && same(pair.problem.camera2);
 }
 
-void Add(const Answered& answered, const ImageNumbers& images, std::vector<UnitScore>* units) {
+void Add(const Answered& answered, const ImageNumbers& images, double readout_scale,
+         std::vector<UnitScore>* units) {
   if (!answered.IsOk()) return;
-  const std::optional<CalibrationScore> score = ScoreCalibration(answered.pair.problem, answered.estimate);
-  if (score) units->push_back({images.image1, images.image2, score->score, score->information});
+  std::optional<CalibrationScore> score = ScoreCalibration(answered.pair.problem, answered.estimate);
+  if (!score) return;
+  constexpr auto kReadout = static_cast<Eigen::Index>(CameraFault::kReadoutTime);
+  score->score(kReadout) *= readout_scale;
+  score->information.row(kReadout) *= readout_scale;
+  score->information.col(kReadout) *= readout_scale;
+  units->push_back({images.image1, images.image2, score->score, score->information});
 }
 
 // A pair's twins are one unit: they share its geometry.
-void AddTwins(const PairAnswers& answers, const ImageNumbers& images, std::vector<UnitScore>* units) {
+void AddTwins(const PairAnswers& answers, const ImageNumbers& images, double readout_scale,
+              std::vector<UnitScore>* units) {
   std::vector<UnitScore> twins;
-  for (const Answered& twin : answers.twins) Add(twin, images, &twins);
+  for (const Answered& twin : answers.twins) Add(twin, images, readout_scale, &twins);
   if (twins.empty()) return;
   for (size_t k = 1; k < twins.size(); ++k) {
     twins[0].score += twins[k].score;
@@ -38,15 +46,29 @@ void AddTwins(const PairAnswers& answers, const ImageNumbers& images, std::vecto
   units->push_back(twins[0]);
 }
 
+std::vector<UnitScore> PickFaults(const std::vector<UnitScore>& units,
+                                  const std::vector<CameraFault>& faults) {
+  std::vector<UnitScore> picked;
+  const auto k = std::ssize(faults);
+  for (const UnitScore& unit : units) {
+    UnitScore of{unit.member1, unit.member2, Eigen::VectorXd(k), Eigen::MatrixXd(k, k)};
+    for (Eigen::Index i = 0; i < k; ++i) {
+      const auto from = static_cast<Eigen::Index>(faults[static_cast<size_t>(i)]);
+      of.score(i) = unit.score(from);
+      for (Eigen::Index j = 0; j < k; ++j)
+        of.information(i, j) =
+            unit.information(from, static_cast<Eigen::Index>(faults[static_cast<size_t>(j)]));
+    }
+    picked.push_back(std::move(of));
+  }
+  return picked;
+}
+
 Interval NominalOf(CameraFault fault) { return {-TextOf(fault).nominal, TextOf(fault).nominal}; }
 
 TruthFreeVerdict VerdictOf(CameraFault fault, const PooledParameter& of) {
   if (std::isnan(of.value)) return TruthFreeVerdict::kNoData;
   return VerdictOnInterval(of.interval, 0.0, NominalOf(fault));
-}
-
-bool IsFault(TruthFreeVerdict verdict) {
-  return verdict == TruthFreeVerdict::kTooSmall || verdict == TruthFreeVerdict::kTooLarge;
 }
 
 // Further from zero than all of the other interval, to the same side or the other.
@@ -61,13 +83,14 @@ TruthFreeVerdict VerdictOnAll(const CalibrationReport& report) {
   return report.p_value < 1.0 - kFaultConfidence ? TruthFreeVerdict::kTooLarge : TruthFreeVerdict::kUndecided;
 }
 
-std::optional<CameraFault> MostAlike(const Eigen::MatrixXd& correlations, Eigen::Index of) {
+std::optional<CameraFault> MostAlike(const Eigen::MatrixXd& correlations, Eigen::Index of,
+                                     const std::vector<CameraFault>& asked) {
   if (correlations.size() == 0) return std::nullopt;
   Eigen::VectorXd sizes = correlations.col(of).cwiseAbs();
   sizes(of) = -1.0;
   Eigen::Index most = 0;
   sizes.maxCoeff(&most);
-  return kCameraFaults[static_cast<size_t>(most)];
+  return asked[static_cast<size_t>(most)];
 }
 
 std::string RangeIn(const CameraFaultText& text, const PooledParameter& of, bool is_turned) {
@@ -84,35 +107,141 @@ std::string FoundInWords(CameraFault fault, const PooledParameter& of) {
   return fmt::format("{} {}", RangeIn(text, of, is_less), is_less ? text.less : text.more);
 }
 
+// Intervals shrink with the root of the number of pairs.
+double PairsNeeded(CameraFault fault, const PooledParameter& of, int num_pairs) {
+  const double half = 0.5 * (of.interval.upper - of.interval.lower), nominal = TextOf(fault).nominal;
+  if (!(half < kTooWide * nominal)) return 0.0;
+  const double target = std::max(std::abs(of.value), nominal - std::abs(of.value));
+  return std::ceil(num_pairs * std::max(1.0, half * half / (target * target)));
+}
+
+// "focal length +-4200 %"
+std::string HalfInWords(CameraFault fault, const PooledParameter& of) {
+  const CameraFaultText& text = TextOf(fault);
+  return fmt::format("{} {:.2g} +-{:.2g}{}{}", text.words, text.per_unit * of.value,
+                     0.5 * text.per_unit * (of.interval.upper - of.interval.lower), *text.unit ? " " : "",
+                     text.unit);
+}
+
+// The fault whose estimate leaves the range of the linear step, in words; empty: none does.
+std::string OutOfRange(const CalibrationReport& report) {
+  for (const FaultReport& each : report.faults) {
+    const double greatest = GreatestFault(each.fault, report.camera);
+    if (!(std::abs(each.joint.value) <= greatest) ||
+        !(each.joint.interval.upper - each.joint.interval.lower < greatest))
+      return HalfInWords(each.fault, each.joint);
+  }
+  return "";
+}
+
 }  // namespace
 
-CalibrationReport TestCalibration(const std::vector<PairAnswers>& answers) {
-  CalibrationReport report;
-  if (!answers.empty()) report.camera = answers.front().whole.pair.problem.camera1;
-  const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
-  std::vector<UnitScore> units, of_twins;
-  for (size_t i = 0; i < answers.size(); ++i) {
-    if (!IsOfCamera(answers[i].whole.pair, report.camera)) continue;
-    Add(answers[i].whole, images[i], &units);
-    AddTwins(answers[i], images[i], &of_twins);
+bool IsFault(TruthFreeVerdict verdict) {
+  return verdict == TruthFreeVerdict::kTooSmall || verdict == TruthFreeVerdict::kTooLarge;
+}
+
+bool NamesFault(const CalibrationReport& report) {
+  return std::ranges::any_of(report.faults, [](const FaultReport& each) { return IsFault(each.verdict); });
+}
+
+void NameNothing(std::string why, CalibrationReport* report) {
+  for (FaultReport& each : report->faults) {
+    if (IsFault(each.verdict)) each.verdict = TruthFreeVerdict::kUndecided;
+    each.correction = 0.0;
   }
-  report.num_pairs = static_cast<int>(units.size());
-  const PooledScores joint = PoolScores(units, kOfEach), twins = PoolScores(of_twins, kOfEach);
+  report->why_unnamed = std::move(why);
+  report->p_corrected = kNaN;
+}
+
+std::vector<double> ReadoutScales(const std::vector<PairAnswers>& answers) {
+  std::vector<double> seconds, scales;
+  for (const PairAnswers& each : answers) seconds.push_back(each.whole.pair.seconds_between);
+  const double median = MedianOf(seconds);
+  for (const double own : seconds) scales.push_back(std::isfinite(median / own) ? median / own : 1.0);
+  return scales;
+}
+
+FaultEstimates EstimateFaults(const std::vector<PairAnswers>& answers) {
+  FaultEstimates estimates;
+  if (!answers.empty()) estimates.camera = answers.front().whole.pair.problem.camera1;
+  const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
+  const std::vector<double> scales = ReadoutScales(answers);
+  bool has_times = true;
+  for (size_t i = 0; i < answers.size(); ++i) {
+    if (!IsOfCamera(answers[i].whole.pair, estimates.camera)) continue;
+    has_times &= std::isfinite(answers[i].whole.pair.seconds_between);
+    Add(answers[i].whole, images[i], scales[i], &estimates.units);
+    AddTwins(answers[i], images[i], scales[i], &estimates.twins);
+  }
+  for (size_t j = 0; j < kNumNamedFaults; ++j) {
+    if (kCameraFaults[j] != CameraFault::kReadoutTime || has_times)
+      estimates.asked.push_back(kCameraFaults[j]);
+  }
+  estimates.num_pairs = static_cast<int>(estimates.units.size());
+  return estimates;
+}
+
+PooledScores PoolFaults(const std::vector<UnitScore>& units, const std::vector<CameraFault>& faults) {
+  return PoolScores(PickFaults(units, faults), 1.0 - (1.0 - kFaultConfidence) / kNumNamedFaults);
+}
+
+std::optional<CameraFault> FindOtherFault(const std::vector<UnitScore>& units) {
+  constexpr int kNumOthers = kNumCameraFaults - kNumNamedFaults;
+  std::optional<CameraFault> other;
+  double most = 0.0;
+  for (Eigen::Index j = kNumNamedFaults; j < kNumCameraFaults; ++j) {
+    const PooledParameter alone = PoolScoreAlone(units, j, 1.0 - (1.0 - kFaultConfidence) / kNumOthers);
+    const double size = std::abs(alone.value) / alone.standard_error;
+    if (alone.interval.Contains(0.0) || !(size > most)) continue;
+    most = size;
+    other = kCameraFaults[static_cast<size_t>(j)];
+  }
+  return other;
+}
+
+void JudgeFaults(CalibrationReport* report) {
+  for (FaultReport& each : report->faults) {
+    each.verdict = VerdictOf(each.fault, each.joint);
+    if (IsFault(VerdictOf(each.fault, each.twins)) && !IsBeyond(each.joint.interval, each.twins.interval))
+      each.verdict = TruthFreeVerdict::kUndecided;
+  }
+  report->verdict = VerdictOnAll(*report);
+  if (!NamesFault(*report)) return;
+  const std::string beyond = OutOfRange(*report);
+  if (!(report->p_value < 1.0 - kFaultConfidence)) {
+    NameNothing("all faults together are not significant", report);
+  } else if (!beyond.empty()) {
+    NameNothing("these pairs hardly determine the camera: " + beyond, report);
+  }
+}
+
+CalibrationReport TestCalibration(const std::vector<PairAnswers>& answers) {
+  const FaultEstimates estimates = EstimateFaults(answers);
+  CalibrationReport report;
+  report.camera = estimates.camera;
+  report.num_pairs = estimates.num_pairs;
+  const PooledScores joint = PoolFaults(estimates.units, estimates.asked),
+                     twins = PoolFaults(estimates.twins, estimates.asked);
   report.p_value = joint.p_value;
   report.dispersion = joint.dispersion;
-  for (size_t j = 0; j < kCameraFaults.size() && !units.empty(); ++j) {
-    const CameraFault fault = kCameraFaults[j];
-    const auto column = static_cast<Eigen::Index>(j);
-    FaultReport of{fault, joint.parameters[j], PoolScoreAlone(units, column, kOfEach), {}, {}, {}};
-    of.twins = twins.parameters.empty() ? PoolScoreAlone(of_twins, column, kOfEach) : twins.parameters[j];
-    of.verdict = VerdictOf(fault, of.joint);
-    if (IsFault(VerdictOf(fault, of.twins)) && !IsBeyond(of.joint.interval, of.twins.interval))
-      of.verdict = TruthFreeVerdict::kUndecided;
-    if (of.verdict == TruthFreeVerdict::kUndecided && IsFault(VerdictOf(fault, of.alone)))
-      of.confused_with = MostAlike(joint.correlations, column);
+  for (size_t j = 0; j < estimates.asked.size() && report.num_pairs > 0; ++j) {
+    const CameraFault fault = estimates.asked[j];
+    const auto pool_alone = [&](const std::vector<UnitScore>& units) {
+      const PooledScores pooled = PoolFaults(units, {fault});
+      return pooled.parameters.empty() ? kUnknown : pooled.parameters.front();
+    };
+    FaultReport of{fault, joint.parameters[j], pool_alone(estimates.units), {}, {}, {}};
+    of.twins = twins.parameters.empty() ? pool_alone(estimates.twins) : twins.parameters[j];
     report.faults.push_back(of);
   }
-  report.verdict = VerdictOnAll(report);
+  JudgeFaults(&report);
+  for (size_t j = 0; j < report.faults.size(); ++j) {
+    FaultReport& of = report.faults[j];
+    if (of.verdict != TruthFreeVerdict::kUndecided) continue;
+    of.pairs_needed = PairsNeeded(of.fault, of.joint, report.num_pairs);
+    if (IsFault(VerdictOf(of.fault, of.alone)))
+      of.confused_with = MostAlike(joint.correlations, static_cast<Eigen::Index>(j), estimates.asked);
+  }
   return report;
 }
 
@@ -125,8 +254,13 @@ std::string CalibrationInWords(const CalibrationReport& report) {
     case TruthFreeVerdict::kUndecided:
       return fmt::format("undecided (p = {:.2g})", report.p_value);
     default:
-      return fmt::format("some fault (p = {:.2g})", report.p_value);
+      break;
   }
+  std::string words = fmt::format("some fault (p = {:.2g})", report.p_value);
+  if (!report.why_unnamed.empty()) words += "; none is named: " + report.why_unnamed;
+  if (std::isfinite(report.p_corrected))
+    words += fmt::format("; p = {:.2g} where what is named is corrected", report.p_corrected);
+  return words;
 }
 
 std::string FaultInWords(const FaultReport& report) {
@@ -149,6 +283,8 @@ std::string FaultInWords(const FaultReport& report) {
       if (report.confused_with)
         words += fmt::format("; were it the only fault: {}; hard to tell from {}",
                              RangeIn(text, report.alone, false), TextOf(*report.confused_with).words);
+      if (report.pairs_needed > 0.0)
+        words += fmt::format("; some {:.2g} pairs would decide it", report.pairs_needed);
       return words;
     }
     default:
@@ -161,7 +297,7 @@ std::vector<std::string> CalibrationAdvice(const CalibrationReport& report) {
   const Camera& camera = report.camera;
   for (const FaultReport& each : report.faults) {
     if (!IsFault(each.verdict)) continue;
-    const double theta = each.joint.value;
+    const double theta = each.correction;
     std::string change;
     switch (each.fault) {
       case CameraFault::kFocalLength:
@@ -177,12 +313,18 @@ std::vector<std::string> CalibrationAdvice(const CalibrationReport& report) {
       case CameraFault::kDistortion:
         change = fmt::format("undistort the matches with k1 = {:.2g}", theta);
         break;
-      case CameraFault::kReadoutTime:
+      case CameraFault::kImage2ShiftX:
+        change = fmt::format("shift the key points of image 2 by {:.2g} px in x", -theta);
+        break;
+      case CameraFault::kImage2ShiftY:
+        change = fmt::format("shift the key points of image 2 by {:.2g} px in y", -theta);
+        break;
+      default:
         change = "take a global shutter, correct the rows' times, or move less between images";
         break;
     }
-    advice.push_back(fmt::format("{}: {}: {}; then validate again (one step: what is far off takes two)",
-                                 TextOf(each.fault).words, FoundInWords(each.fault, each.joint), change));
+    advice.push_back(
+        fmt::format("{}: {}: {}", TextOf(each.fault).words, FoundInWords(each.fault, each.joint), change));
   }
   if (report.verdict == TruthFreeVerdict::kTooLarge && advice.empty())
     advice.emplace_back(

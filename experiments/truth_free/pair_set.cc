@@ -18,7 +18,7 @@ std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px
     warnings.Add(file.doubts);
     PairSet& set = sets[file.scene];
     set.name = file.scene;
-    NamedPair pair{path.filename().string(), file.image1, file.image2, {}};
+    NamedPair pair{path.filename().string(), file.image1, file.image2, {}, file.seconds_between};
     pair.problem = ProblemOf(std::move(file), sigma_px);
     set.pairs.push_back(std::move(pair));
   }
@@ -34,10 +34,14 @@ std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan) {
     PairSet set{
         condition.levels.empty() ? plan.study.name : fmt::format("{}", fmt::join(condition.levels, ", ")),
         {}};
+    // A simulated motion is even in time, and each pair has the same; real pairs of a study do not say.
+    const double seconds_between =
+        condition.source->SharedScene() ? std::numeric_limits<double>::quiet_NaN() : 1.0;
     for (int trial = 0; trial < condition.num_trials; ++trial) {
       const auto number = static_cast<std::uint32_t>(trial);
       set.pairs.push_back({fmt::format("{} trial {}", set.name, trial), "", "",
-                           condition.source->Make(NameOfScene(plan, condition, number)).problem});
+                           condition.source->Make(NameOfScene(plan, condition, number)).problem,
+                           seconds_between});
     }
     all.push_back(std::move(set));
   }

@@ -1,6 +1,7 @@
 // The image pairs that are validated without a truth.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct NamedPair {
   std::string name;
   std::string image1, image2;  // equal names: the same image; empty: not known
   MotionProblem problem;
+  double seconds_between = std::numeric_limits<double>::quiet_NaN();  // of one video; NaN: not said
 };
 
 // Pairs of one scene, or of one condition of a study.

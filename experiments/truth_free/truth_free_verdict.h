@@ -6,6 +6,23 @@ namespace rcme {
 
 enum class TruthFreeVerdict { kHolds, kTooSmall, kTooLarge, kUndecided, kNoData };
 
+// "holds", "too small", ...
+inline const char* VerdictName(TruthFreeVerdict verdict) {
+  switch (verdict) {
+    case TruthFreeVerdict::kHolds:
+      return "holds";
+    case TruthFreeVerdict::kTooSmall:
+      return "too small";
+    case TruthFreeVerdict::kTooLarge:
+      return "too large";
+    case TruthFreeVerdict::kUndecided:
+      return "undecided";
+    case TruthFreeVerdict::kNoData:
+      break;
+  }
+  return "no data";
+}
+
 // The verdict that an interval of a quantity allows whose right value is `right`: "holds" if it lies within
 // `nominal`, one of too small and too large if it does not hold `right`.
 inline TruthFreeVerdict VerdictOnInterval(const Interval& interval, double right, const Interval& nominal) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/robust_covariance/disjoint_sets.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/data/data_source.h"
 #include "experiments/trial/answer_check.h"
@@ -11,14 +12,15 @@
 #include "experiments/truth_free/closure.h"
 #include "experiments/truth_free/halves.h"
 #include "experiments/truth_free/residual_correlation.h"
+#include "experiments/truth_free/self_calibration.h"
 #include "experiments/truth_free/twin.h"
-#include "stats/distributions.h"
+#include "stats/consistency.h"
 
 namespace rcme {
 namespace {
 
 constexpr double kConfidence = 0.95;
-constexpr int kResamples = 1000;
+constexpr int kResamples = 1000;          // of pairs
 constexpr double kLeastProducts = 100.0;  // of residuals, for a correlation
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -31,6 +33,7 @@ Answered Ask(NamedPair pair, const MotionEstimator& estimator, const StreamName&
 // What is computed of each pair and its twins.
 struct PairResults {
   UnitValues spatial, random;
+  std::vector<double> twin_errors;  // normalised and squared, of the twins' answers against their truth
   ResidualProducts products, twin_products;
 };
 
@@ -64,6 +67,9 @@ PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
     const Answered& twin = answers->twins.back();
     if (!twin.IsOk()) continue;
     AddHalves(twin, estimator, name, &results.spatial.null, &results.random.null);
+    results.twin_errors.push_back(
+        NormalizedErrorSquared(LocalCoordinates(twin.estimate.cam2_from_cam1, whole.estimate.cam2_from_cam1),
+                               twin.estimate.pose_cov));
     results.twin_products += ProductsOf(twin.pair.problem, twin.estimate);
   }
   return results;
@@ -79,35 +85,26 @@ std::map<size_t, int> CountLoops(const std::vector<Loop>& loops, const std::vect
   return counts;
 }
 
-double ShareWithin(std::span<const UnitValues> units, std::vector<double> UnitValues::*list, double bound) {
-  double num_within = 0.0, n = 0.0;
-  for (const UnitValues& unit : units) {
-    for (const double value : unit.*list) num_within += value <= bound, n += 1.0;
+// Loops that have a pair in common, directly or by way of others, are of one group.
+std::vector<std::int64_t> GroupLoops(const std::vector<Loop>& loops, size_t num_pairs) {
+  DisjointSets sets(num_pairs);
+  for (const Loop& loop : loops) {
+    for (const LoopStep& step : loop) sets.Unite(loop.front().pair, step.pair);
   }
-  return n > 0.0 ? num_within / n : kNaN;
+  std::vector<std::int64_t> groups;
+  for (const Loop& loop : loops) groups.push_back(static_cast<std::int64_t>(sets.Find(loop.front().pair)));
+  return groups;
 }
 
-double MedianOfNull(std::span<const UnitValues> units) {
-  std::vector<double> all;
-  for (const UnitValues& unit : units) all.insert(all.end(), unit.null.begin(), unit.null.end());
-  return MedianOf(std::move(all));
-}
-
-TruthFreeTest TestOf(std::string name, int degrees_of_freedom, const std::vector<UnitValues>& units,
-                     RandomStream& rng) {
-  TruthFreeTest test;
-  test.name = std::move(name);
-  test.degrees_of_freedom = degrees_of_freedom;
-  for (const UnitValues& unit : units) test.num_values += static_cast<int>(unit.observed.size());
-  const double bound = ChiSquareQuantile(degrees_of_freedom, 0.95);
-  test.coverage = ShareWithin(units, &UnitValues::observed, bound);
-  test.twin_coverage = ShareWithin(units, &UnitValues::null, bound);
-  test.ratio = RatioOfMedians(units, kConfidence, kResamples, rng);
-  const double conservative = std::min(1.0, MedianOfNull(units) / ChiSquareQuantile(degrees_of_freedom, 0.5));
-  for (double* x : {&test.ratio.value, &test.ratio.interval.lower, &test.ratio.interval.upper})
-    *x *= conservative;
-  test.verdict = VerdictOn(test.ratio);
-  return test;
+std::vector<TestUnit> CloseLoops(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
+                                 LoopErrorOf error_of) {
+  const std::vector<std::int64_t> groups = GroupLoops(loops, answers.size());
+  std::vector<TestUnit> units;
+  for (size_t k = 0; k < loops.size(); ++k) {
+    for (UnitValues& values : ClosuresOf(answers, {loops[k]}, error_of))
+      units.push_back({groups[k], groups[k], std::move(values)});
+  }
+  return units;
 }
 
 std::vector<DistanceCorrelation> CorrelationsOf(const std::vector<PairResults>& results, RandomStream& rng) {
@@ -154,13 +151,17 @@ ComparedMedians SigmaOf(const std::vector<PairAnswers>& answers, RandomStream& r
   return RatioOfMedians(units, kConfidence, kResamples, rng);
 }
 
-}  // namespace
-
-TruthFreeVerdict VerdictOn(const ComparedMedians& ratio) {
-  if (std::isnan(ratio.value)) return TruthFreeVerdict::kNoData;
-  const Interval of_covariances = {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower};
-  return VerdictOnInterval(of_covariances, 1.0, {1.0 / kNominalVariance, kNominalVariance});
+// Of the assumed sigma: wrong only where the whole interval lies beyond what is nominal.
+TruthFreeVerdict JudgeSigma(const ComparedMedians& estimated_px, double assumed_px) {
+  if (std::isnan(estimated_px.value)) return TruthFreeVerdict::kNoData;
+  const Interval ratio = {estimated_px.interval.lower / assumed_px, estimated_px.interval.upper / assumed_px};
+  if (ratio.lower > kNominalSigma.upper) return TruthFreeVerdict::kTooSmall;
+  if (ratio.upper < kNominalSigma.lower) return TruthFreeVerdict::kTooLarge;
+  const bool is_nominal = ratio.lower >= kNominalSigma.lower && ratio.upper <= kNominalSigma.upper;
+  return is_nominal ? TruthFreeVerdict::kHolds : TruthFreeVerdict::kUndecided;
 }
+
+}  // namespace
 
 SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options) {
   SetReport report;
@@ -168,26 +169,35 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
   report.num_pairs = static_cast<int>(set.pairs.size());
   std::vector<PairAnswers> answers;
   std::vector<PairResults> results;
-  std::vector<UnitValues> spatial, random;
+  std::vector<TestUnit> simulation, spatial, random;
   for (const NamedPair& pair : set.pairs) {
     if (IsStopRequested()) throw Stopped("stopped; nothing is written");
     results.push_back(ResultsOf(pair, estimator, options, &answers.emplace_back()));
     report.num_answered += answers.back().whole.IsOk();
-    spatial.push_back(results.back().spatial);
-    random.push_back(results.back().random);
+  }
+  const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
+  for (size_t i = 0; i < results.size(); ++i) {
+    const auto [image1, image2] = images[i];
+    simulation.push_back({image1, image2, {results[i].twin_errors, results[i].twin_errors}});
+    spatial.push_back({image1, image2, results[i].spatial});
+    random.push_back({image1, image2, results[i].random});
   }
   const std::vector<Loop> loops = FindLoops(set.pairs);
   report.num_loops = CountLoops(loops, answers);
   RandomStream rng = StreamFor({options.seed, StreamKeyOf(set.name), 0, 0}, StreamPurpose::kMonteCarlo);
-  report.tests = {TestOf("spatial_halves", 5, spatial, rng), TestOf("random_halves", 5, random, rng),
-                  TestOf("closure", 3, ClosuresOf(answers, loops, RotationClosure), rng),
-                  TestOf("directions", 1, ClosuresOf(answers, loops, DirectionClosure), rng)};
+  report.tests = {TestCovariances("spatial_halves", 5, spatial, rng),
+                  TestCovariances("random_halves", 5, random, rng),
+                  TestCovariances("closure", 3, CloseLoops(answers, loops, RotationClosure), rng),
+                  TestCovariances("directions", 1, CloseLoops(answers, loops, DirectionClosure), rng),
+                  TestCovariances(kSimulationTest, 5, simulation, rng)};
+  report.covariances = JudgeTests(report.tests);
   report.assumed_sigma_px = set.pairs.empty() ? kNaN : set.pairs.front().problem.sigma_px;
   report.sigma_px = SigmaOf(answers, rng);
+  report.sigma_verdict = JudgeSigma(report.sigma_px, report.assumed_sigma_px);
   report.correlations = CorrelationsOf(results, rng);
-  report.calibration = TestCalibration(answers);
+  report.calibration = Calibrate(answers, estimator, options.seed);
   report.sizes = TestKeyPointSizes(answers);
-  report.advice = AdviceOn(report);
+  report.advice = FindReasons(report);
   return report;
 }
 

@@ -12,28 +12,54 @@
 namespace rcme {
 namespace {
 
-const char* NameOf(TruthFreeVerdict verdict) {
-  switch (verdict) {
-    case TruthFreeVerdict::kHolds:
-      return "holds";
-    case TruthFreeVerdict::kTooSmall:
-      return "too small";
-    case TruthFreeVerdict::kTooLarge:
-      return "too large";
-    case TruthFreeVerdict::kUndecided:
-      return "undecided";
-    case TruthFreeVerdict::kNoData:
-      break;
-  }
-  return "no data";
-}
-
 std::string RangeText(double value, const Interval& interval) {
   return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);
 }
 
-std::string ShareText(double share) {
-  return std::isnan(share) ? "-" : fmt::format("{:.0f} %", 100.0 * share);
+// "74 % [62, 84]".
+std::string CoverageText(const SharedMemberRate& coverage) {
+  if (std::isnan(coverage.rate)) return "-";
+  return fmt::format("{:.0f} % [{:.0f}, {:.0f}]", 100.0 * coverage.rate, 100.0 * coverage.interval.lower,
+                     100.0 * coverage.interval.upper);
+}
+
+const char* CauseName(FaultCause cause) {
+  switch (cause) {
+    case FaultCause::kData:
+      return "data";
+    case FaultCause::kEstimator:
+      return "estimator";
+    case FaultCause::kBoth:
+      return "both";
+    case FaultCause::kNone:
+      break;
+  }
+  return "";
+}
+
+// What a fault is of, as the end of a sentence.
+std::string CauseInWords(FaultCause cause, bool is_small) {
+  switch (cause) {
+    case FaultCause::kData:
+      return "the data: in simulation it is not";
+    case FaultCause::kEstimator:
+      return fmt::format("the estimator's own covariance is too {}, in simulation too",
+                         is_small ? "small" : "large");
+    case FaultCause::kBoth:
+      return "in simulation too, and more so here";
+    case FaultCause::kNone:
+      break;
+  }
+  return "";
+}
+
+// "covariances: too small: the data: in simulation it is not (spatial_halves)".
+std::string CovariancesInWords(const CovarianceVerdict& of) {
+  std::string text = std::string("covariances: ") + VerdictName(of.verdict);
+  if (of.verdict == TruthFreeVerdict::kNoData) return text;
+  if (of.cause != FaultCause::kNone)
+    text += "; " + CauseInWords(of.cause, of.verdict == TruthFreeVerdict::kTooSmall);
+  return text + fmt::format(" ({})", fmt::join(of.tests, ", "));
 }
 
 std::string CorrelationName(const DistanceCorrelation& c) {
@@ -62,14 +88,14 @@ std::string LoopsText(const SetReport& report) {
 // In files a fault that is found is "wrong", whichever way.
 std::string FaultVerdict(TruthFreeVerdict verdict) {
   const bool is_fault = verdict == TruthFreeVerdict::kTooSmall || verdict == TruthFreeVerdict::kTooLarge;
-  return is_fault ? "wrong" : NameOf(verdict);
+  return is_fault ? "wrong" : VerdictName(verdict);
 }
 
 // "focal length 0.2 %, ...".
 std::string NominalFaults() {
   std::string words;
-  for (const CameraFault fault : kCameraFaults) {
-    const CameraFaultText& text = TextOf(fault);
+  for (size_t j = 0; j < kNumNamedFaults; ++j) {
+    const CameraFaultText& text = TextOf(kCameraFaults[j]);
     words += fmt::format("{}{} {:g}{}{}", words.empty() ? "" : ", ", text.words, text.per_unit * text.nominal,
                          *text.unit ? " " : "", text.unit);
   }
@@ -79,10 +105,17 @@ std::string NominalFaults() {
 std::string SetAsTable(const SetReport& report) {
   std::string text = fmt::format("{}: {} pairs, {} answered, {}\n", report.name, report.num_pairs,
                                  report.num_answered, LoopsText(report));
-  std::vector<std::vector<std::string>> rows = {{"test", "verdict", "n", "covered", "twins covered"}};
+  text += CovariancesInWords(report.covariances) + "\n";
+  std::vector<std::vector<std::string>> rows = {
+      {"test", "verdict", "n", "covered", "over the twins", "twins covered"}};
   for (const TruthFreeTest& test : report.tests) {
+    const bool is_of_pairs = test.name != kSimulationTest;
     rows.push_back({test.name, VerdictInWords(test), std::to_string(test.num_values),
-                    ShareText(test.coverage), ShareText(test.twin_coverage)});
+                    CoverageText(test.coverage),
+                    is_of_pairs && test.verdict != TruthFreeVerdict::kNoData
+                        ? RangeText(test.against_twins.value, test.against_twins.interval)
+                        : "",
+                    is_of_pairs ? CoverageText(test.twin_coverage) : ""});
   }
   for (const DistanceCorrelation& c : report.correlations) {
     if (!IsKnown(c)) continue;
@@ -99,11 +132,11 @@ std::string SetAsTable(const SetReport& report) {
   }
   rows.push_back(
       {"noise by size", SizeInWords(report.sizes), std::to_string(report.sizes.num_pairs), "", ""});
-  rows.push_back(
-      {"noise",
-       fmt::format("sigma {} px, assumed {:g}", RangeText(report.sigma_px.value, report.sigma_px.interval),
-                   report.assumed_sigma_px),
-       std::to_string(report.num_answered), "", ""});
+  rows.push_back({"noise",
+                  fmt::format("sigma {} px, assumed {:g}: {}",
+                              RangeText(report.sigma_px.value, report.sigma_px.interval),
+                              report.assumed_sigma_px, VerdictName(report.sigma_verdict)),
+                  std::to_string(report.num_answered), "", ""});
   text += FormatColumns(rows);
   for (const std::string& advice : report.advice) text += "  -> " + advice + "\n";
   return text + "\n";
@@ -113,17 +146,26 @@ std::string SetAsTable(const SetReport& report) {
 
 std::string VerdictInWords(const TruthFreeTest& test) {
   const ComparedMedians& ratio = test.ratio;
+  const std::string range = RangeText(ratio.value, ratio.interval);
   switch (test.verdict) {
     case TruthFreeVerdict::kTooSmall:
-      return fmt::format("too small by {} in variance", RangeText(ratio.value, ratio.interval));
+      return fmt::format("too small by {} in variance; {}", range, CauseInWords(test.cause, true));
     case TruthFreeVerdict::kTooLarge:
       return fmt::format(
-          "too large by {} in variance",
-          RangeText(1.0 / ratio.value, {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower}));
+          "too large by {} in variance; {}",
+          RangeText(1.0 / ratio.value, {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower}),
+          CauseInWords(test.cause, false));
+    case TruthFreeVerdict::kUndecided:
+      if (std::isnan(test.units_needed)) return fmt::format("undecided: {}; it takes five at least", range);
+      if (test.units_needed > test.num_units)
+        return fmt::format("undecided: {}; some {:.2g} in place of {} would decide it", range,
+                           test.units_needed, test.num_units);
+      return fmt::format("undecided: {}; the same in simulation is {}", range,
+                         RangeText(test.in_simulation.value, test.in_simulation.interval));
     case TruthFreeVerdict::kNoData:
-      return NameOf(test.verdict);
+      return VerdictName(test.verdict);
     default:
-      return fmt::format("{}: {}", NameOf(test.verdict), RangeText(ratio.value, ratio.interval));
+      return fmt::format("{}: {}", VerdictName(test.verdict), range);
   }
 }
 
@@ -132,38 +174,46 @@ std::string ValidationAsTable(const std::vector<SetReport>& reports) {
   for (const SetReport& report : reports) text += SetAsTable(report);
   return text +
          fmt::format(
-             "Covariances against the differences of two halves of the matches (5 degrees of freedom), "
-             "the closure of rotations\n"
-             "around loops of images (3) and of directions around three (1): medians over those of "
-             "simulated twins (the same\n"
-             "matches at the estimated geometry with independent noise anew), or over the median of "
-             "chi-square where the twins'\n"
-             "are below it. 95 % intervals: bootstrap over pairs (loops), which share images, so that "
-             "they are too narrow. holds:\n"
-             "the whole interval within [1/{0:g}, {0:g}]. Correlations are beyond those of the twins; "
-             "nominal below {1:g}.\n"
-             "Camera faults: one step of self-calibration over all pairs of one camera, beside each "
-             "other; the five intervals\n"
-             "hold together in 95 % of sets, by the scatter of pairs. Nominal: {2}.\n"
+             "Covariances as they are stated against the differences of two halves of the matches (5 degrees "
+             "of freedom), the closure\n"
+             "of rotations around loops of images (3) and of directions around three (1): medians over that "
+             "of chi-square; 1 is right.\n"
+             "simulation: the answers to simulated twins (the same matches at the estimated geometry with "
+             "independent noise anew)\n"
+             "against the motion that they were made of; what is too small there is the estimator's own. "
+             "Intervals 95 %: bootstrap\n"
+             "over pairs or loops; those of coverage know which pairs share an image. holds: the whole "
+             "interval within [1/{0:g}, {0:g}],\n"
+             "and coverage accordingly. Correlations are beyond those of the twins; nominal below {1:g}.\n"
+             "Camera faults: self-calibration over all pairs of one camera, each beside the others; the "
+             "intervals of a set hold together\n"
+             "in 95 % of sets, by the scatter of pairs. One is named only if the test of all is rejected, "
+             "the "
+             "steps converge, and correcting\n"
+             "what is named leaves nothing. A readout time is asked of pairs that state seconds_between. "
+             "Nominal: {2}.\n"
              "Noise by size: slope of log r^2 on log noise^2 over that of the twins; nominal within "
              "{3:g} of one.\n",
              kNominalVariance, kNominalCorrelation, NominalFaults(), kNominalSlope);
 }
 
 std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
-  std::string text = "set,pairs,answered,test,value,lower,upper,n,coverage,twin_coverage,verdict\n";
+  std::string text = "set,pairs,answered,test,value,lower,upper,n,coverage,twin_coverage,verdict,cause\n";
   const auto row = [&](const SetReport& report, const std::string& test, double value,
                        const Interval& interval, double n, double coverage, double twin_coverage,
-                       const std::string& verdict) {
-    text += fmt::format("{},{},{},{},{},{},{},{:.0f},{},{},{}\n", CsvField(report.name), report.num_pairs,
+                       const std::string& verdict, const char* cause = "") {
+    text += fmt::format("{},{},{},{},{},{},{},{:.0f},{},{},{},{}\n", CsvField(report.name), report.num_pairs,
                         report.num_answered, test, CsvNumber(value), CsvFinite(interval.lower),
-                        CsvFinite(interval.upper), n, CsvNumber(coverage), CsvNumber(twin_coverage), verdict);
+                        CsvFinite(interval.upper), n, CsvNumber(coverage), CsvNumber(twin_coverage), verdict,
+                        cause);
   };
   const double none = std::nan("");
   for (const SetReport& report : reports) {
+    row(report, "covariances", none, {none, none}, report.num_answered, none, none,
+        VerdictName(report.covariances.verdict), CauseName(report.covariances.cause));
     for (const TruthFreeTest& test : report.tests) {
-      row(report, test.name, test.ratio.value, test.ratio.interval, test.num_values, test.coverage,
-          test.twin_coverage, NameOf(test.verdict));
+      row(report, test.name, test.ratio.value, test.ratio.interval, test.num_values, test.coverage.rate,
+          test.twin_coverage.rate, VerdictName(test.verdict), CauseName(test.cause));
     }
     for (const DistanceCorrelation& c : report.correlations) {
       row(report, CorrelationName(c), IsKnown(c) ? c.correlation - c.twin_correlation : none, c.difference,
@@ -176,9 +226,9 @@ std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
           report.calibration.num_pairs, none, none, FaultVerdict(fault.verdict));
     }
     row(report, "noise_by_size", report.sizes.slope.value, report.sizes.slope.interval,
-        report.sizes.num_pairs, none, none, NameOf(report.sizes.verdict));
+        report.sizes.num_pairs, none, none, VerdictName(report.sizes.verdict));
     row(report, "sigma_px", report.sigma_px.value, report.sigma_px.interval, report.num_answered, none, none,
-        "");
+        VerdictName(report.sigma_verdict));
   }
   return text;
 }
@@ -192,6 +242,9 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                   {"interval", interval_of(of.interval)},
                                   {"effective_pairs", JsonNumber(of.effective_n)}};
   };
+  const auto compared = [&](const ComparedMedians& of) {
+    return nlohmann::ordered_json{{"ratio", JsonNumber(of.value)}, {"interval", interval_of(of.interval)}};
+  };
   nlohmann::ordered_json json = {{"nominal_variance", kNominalVariance},
                                  {"nominal_correlation", kNominalCorrelation},
                                  {"sets", nlohmann::ordered_json::array()}};
@@ -203,6 +256,11 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                   {"assumed_sigma_px", JsonNumber(report.assumed_sigma_px)},
                                   {"sigma_px", JsonNumber(report.sigma_px.value)},
                                   {"sigma_px_interval", interval_of(report.sigma_px.interval)},
+                                  {"sigma_verdict", VerdictName(report.sigma_verdict)},
+                                  {"covariances",
+                                   {{"verdict", VerdictName(report.covariances.verdict)},
+                                    {"cause", CauseName(report.covariances.cause)},
+                                    {"tests", report.covariances.tests}}},
                                   {"tests", nlohmann::ordered_json::array()},
                                   {"correlations", nlohmann::ordered_json::array()},
                                   {"calibration",
@@ -214,17 +272,23 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                   {"noise_by_size",
                                    {{"pairs", report.sizes.num_pairs},
                                     {"slope", pooled(report.sizes.slope)},
-                                    {"verdict", NameOf(report.sizes.verdict)}}},
+                                    {"verdict", VerdictName(report.sizes.verdict)}}},
                                   {"advice", report.advice}};
     for (const TruthFreeTest& test : report.tests) {
       set["tests"].push_back({{"test", test.name},
                               {"degrees_of_freedom", test.degrees_of_freedom},
                               {"n", test.num_values},
-                              {"coverage", JsonNumber(test.coverage)},
-                              {"twin_coverage", JsonNumber(test.twin_coverage)},
+                              {"coverage", JsonNumber(test.coverage.rate)},
+                              {"coverage_interval", interval_of(test.coverage.interval)},
+                              {"twin_coverage", JsonNumber(test.twin_coverage.rate)},
                               {"ratio", JsonNumber(test.ratio.value)},
                               {"interval", interval_of(test.ratio.interval)},
-                              {"verdict", NameOf(test.verdict)}});
+                              {"in_simulation", compared(test.in_simulation)},
+                              {"against_twins", compared(test.against_twins)},
+                              {"verdict", VerdictName(test.verdict)},
+                              {"cause", CauseName(test.cause)},
+                              {"units", test.num_units},
+                              {"units_needed", JsonNumber(test.units_needed)}});
     }
     for (const DistanceCorrelation& c : report.correlations) {
       set["correlations"].push_back({{"from_px", c.from_px},

@@ -29,9 +29,20 @@ Faulty With(const Eigen::VectorXd& faults, const Scene& scene, const Eigen::Vect
   defects.distortion_k1 = faults(3);
   defects.rolling_shutter = faults(4);
   Faulty faulty{scene.camera1, scene.camera2, ImagedMatch(scene, defects, point)};
+  const auto distort = [&](const Camera& camera, Eigen::Vector2d* x_px) {
+    const Eigen::Vector3d ray = camera.Ray(*x_px);
+    const double x = ray.x(), y = ray.y(), r2 = x * x + y * y;
+    x_px->x() +=
+        camera.fx * (faults(8) * r2 * r2 * x + faults(9) * (r2 + 2 * x * x) + faults(10) * 2 * x * y);
+    x_px->y() +=
+        camera.fy * (faults(8) * r2 * r2 * y + faults(9) * 2 * x * y + faults(10) * (r2 + 2 * y * y));
+  };
+  distort(scene.camera1, &faulty.match.x1_px);
+  distort(scene.camera2, &faulty.match.x2_px);
+  faulty.match.x2_px += faults.segment<2>(5);
   for (Camera* camera : {&faulty.camera1, &faulty.camera2}) {
     camera->fx *= 1.0 + faults(0);
-    camera->fy *= 1.0 + faults(0);
+    camera->fy *= (1.0 + faults(0)) * (1.0 + faults(7));
     camera->cx += faults(1);
     camera->cy += faults(2);
   }
@@ -42,7 +53,7 @@ Faulty With(const Eigen::VectorXd& faults, const Scene& scene, const Eigen::Vect
 TEST(ResidualByFaults, IsTheDerivativeOfTheSimulatorsFaults) {
   const Scene scene = TwoCameraScene(12, 1);
   const RelativePose& pose = scene.cam2_from_cam1_true;
-  const Eigen::Matrix<double, kNumCameraFaults, 1> steps(1e-3, 0.1, 0.1, 1e-3, 1e-3);
+  const FaultVector steps{{1e-3, 0.1, 0.1, 1e-3, 1e-3, 0.1, 0.1, 1e-3, 1e-3, 1e-3, 1e-3}};
   for (const Eigen::Vector3d& point : scene.points_in_cam1) {
     const auto residual_at = [&](const Eigen::VectorXd& faults) {
       const auto [camera1, camera2, match] = With(faults, scene, point);
@@ -152,7 +163,7 @@ TEST(TestCalibration, HoldsItsLevel) {
     const std::vector<CalibrationReport> reports = ReportsOf(noise, 60, 20);
     EXPECT_LT(NumWrong(reports), 12) << noise.size();
     int num_found = 0;
-    for (const CameraFault fault : kCameraFaults) num_found += NumFound(reports, fault);
+    for (size_t j = 0; j < kNumNamedFaults; ++j) num_found += NumFound(reports, kCameraFaults[j]);
     EXPECT_LT(num_found, 12) << noise.size();
   }
 }
@@ -219,6 +230,8 @@ TEST(CalibrationAdvice, SaysWhatToAssumeInstead) {
        TruthFreeVerdict::kTooLarge,
        {}},
       {CameraFault::kPrincipalPointX, {3.0, 0.1, {2.5, 3.5}, 9.0}, {}, {}, TruthFreeVerdict::kTooLarge, {}}};
+  report.faults[0].correction = 0.01;
+  report.faults[1].correction = 3.0;
   const std::vector<std::string> advice = CalibrationAdvice(report);
   ASSERT_EQ(advice.size(), 2u);
   EXPECT_THAT(advice[0], testing::HasSubstr("fx, fy = 1000, 1000 in place of 1010, 1010"));

@@ -140,7 +140,7 @@ TEST(Validate, OfNoPairsHasNoData) {
   const SetReport report = Validate({"empty", {}}, *MakeEstimator("standard"), {1, 1});
   for (const TruthFreeTest& test : report.tests) EXPECT_EQ(test.verdict, TruthFreeVerdict::kNoData);
   EXPECT_THAT(ValidationAsTable({report}), testing::HasSubstr("no data"));
-  EXPECT_THAT(ValidationAsJson({report}), testing::HasSubstr("rcme validation 1"));
+  EXPECT_THAT(ValidationAsJson({report}), testing::HasSubstr("rcme validation 2"));
 }
 
 TEST(Validate, RealScenesNameTheirImages) {
