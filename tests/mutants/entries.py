@@ -1,11 +1,11 @@
-"""The lists of mutants: one TOML file a room, a table per source file, a line per mutant:
+"""The lists of mutants: TOML files, a table per source file, a line per mutant:
 
     ["stats/intervals.cc"]
     wilson_without_continuity = { was = 'text of the file', now = 'what it becomes', in = 'a unique text around it' }
 
 `was` stands once in the file, or once in the text `in`, which stands once in the file. It is a whole expression, or whole
 statements that end with ';' and declare nothing. `equivalent = 'why'` marks a mutant that no test can tell from the
-original.
+original. A mutant belongs to the innermost room that its file is in, whichever list it stands in.
 """
 
 import dataclasses
@@ -14,7 +14,12 @@ import tomllib
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 SOURCE = FOLDER.parents[1]
-ROOMS = ("stats", "simulator", "estimator", "peers", "experiments", "plots")
+FOLDERS = {  # of each room
+    "stats": "stats", "simulator": "simulator", "estimator": "estimator", "calibrated": "estimator/calibrated",
+    "robust_covariance": "estimator/robust_covariance", "peers": "peers", "experiments": "experiments",
+    "pieces": "experiments/pieces", "rare": "experiments/rare", "sequences": "experiments/sequences",
+    "truth_free": "experiments/truth_free", "plots": "plots", "python": "python"}
+ROOMS = tuple(FOLDERS)
 KEYS = {"was", "now", "in", "equivalent"}
 
 
@@ -45,8 +50,16 @@ def find_once(text, part, where):
     return text.index(part)
 
 
-def read_entry(room, file, source, name, entry):
-    where = f"tests/mutants/{room}.toml: {file}: {name}"
+def room_of(file):
+    """The innermost room that the file is in."""
+    rooms = [room for room, folder in FOLDERS.items() if file.startswith(folder + "/")]
+    return max(rooms, key=lambda room: len(FOLDERS[room]), default=None)
+
+
+def read_entry(list_name, file, source, name, entry):
+    where = f"tests/mutants/{list_name}: {file}: {name}"
+    if room_of(file) is None:
+        raise EntryError(f"{where}: the file is in none of the rooms {', '.join(ROOMS)}")
     if not isinstance(entry, dict) or not {"was", "now"} <= set(entry) <= KEYS:
         raise EntryError(f"{where}: give was and now, and in and equivalent where needed")
     if entry["was"] == entry["now"] or not entry["was"] or entry["was"] != entry["was"].strip():
@@ -55,25 +68,33 @@ def read_entry(room, file, source, name, entry):
         raise EntryError(f"{where}: was and now must both be expressions or both be statements")
     around = entry.get("in", entry["was"])
     begin = find_once(source, around, where) + find_once(around, entry["was"], where)
-    return Mutant(room, file, name, entry["was"], entry["now"], begin, entry.get("equivalent", ""))
+    return Mutant(room_of(file), file, name, entry["was"], entry["now"], begin, entry.get("equivalent", ""))
 
 
-def read_room(room, source_folder=SOURCE, lists_folder=FOLDER):
-    """The mutants of a room, in the order of its list."""
-    path = lists_folder / f"{room}.toml"
+def read_list(path, source_folder):
+    """The mutants of a list, in its order."""
     try:
-        tables = tomllib.loads(path.read_text()) if path.exists() else {}
+        tables = tomllib.loads(path.read_text())
     except tomllib.TOMLDecodeError as error:
-        raise EntryError(f"tests/mutants/{room}.toml: {error}") from error
-    mutants, names = [], set()
+        raise EntryError(f"tests/mutants/{path.name}: {error}") from error
+    mutants = []
     for file, entries in tables.items():
         try:
             source = (source_folder / file).read_text()
         except OSError as error:
-            raise EntryError(f"tests/mutants/{room}.toml: {file}: {error.strerror}") from error
-        for name, entry in entries.items():
-            if name in names:
-                raise EntryError(f"tests/mutants/{room}.toml: {file}: {name}: the name stands twice")
-            names.add(name)
-            mutants.append(read_entry(room, file, source, name, entry))
+            raise EntryError(f"tests/mutants/{path.name}: {file}: {error.strerror}") from error
+        mutants += [read_entry(path.name, file, source, name, entry) for name, entry in entries.items()]
+    return mutants
+
+
+def read_rooms(source_folder=SOURCE, lists_folder=FOLDER):
+    """The mutants of each room, in the order of the lists' names."""
+    mutants, names = {room: [] for room in ROOMS}, set()
+    for path in sorted(lists_folder.glob("*.toml")):
+        for mutant in read_list(path, source_folder):
+            if (mutant.room, mutant.name) in names:
+                raise EntryError(f"tests/mutants/{path.name}: {mutant.file}: {mutant.name}: the name stands twice in "
+                                 f"the room {mutant.room}")
+            names.add((mutant.room, mutant.name))
+            mutants[mutant.room].append(mutant)
     return mutants

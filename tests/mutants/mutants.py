@@ -126,11 +126,12 @@ def chosen(arguments, mutants, known):
 
 def main():
     arguments = parse_arguments()
-    all_mutants = {room: entries.read_room(room) for room in arguments.rooms}
+    every = entries.read_rooms()
+    all_mutants = {room: every[room] for room in arguments.rooms}
     if arguments.check:
         print(", ".join(f"{room} {len(mutants)}" for room, mutants in all_mutants.items()) + ": all fit their sources")
         return 0
-    numbers = numbers_of([mutant for room in entries.ROOMS for mutant in entries.read_room(room)])
+    numbers = numbers_of([mutant for mutants in every.values() for mutant in mutants])
     csv = entries.FOLDER / "results.csv"
     known = results.read_verdicts(csv)
     woven = {mutant: number for mutant, number in numbers.items() if mutant.room in arguments.rooms}

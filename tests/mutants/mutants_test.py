@@ -20,11 +20,12 @@ class Entries(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         self.folder = pathlib.Path(scratch.name)
-        (self.folder / "half.cc").write_text(SOURCE)
+        (self.folder / "stats").mkdir()
+        (self.folder / "stats/half.cc").write_text(SOURCE)
 
     def read(self, line):
-        (self.folder / "stats.toml").write_text('["half.cc"]\n' + line + "\n")
-        return entries.read_room("stats", self.folder, self.folder)
+        (self.folder / "stats.toml").write_text('["stats/half.cc"]\n' + line + "\n")
+        return entries.read_rooms(self.folder, self.folder)["stats"]
 
     def assert_refused(self, line, *parts):
         with self.assertRaises(entries.EntryError) as error:
@@ -33,8 +34,8 @@ class Entries(unittest.TestCase):
             self.assertIn(part, str(error.exception))
 
     def test_every_entry_of_every_room_fits_its_source(self):
-        for room in entries.ROOMS:
-            for mutant in entries.read_room(room):
+        for mutants in entries.read_rooms().values():
+            for mutant in mutants:
                 weave.weave((entries.SOURCE / mutant.file).read_text(), [(mutant, 0)])
 
     def test_an_entry_that_no_longer_fits_is_named(self):
@@ -44,6 +45,12 @@ class Entries(unittest.TestCase):
         self.assert_refused("half = { was = 'a + b' }", "half", "was and now")
         self.assert_refused("odd = { was = 'sum *= 0.5;', now = 'sum' }", "odd", "statements")
         self.assert_refused("open = { was = 'a", "stats.toml")
+
+    def test_the_room_is_the_innermost_that_the_file_is_in(self):
+        self.assertEqual(entries.room_of("estimator/ransac_loop.cc"), "estimator")
+        self.assertEqual(entries.room_of("estimator/calibrated/influence.cc"), "calibrated")
+        self.assertEqual(entries.room_of("experiments/truth_free/twin.cc"), "truth_free")
+        self.assertIsNone(entries.room_of("robot/pose_graph.cc"))
 
     def test_a_text_around_it_chooses_one_of_several(self):
         mutant, = self.read("exchanged = { was = 'sum', now = 'a', in = 'return sum' }")
