@@ -64,23 +64,24 @@ def build(rooms, tree):
     if not (folder / "build.ninja").exists():
         subprocess.run(["cmake", "--preset", "release", "-DRCME_BUILD_BENCHMARKS=OFF"], cwd=tree, check=True,
                        stdout=subprocess.DEVNULL)
-    programs = [program for room in rooms for program in room_tests.PROGRAMS.get(room, [])]
+    programs = {program for room in rooms for program in room_tests.programs_of(room)}
     if programs:
-        subprocess.run(["ninja", "-C", str(folder), "-j2", "-k0", *programs], check=True)
+        subprocess.run(["ninja", "-C", str(folder), "-j2", "-k0", *sorted(programs)], check=True)
     return folder
 
 
-def key_of(tests):
-    """Of the programs and files that the tests are in."""
+def key_of(tests, folder):
+    """Of the programs and files that the tests are in, and of the package that those of Python test."""
     digest = hashlib.sha256()
-    for program in sorted({test.program for test in tests}):
+    package = folder.glob("python/rcme/*.so") if any(test.program.endswith(".py") for test in tests) else []
+    for program in sorted({test.program for test in tests} | {str(path) for path in package}):
         digest.update(pathlib.Path(program).read_bytes())
     return digest.hexdigest()
 
 
 def traced_tests(room, folder, tree, jobs):
     tests = room_tests.tests_of(room, folder, tree)
-    path, key = tree.parent / f"trace_{room}.json", key_of(tests)
+    path, key = tree.parent / f"trace_{room}.json", key_of(tests, folder)
     traced = reach.load(key, path)
     if traced is None:
         print(f"{room}: {len(tests)} tests without a mutant ...", flush=True)
@@ -89,9 +90,9 @@ def traced_tests(room, folder, tree, jobs):
     return traced
 
 
-def judge_plot(mutant, tests, tree):
-    """Python is not woven: the text is changed for the time of the tests."""
-    path = tree / mutant.file
+def judge_text(mutant, tests, tree):
+    """Python is not woven: the text is changed for the time of the tests, of the package where it is built."""
+    path = tree / ("build/release" if mutant.room == "python" else "") / mutant.file
     original = path.read_text()
     try:
         path.write_text(original[:mutant.begin] + mutant.now + original[mutant.end:])
@@ -104,13 +105,14 @@ def judge_room(mutants, numbers, traced, tree, jobs):
     def judge_one(mutant):
         if mutant.equivalent:
             return judge.Verdict(mutant.room, mutant.file, mutant.name, "equivalent", mutant.equivalent)
-        if mutant.room == "plots":
-            return judge_plot(mutant, [test for test in traced if mutant.file in test.reached], tree)
+        if mutant.file.endswith(".py"):
+            return judge_text(mutant, [test for test in traced if mutant.file in test.reached], tree)
         number = numbers[mutant]
         return judge.judge(mutant, number, [test for test in traced if number in test.reached], tree)
 
     start, verdicts = time.monotonic(), []
-    with futures.ThreadPoolExecutor(1 if mutants[0].room == "plots" else jobs) as pool:
+    has_texts = any(mutant.file.endswith(".py") for mutant in mutants)
+    with futures.ThreadPoolExecutor(1 if has_texts else jobs) as pool:
         for verdict in pool.map(judge_one, mutants):
             verdicts.append(verdict)
             left_s = (time.monotonic() - start) / len(verdicts) * (len(mutants) - len(verdicts))

@@ -68,7 +68,7 @@ class Weaving(Entries):
                            "whole = { was = 'sum *= 0.5;', now = 'sum *= 1.0;' }")
         is_on = "::rcme::mutants::IsOn"
         self.assertIn(f"double sum = ({is_on}(0) ? (a - b) : (({is_on}(1) ? (b) : (a)) + b));", woven)
-        self.assertIn(f"if ({is_on}(2)) {{ sum *= 1.0; }} else {{ sum *= 0.5; }}", woven)
+        self.assertIn(f"{{ if ({is_on}(2)) {{ sum *= 1.0; }} else {{ sum *= 0.5; }} }}", woven)
         self.assertTrue(woven.startswith(weave.INCLUDE))
 
     def test_mutants_that_overlap_are_refused(self):

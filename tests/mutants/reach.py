@@ -9,14 +9,14 @@ import subprocess
 import tempfile
 from concurrent import futures
 
-from room_tests import Test, command_of, failure_of
+from room_tests import Test, command_of, environment_of, failure_of
 
 
 @dataclasses.dataclass(frozen=True)
 class TracedTest:
     test: Test
     cpu_s: float
-    reached: frozenset  # numbers of mutants; files of the room, for plots
+    reached: frozenset  # numbers of mutants; files of Python
 
 
 class BaselineError(Exception):
@@ -39,12 +39,20 @@ def imported_files(python_file, plots):
     return frozenset(f"plots/{path.relative_to(plots)}" for path in seen)
 
 
+def files_reached(test, tree):
+    """Files of Python that a mutant may be in: those of plots/ that the test imports, all of the package."""
+    if test.name:
+        return set()
+    if pathlib.Path(test.program).parent.name == "python":
+        return {str(path.relative_to(tree)) for path in (tree / "python/rcme").glob("*.py")}
+    return imported_files(test.program, tree / "plots")
+
+
 def trace_one(test, tree):
     with tempfile.TemporaryDirectory() as scratch:
         trace = pathlib.Path(scratch) / "reached"
         process = subprocess.Popen(command_of([test]), cwd=tree, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                   env=dict(os.environ, GLOG_minloglevel="3", RCME_MUTANT_TRACE=str(trace)),
-                                   text=True, errors="replace")
+                                   env=dict(environment_of(tree), RCME_MUTANT_TRACE=str(trace)), text=True, errors="replace")
         output = process.stdout.read()
         _, status, usage = os.wait4(process.pid, 0)
         code = os.waitstatus_to_exitcode(status)
@@ -52,10 +60,8 @@ def trace_one(test, tree):
             raise BaselineError(f"{test.program} {test.name} fails without any mutant: {failure_of(output, code)}\n"
                                 + output[-3000:])
         cpu_s = usage.ru_utime + usage.ru_stime
-        if not test.name:
-            return TracedTest(test, cpu_s, imported_files(test.program, tree / "plots"))
-        numbers = trace.read_text().split() if trace.exists() else []
-        return TracedTest(test, cpu_s, frozenset(int(number) for number in numbers))
+        reached = {int(number) for number in trace.read_text().split()} if trace.exists() else set()
+        return TracedTest(test, cpu_s, frozenset(reached | files_reached(test, tree)))
 
 
 def trace_tests(tests, tree, jobs):
@@ -64,7 +70,7 @@ def trace_tests(tests, tree, jobs):
 
 
 def save(traced, key, path):
-    rows = [[t.test.program, t.test.name, t.cpu_s, sorted(t.reached)] for t in traced]
+    rows = [[t.test.program, t.test.name, t.cpu_s, sorted(t.reached, key=str)] for t in traced]
     path.write_text(json.dumps({"key": key, "tests": rows}))
 
 

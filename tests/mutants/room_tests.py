@@ -1,21 +1,30 @@
 """The tests of a room: which there are, what each costs, and running some of them under one mutant."""
 
 import dataclasses
+import json
 import os
+import pathlib
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 
-# A room's mutants are to be caught by the room's own tests.
+from entries import FOLDERS
+
+# What is built for the mutants of a folder of the source tree; a room's mutants are to be caught by the room's own tests.
 PROGRAMS = {"stats": ["stats_test"], "simulator": ["simulator_test"], "estimator": ["estimator_test"],
-            "peers": ["peers_test"], "experiments": ["experiments_test", "end_to_end_test"]}
+            "peers": ["peers_test"], "experiments": ["experiments_test", "end_to_end_test"], "plots": [],
+            "python": ["rcme_python", "rcme"]}
+# Of a room within another: its tests beside those of its own folder.
+MORE_TESTS = {"calibrated": ["estimator/estimators/rcme_calibrated_test.cc"]}
+NOT_RUN = {"pip_test.py"}  # builds the package anew
 MAX_MEMORY_BYTES = 6 << 30
 
 
 @dataclasses.dataclass(frozen=True)
 class Test:
-    program: str  # a gtest program, or a Python file of tests/plots
+    program: str  # a gtest program, or a Python file of tests/plots or tests/python
     name: str     # of the test in its program; empty: the whole file
 
 
@@ -26,31 +35,46 @@ class Run:
     how: str = ""  # it ended, if not well: the failed test, "time limit", "signal 11"
 
 
-def gtest_names(program):
-    listing = subprocess.run([program, "--gtest_list_tests"], check=True, capture_output=True, text=True).stdout
-    names, suite = [], ""
-    for line in listing.splitlines():
-        if line.startswith("  "):
-            name = line.split("#")[0].strip()
-            if not name.startswith("DISABLED_"):
-                names.append(suite + name)
-        elif line.endswith(".") or "# TypeParam" in line:
-            suite = line.split("#")[0].strip()
-    return names
+def programs_of(room):
+    return PROGRAMS[FOLDERS[room].split("/")[0]]
+
+
+def gtest_tests(program):
+    """(name, source file) of each test that is not disabled."""
+    with tempfile.TemporaryDirectory() as scratch:
+        listing = pathlib.Path(scratch) / "tests.json"
+        subprocess.run([program, "--gtest_list_tests", f"--gtest_output=json:{listing}"], check=True, capture_output=True)
+        suites = json.loads(listing.read_text())["testsuites"]
+    return [(f"{suite['name']}.{test['name']}", test["file"]) for suite in suites for test in suite["testsuite"]
+            if not test["name"].startswith("DISABLED_")]
+
+
+def is_of_room(room, file):
+    """Whether a test's source belongs to the room: everything of a program, or of a room within another its own folder."""
+    folders = [FOLDERS[room], *MORE_TESTS.get(room, [])]
+    return "/" not in FOLDERS[room] or any(f"tests/{folder}" in file for folder in folders)
 
 
 def tests_of(room, build, tree):
-    if room == "plots":
-        return [Test(str(path), "") for path in sorted((tree / "tests/plots").glob("*_test.py"))]
-    programs = [str(build / "bin" / name) for name in PROGRAMS[room]]
-    return [Test(program, name) for program in programs for name in gtest_names(program)]
+    if room in ("plots", "python"):
+        return [Test(str(path), "") for path in sorted((tree / "tests" / room).glob("*_test.py"))
+                if path.name not in NOT_RUN]
+    programs = [str(build / "bin" / name) for name in programs_of(room)]
+    return [Test(program, name) for program in programs for name, file in gtest_tests(program) if is_of_room(room, file)]
 
 
 def command_of(tests):
     if not tests[0].name:
-        return [sys.executable, tests[0].program, "-f"]
+        return [sys.executable, "-B", tests[0].program, "-f"]
     return [tests[0].program, "--gtest_brief=1", "--gtest_fail_fast", "--gtest_color=no",
             "--gtest_filter=" + ":".join(test.name for test in tests)]
+
+
+def environment_of(tree):
+    """Of the package and the program that tests of Python use."""
+    build = pathlib.Path(tree) / "build/release"
+    return dict(os.environ, GLOG_minloglevel="3", PYTHONDONTWRITEBYTECODE="1", PYTHONPATH=str(build / "python"),
+                RCME=str(build / "bin/rcme"), RCME_BUILD_FOLDER=str(build))
 
 
 def failure_of(output, return_code):
@@ -72,8 +96,7 @@ def run_tests(tests, cwd, environment=None, max_cpu_s=None):
             resource.setrlimit(resource.RLIMIT_CPU, (int(max_cpu_s) + 1, int(max_cpu_s) + 3))
             resource.setrlimit(resource.RLIMIT_DATA, (MAX_MEMORY_BYTES, MAX_MEMORY_BYTES))
 
-    process = subprocess.Popen(command_of(tests), cwd=cwd, env=dict(os.environ, GLOG_minloglevel="3",
-                                                                    **(environment or {})),
+    process = subprocess.Popen(command_of(tests), cwd=cwd, env={**environment_of(cwd), **(environment or {})},
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
                                preexec_fn=limit, start_new_session=True)
     start = time.monotonic()

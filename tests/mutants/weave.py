@@ -14,7 +14,7 @@ INCLUDE = '#include "tests/mutants/selected_mutant.h"\n'
 def choice(mutant, number, original):
     is_on = f"::rcme::mutants::IsOn({number})"
     if mutant.was.endswith(";"):
-        return f"if ({is_on}) {{ {mutant.now} }} else {{ {original} }}"
+        return f"{{ if ({is_on}) {{ {mutant.now} }} else {{ {original} }} }}"
     return f"({is_on} ? ({mutant.now}) : ({original}))"
 
 
