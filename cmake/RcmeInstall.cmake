@@ -8,3 +8,4 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/rcmeConfigVersion.c
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/rcmeConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/rcmeConfigVersion.cmake
               cmake/RcmeDependencies.cmake
         DESTINATION ${RCME_CMAKE_DIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR})

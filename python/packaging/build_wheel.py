@@ -108,7 +108,7 @@ def write_wheel(path, files, project):
     info = f"{project['name']}-{project['version']}.dist-info"
     files = {**files, f"{info}/METADATA": metadata(project).encode(),
              f"{info}/WHEEL": (f"Wheel-Version: 1.0\nGenerator: rcme\nRoot-Is-Purelib: false\nTag: {tag()}\n").encode(),
-             f"{info}/LICENSE": (ROOT / "LICENSE").read_bytes()}
+             f"{info}/LICENSE": (ROOT / "LICENSE").read_bytes(), f"{info}/NOTICE": (ROOT / "NOTICE").read_bytes()}
     record = "".join(f"{name},sha256={hash_of(content)},{len(content)}\n" for name, content in files.items())
     files[f"{info}/RECORD"] = f"{record}{info}/RECORD,,\n".encode()
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
