@@ -100,17 +100,19 @@ def draw_faults(axes, sets):
 
 def draw_correlations(axes, sets):
     axes.axhline(0, color="0.6", linewidth=0.8)
+    handles = []
     for number, one_set in enumerate(sets):
         known = [c for c in one_set["correlations"] if c["difference_interval"][0] is not None]
         x = [math.sqrt(max(c["from_px"], 0.25) * c["to_px"]) * 1.03 ** number for c in known]
         y = [c["correlation"] - c["twin_correlation"] for c in known]
         error = [[max(v - c["difference_interval"][0], 0) for v, c in zip(y, known)],
                  [max(c["difference_interval"][1] - v, 0) for v, c in zip(y, known)]]
-        axes.errorbar(x, y, yerr=error, fmt="o-", markersize=3, linewidth=0.9, label=style.label_of(one_set["name"]))
+        handles.append(axes.errorbar(x, y, yerr=error, fmt="o-", markersize=3, linewidth=0.9,
+                                     label=style.label_of(one_set["name"])))
     number_log_axis(axes)
     axes.set_xlabel("distance of key points, px")
     axes.set_ylabel("correlation of residuals")
-    axes.legend(fontsize=style.font_size(6), frameon=False)
+    style.draw_legend(axes, handles, fontsize=style.font_size(6), frameon=False)
 
 
 def draw(validation):

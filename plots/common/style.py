@@ -234,6 +234,14 @@ def add_legend_and_caption(figure, handles, caption):
     figure.get_layout_engine().set(rect=(0, bottom, 1, top - bottom), w_pad=0.05, h_pad=0.04, wspace=0.03)
 
 
+def draw_legend(where, handles, **options):
+    """`where.legend(...)`, which leaves out what is labelled '_...': so may an estimator or a scene be called."""
+    legend = where.legend(handles, ["label"] * len(handles), **options)
+    for text, handle in zip(legend.get_texts(), handles):
+        text.set_text(handle.get_label())
+    return legend
+
+
 def add_legend(figure, handles):
     """At the upper edge, in as few rows as fit the width."""
     if sheet.current().width is not None:
@@ -242,7 +250,7 @@ def add_legend(figure, handles):
                                        fill(part, figure.get_figwidth() - 0.6, RC["legend.fontsize"])))
     for legend_rows in range(1, len(handles) + 1):
         columns = math.ceil(len(handles) / legend_rows)
-        legend = figure.legend(handles=handles, loc="upper center", ncols=columns, borderaxespad=0.2)
+        legend = draw_legend(figure, handles, loc="upper center", ncols=columns, borderaxespad=0.2)
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return legend
         legend.remove()

@@ -100,8 +100,8 @@ def figure_with_legend_beside(handles, width, height):
     figure.set_size_inches(whole, max(height, 0.8 + height_of(lines + 0.6 * len(handles), LEGEND_SIZE)))
     axes.get_gridspec().set_width_ratios([whole - 0.9 - width, width + 0.5])
     beside.set_axis_off()
-    beside.legend(handles=handles, loc="upper left", bbox_to_anchor=(0, 1), borderaxespad=0, fontsize=LEGEND_SIZE,
-                  labelspacing=0.6)
+    style.draw_legend(beside, handles, loc="upper left", bbox_to_anchor=(0, 1), borderaxespad=0, fontsize=LEGEND_SIZE,
+                      labelspacing=0.6)
     return figure, axes, []
 
 

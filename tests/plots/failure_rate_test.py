@@ -19,7 +19,8 @@ import failure_rate  # noqa: E402
 from common import style  # noqa: E402
 from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
-from common.summary_csv import read_summary, where  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+from common.summary_csv import read_summary, text_of_cell, where  # noqa: E402
 
 HEADER = "study,condition,outlier_ratio,sigma_px,estimator,quantity,kind,value,lower,upper,standard_error,n"
 # Rates and bounds with no relation to n: a script that recomputed any of them would be seen. Lines are not in order of
@@ -50,6 +51,23 @@ def band_of(axes, position):
     """The corners (x, y) of one interval band."""
     bands = [band for band in axes.collections if isinstance(band, PolyCollection)]
     return {tuple(corner) for path in bands[position].get_paths() for corner in path.vertices}
+
+
+class NameTest(unittest.TestCase):
+    """Names come from files."""
+
+    def test_a_label_that_begins_with_an_underscore_is_in_the_legend(self):
+        looks = style.looks_of(["standard", "_mine"])
+        handles = [Line2D([], [], **look.line()) for look in looks.values()]
+        figure, _ = style.new_figure(1, 1)
+        legend = style.draw_legend(figure, handles)
+        self.assertEqual([text.get_text() for text in legend.get_texts()], ["Standard", "_mine"])
+        self.assertEqual(len(legend.legendHandles), 2)
+
+    def test_a_text_that_no_spreadsheet_may_run_is_read_back(self):
+        cells = {"'=1+1": "=1+1", "''=1": "'=1", "'-x": "-x", "-0.5": "-0.5", "'quoted'": "'quoted'", "it's": "it's",
+                 "' @x": " @x", "'\uff1dx": "\uff1dx", "plain": "plain", "": ""}
+        self.assertEqual({cell: text_of_cell(cell) for cell in cells}, cells)
 
 
 class FailureRateTest(unittest.TestCase):
