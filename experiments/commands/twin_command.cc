@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 
+#include "experiments/base/file_name.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/estimator_source.h"
@@ -12,6 +14,7 @@
 #include "experiments/study/study_file.h"
 #include "experiments/truth_free/twin_output.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -37,7 +40,8 @@ TwinPlaces PlacesOf(const std::filesystem::path& out, const std::string& scene) 
     stem.replace_extension();
     return {out, stem.string() + "_simulated.yaml", stem.string() + "_pairs"};
   }
-  return {out / (scene + ".yaml"), out / (scene + "_simulated.yaml"), out / (scene + "_pairs")};
+  const std::string name = MakeFileName(scene);
+  return {out / (name + ".yaml"), out / (name + "_simulated.yaml"), out / (name + "_pairs")};
 }
 
 void WriteTemplates(const TwinSource& source, const std::filesystem::path& folder) {
@@ -95,6 +99,12 @@ void RunTwin(const TwinArguments& arguments) {
     CheckCanBeWritten(arguments.out);
   else
     MakeResultFolder(arguments.out);
+  std::set<std::string> file_names;
+  for (const auto& [scene, data] : scenes) {
+    if (!file_names.insert(MakeFileName(scene)).second)
+      throw InputError(
+          fmt::format("scene {}: its files would be those of another scene; give --scene", Quoted(scene)));
+  }
   std::vector<TwinReport> reports;
   for (const auto& [scene, data] : scenes) {
     const auto seed = static_cast<std::uint64_t>(arguments.seed);

@@ -80,6 +80,24 @@ TEST_F(TwinProgram, OfOneSceneWritesOneStudy) {
   EXPECT_TRUE(std::filesystem::exists(folder_.Path("b_pairs")));
 }
 
+// A match file of somebody's may call its scene what it likes.
+TEST_F(TwinProgram, WritesNothingOutsideItsFolder) {
+  TempFolder theirs;
+  const std::string out = folder_.Path("twins");
+  theirs.Write("a.csv", "# scene: ../escaped\n" + MatchHeader() + TruePoseHeader() + NoisyRows(1));
+  theirs.Write("b.csv", "# scene: " + folder_.Path("absolute") + "\n" + MatchHeader() + TruePoseHeader() +
+                            NoisyRows(2));
+  const ProgramResult result = RunRcme({"twin", theirs.path(), "--out", out, "--twins", "1"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(out + "/_.._escaped.yaml"));
+  size_t num_entries = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) num_entries += entry.exists();
+  EXPECT_EQ(num_entries, 1u) << "something lies beside " << out;
+  theirs.Write("b.csv", "# scene: .. escaped\n" + MatchHeader() + TruePoseHeader() + NoisyRows(2));
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"twin", theirs.path(), "--out", out, "--twins", "1"}), {"scene", "another scene"}));
+}
+
 TEST_F(TwinProgram, SaysWhatIsWrong) {
   const auto call = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"twin", pairs_.path(), "--twins", "1"};
