@@ -9,10 +9,16 @@ namespace {
 
 constexpr size_t kMaxQuotedBytes = 200;
 
-// C0, DEL and, in two bytes, C1, of which some terminals make commands.
+// C0, DEL and, in two bytes, C1, of which some terminals make commands. In three bytes U+2028 to U+202E (line
+// and paragraph separators, embeddings and overrides of the direction of writing) and U+2066 to U+2069 (its
+// isolates).
 bool IsControl(std::string_view character) {
-  const auto lead = static_cast<unsigned char>(character[0]);
-  return lead < 0x20 || lead == 0x7F || (lead == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0);
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(character[i]); };
+  if (byte(0) < 0x20 || byte(0) == 0x7F) return true;
+  if (byte(0) == 0xC2) return byte(1) < 0xA0;
+  if (byte(0) != 0xE2) return false;
+  return (byte(1) == 0x80 && byte(2) >= 0xA8 && byte(2) <= 0xAE) ||
+         (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9);
 }
 
 // The first byte of a character that is cut in two begins a character of the part behind.
@@ -54,6 +60,10 @@ size_t FindNotPlain(std::string_view text) {
     at += length;
   }
   return std::string_view::npos;
+}
+
+size_t FindNotInLine(std::string_view text) {
+  return std::min(FindNotPlain(text), text.find_first_of("\t\n"));
 }
 
 std::string Printable(std::string_view text, size_t max_bytes) {

@@ -10,7 +10,7 @@ program. Colours and lines between settings are interpolated.
 
 import sys
 
-from common.command_line import FigureParser, PlotError, check_figure_path, draw_figures
+from common.command_line import FigureParser, PlotError, check_figure_path, draw_figures, printable
 from tuning_figures.front import draw_front
 from tuning_figures.roc import draw_roc
 from tuning_figures.surface import draw_surface
@@ -46,7 +46,7 @@ def draw_surface_if_possible(tune, where):
     except PlotError as error:
         if where:
             raise
-        print(f"tune.py: no surface: {error}", file=sys.stderr)
+        print(f"tune.py: no surface: {printable(str(error))}", file=sys.stderr)
         return {}
 
 

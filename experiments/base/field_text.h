@@ -2,13 +2,18 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace rcme {
 
 // Names and numbers as the result files hold them; what is not known is an empty field, or null.
 
-// Quoted where it has to be.
+// Quoted where it has to be. A text that a spreadsheet would take for a formula (one that begins with =, +,
+// -, @ and is no number) gets an apostrophe in front, as OWASP's page "CSV Injection" says.
 std::string CsvField(const std::string& text);
+// The fields of a line as CsvField wrote them, each as it was.
+std::vector<std::string> CsvFields(std::string_view line);
 // Eight digits; empty for NaN.
 std::string CsvNumber(double x);
 // The same, empty for infinite ones too.

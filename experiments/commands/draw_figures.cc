@@ -18,8 +18,10 @@ namespace rcme {
 namespace {
 
 // Whether a Python has what the scripts need, without the second that loading it would take.
+// `python -c` looks for modules in the working directory first, where files of others may lie: not here.
 constexpr const char* kHasPackages =
-    "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('matplotlib', 'pandas'))))";
+    "import sys; sys.path = [p for p in sys.path if p]; import importlib.util as u; "
+    "sys.exit(not all(map(u.find_spec, ('matplotlib', 'pandas'))))";
 
 std::string FindScript(const std::string& kind) {
   const std::string folder = PathOf(SharedFolder::kPlots);

@@ -222,7 +222,7 @@ bool HasColumnsFirst(const std::vector<std::string>& fields) {
 std::string SceneFrom(const Header& header) {
   if (!header.Has("scene")) return MatchFile().scene;
   const std::string scene = header.Text("scene");
-  if (FindNotPlain(scene) != std::string::npos)
+  if (FindNotInLine(scene) != std::string::npos)
     header.Fail("scene",
                 fmt::format("{} is not allowed; give UTF-8 without control characters", Quoted(scene)));
   if (scene.size() > kMaxSceneBytes)

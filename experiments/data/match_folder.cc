@@ -8,8 +8,8 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <sstream>
 
+#include "experiments/base/field_text.h"
 #include "experiments/data/gzip_lines.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -23,25 +23,17 @@ namespace fs = std::filesystem;
 constexpr size_t kMaxPairs = 100'000;
 constexpr size_t kMaxMatches = 10'000'000;
 
-std::vector<std::string> Fields(std::string_view line) {
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  std::vector<std::string> fields;
-  std::string field;
-  for (std::istringstream row{std::string(line)}; std::getline(row, field, ',');) fields.push_back(field);
-  return fields;
-}
-
 // Adds the pairs of `ids` whose true direction the index calls weak.
 void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<std::string>* weak) {
   GzipLines lines(index.string(), {"index", "an index of pairs"});
   std::string_view line;
   if (!lines.Next(&line)) return;
-  const std::vector<std::string> names = Fields(line);
+  const std::vector<std::string> names = CsvFields(line);
   const auto id = static_cast<size_t>(std::ranges::find(names, "pair_id") - names.begin());
   const auto is_weak = static_cast<size_t>(std::ranges::find(names, "t_gt_weak") - names.begin());
   if (id == names.size() || is_weak == names.size()) return;
   while (lines.Next(&line)) {
-    const std::vector<std::string> fields = Fields(line);
+    const std::vector<std::string> fields = CsvFields(line);
     if (fields.size() > std::max(id, is_weak) && fields[is_weak] == "1" && ids.count(fields[id]) > 0)
       weak->insert(fields[id]);
   }
@@ -113,7 +105,7 @@ std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (name == "INDEX.csv" || !(name.ends_with(".csv") || name.ends_with(".csv.gz"))) continue;
-    if (FindNotPlain(name) != std::string::npos) {
+    if (FindNotInLine(name) != std::string::npos) {
       throw InputError(
           fmt::format("folder: '{}' holds {}; give the file a name of UTF-8 without control characters",
                       folder, Quoted(name)));

@@ -9,6 +9,7 @@
 #include "experiments/result_file/checksum.h"
 #include "experiments/result_file/database.h"
 #include "experiments/result_file/schema.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -108,6 +109,34 @@ class RunValues {
   std::map<std::string, std::string> values_;
 };
 
+// Whoever made the file, nothing of it is a command to a terminal, and no name is of two lines.
+void CheckTexts(const RunDescription& run) {
+  const auto check_line = [](const std::string& text, const char* table) {
+    if (FindNotInLine(text) != std::string::npos)
+      throw Damage(fmt::format("table {} has a name with control characters: {}", table, Quoted(text)));
+  };
+  for (const std::string* text : {&run.study, &run.stopping_rule, &run.until_options, &run.shard,
+                                  &run.origin.program, &run.origin.instruction_set})
+    check_line(*text, "run");
+  for (const std::string& factor : run.factors) check_line(factor, "factors");
+  for (const DescribedCondition& condition : run.conditions) {
+    for (const std::string& level : condition.levels) check_line(level, "levels");
+  }
+  for (const DescribedEstimator& estimator : run.estimators) {
+    for (const std::string* text : {&estimator.label, &estimator.name, &estimator.effort})
+      check_line(*text, "estimators");
+  }
+  const auto check_text = [](const std::string& text, const char* table) {
+    if (FindNotPlain(text) != std::string::npos)
+      throw Damage(fmt::format("table {} has a text with control characters: {}", table, Quoted(text)));
+  };
+  check_text(run.description, "run");
+  for (const auto& [key, text] : run.ademp) check_text(text, "run");
+  for (const DescribedEstimator& estimator : run.estimators) {
+    for (const auto& [name, value] : estimator.options) check_text(name + value, "options");
+  }
+}
+
 RunDescription ReadRun(SQLite::Database& database) {
   const RunValues values(database);
   RunDescription run;
@@ -195,6 +224,7 @@ RunDescription ReadDescription(SQLite::Database& database) {
   });
   ReadLevels(database, &run);
   ReadOptions(database, &run);
+  CheckTexts(run);
   return run;
 }
 

@@ -91,13 +91,18 @@ def check_folder(out):
         raise PlotError(f"--out {out}: there is no folder {folder}.")
 
 
+def printable(text):
+    """With escapes in place of what a terminal would not show as it is: names come from files."""
+    return "".join(c if c.isprintable() or c == "\n" else ascii(c)[1:-1] for c in text)
+
+
 def run(name, make, arguments):
     """The exit code of a script: `make(arguments)` writes and returns the paths, which are printed; what the user can put
     right is one line on standard error."""
     try:
         written = make(arguments)
     except PlotError as error:
-        print(f"{name}: {error}", file=sys.stderr)
+        print(f"{name}: {printable(str(error))}", file=sys.stderr)
         return 2
     except OSError as error:
         print(f"{name}: cannot write {error.filename or 'the output'}: {error.strerror}.", file=sys.stderr)

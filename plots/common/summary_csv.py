@@ -7,16 +7,23 @@ One row per (condition, estimator, quantity):
 
 import csv
 import math
+import re
 
 import pandas
 
 from common.command_line import PlotError
 
+MARKED = re.compile("^'(?=[' ]*[=+\\-@\t\r\uff1d\uff0b\uff0d\uff20])")
 COLUMNS = ("study", "condition", "estimator", "quantity", "kind", "value", "lower", "upper", "standard_error", "n")
 
 
 COMPARISON_COLUMNS = ("study", "condition", "estimator", "reference", "event", "n", "both", "estimator_only",
                       "reference_only", "neither", "risk_difference", "lower", "upper", "p_mcnemar", "p_holm")
+
+
+def text_of_cell(cell):
+    """The text that the program wrote: one that a spreadsheet would take for a formula has an apostrophe in front."""
+    return MARKED.sub("", cell)
 
 
 class Table:
@@ -61,7 +68,7 @@ def read_table(path, columns, origin):
                             "is the file cut off?")
     if not lines:
         raise PlotError(f"{path}: has a header but no rows.")
-    rows = pandas.DataFrame([row for row, _ in lines], columns=header, dtype=str)
+    rows = pandas.DataFrame([list(map(text_of_cell, row)) for row, _ in lines], columns=header, dtype=str)
     rows["line"] = [line for _, line in lines]
     return Table(path, rows)
 

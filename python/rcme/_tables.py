@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -12,6 +13,7 @@ import pandas
 from rcme import _check, _rcme
 from rcme._study import Estimator, Study, add_estimators, alone, source_of
 
+_MARKED = re.compile("^'(?=[' ]*[=+\\-@\t\r\uff1d\uff0b\uff0d\uff20])")
 AUDIT_COLUMNS = ["claim", "family", "reading", "claim_verdict", "conditions", "quantity", "kind", "nominal", "low", "high",
                  "value", "lower", "upper", "n", "verdict", "side"]
 
@@ -78,7 +80,7 @@ def reliability(run: str, *, by: Optional[str] = None) -> dict[str, Any]:
 
 def audit(study: Optional[Study] = None, *, estimators: Optional[Mapping[str, Estimator]] = None,
           only: Union[str, Sequence[str], None] = None, budget: str = "quick", seed: Optional[int] = None,
-          overrides: Optional[Mapping[str, Any]] = None, threads: int = 0) -> pandas.DataFrame:
+          overrides: Optional[Mapping[str, Any]] = None, threads: int = 0, allow_process: bool = False) -> pandas.DataFrame:
     """Checks claims: without a study every claim of the paper on built-in scenes (minutes), with one the claims about
     calibration on its scene, cameras, noise, outliers and estimators, in each of its conditions; `rcme audit`.
 
@@ -88,7 +90,7 @@ def audit(study: Optional[Study] = None, *, estimators: Optional[Mapping[str, Es
     estimators : as for `run`; with a study only. Do the covariances of a function of yours hold?
     only : ids of claims or of families, such as "estimator"; default: all
     budget : "quick" or "full"
-    seed, overrides, threads : as for `run`; overrides with a study only
+    seed, overrides, threads, allow_process : as for `run`; overrides with a study only
 
     Returns
     -------
@@ -103,7 +105,7 @@ def audit(study: Optional[Study] = None, *, estimators: Optional[Mapping[str, Es
     """
     if study is None and (estimators or overrides):
         raise ValueError("study: None is not allowed with estimators or overrides; expected a study file or a dict")
-    source = source_of(study, overrides, seed=seed)
+    source = source_of(study, overrides, seed=seed, allow_process=allow_process)
     functions = add_estimators(source, estimators)
     wanted = [] if only is None else _check.texts("only", only, "the id of a claim or of a family")
     is_full = _check.one_of("budget", budget, ("quick", "full")) == "full"
@@ -114,7 +116,13 @@ def audit(study: Optional[Study] = None, *, estimators: Optional[Mapping[str, Es
 
 
 def _frame(csv: str) -> pandas.DataFrame:
-    return pandas.read_csv(io.StringIO(csv), dtype={"study": str, "estimator": str}, keep_default_na=False, na_values=[""])
+    frame = pandas.read_csv(io.StringIO(csv), dtype={"study": str, "estimator": str}, keep_default_na=False, na_values=[""])
+    return frame.apply(lambda column: column.map(_text_of_cell) if column.dtype == object else column)
+
+
+def _text_of_cell(cell: Any) -> Any:
+    """Without the apostrophe that keeps spreadsheets from taking a text for a formula."""
+    return _MARKED.sub("", cell) if isinstance(cell, str) else cell
 
 
 def _audit_rows(file: dict[str, Any]) -> list[dict[str, Any]]:

@@ -20,6 +20,23 @@ TEST(FindNotPlain, FindsControlCharactersAndWhatIsNotUtf8) {
   EXPECT_EQ(FindNotPlain("a\xE2\x82"), 1u);  // cut off
 }
 
+// U+202E turns the direction of what follows: a command that is shown so looks like another.
+TEST(FindNotPlain, FindsWhatTurnsTheDirectionOfWriting) {
+  for (const char* control : {"\xE2\x80\xA8", "\xE2\x80\xAE", "\xE2\x81\xA6", "\xE2\x81\xA9"})
+    EXPECT_EQ(FindNotPlain(std::string("ab") + control), 2u) << Printable(control);
+  EXPECT_EQ(FindNotPlain("\xE2\x80\xA7\xE2\x80\xAF\xE2\x81\xA5\xE2\x81\xAA\xE2\x82\xAC"), std::string::npos);
+  EXPECT_EQ(Printable("a\xE2\x80\xAE"
+                      "b"),
+            "a\\xE2\\x80\\xAEb");
+}
+
+TEST(FindNotInLine, FindsTabsAndLineEndsToo) {
+  EXPECT_EQ(FindNotInLine("a b"), std::string::npos);
+  EXPECT_EQ(FindNotInLine("a\tb"), 1u);
+  EXPECT_EQ(FindNotInLine("ab\n"), 2u);
+  EXPECT_EQ(FindNotInLine("a\x1B\n"), 1u);
+}
+
 TEST(Printable, Escapes) {
   EXPECT_EQ(Printable("caf\xC3\xA9 'x'"), "caf\xC3\xA9 'x'");
   EXPECT_EQ(Printable("a\x1B[31m\r\n\tb"), "a\\x1B[31m\\x0D\\n\\x09b");

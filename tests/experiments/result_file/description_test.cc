@@ -79,6 +79,30 @@ TEST_F(Description, ResultsOfUnknownEstimatorsAreRead) {
   EXPECT_TRUE(ThrowsInputError([&] { store.Plan(); }, {path_}));
 }
 
+// A result file of somebody's: its checksums are right, and its names would clear the screen.
+TEST_F(Description, NamesWithControlCharactersAreRefused) {
+  const auto refuses = [&](const std::function<void(RunDescription*)>& change) {
+    RunDescription run = Describe(MakePlan(SmallStudy()));
+    change(&run);
+    std::filesystem::remove(path_);
+    ResultStore::Create(path_, run);
+    return ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, {path_, "control characters"});
+  };
+  for (const std::string text : {"a\x1B[2Jb", "a\nb", "a\tb",
+                                 "a\xC2\x9B"
+                                 "b",
+                                 "a\xE9"}) {
+    EXPECT_TRUE(refuses([&](RunDescription* run) { run->study = text; }));
+    EXPECT_TRUE(refuses([&](RunDescription* run) { run->factors[0] = text; }));
+    EXPECT_TRUE(refuses([&](RunDescription* run) { run->conditions[1].levels[0] = text; }));
+    EXPECT_TRUE(refuses([&](RunDescription* run) { run->estimators[1].label = text; }));
+    EXPECT_TRUE(refuses([&](RunDescription* run) { run->estimators[1].effort = text; }));
+    EXPECT_TRUE(refuses([&](RunDescription* run) { run->origin.program = text; }));
+  }
+  EXPECT_TRUE(refuses([](RunDescription* run) { run->description = "a\x1B[2Jb"; }));
+  EXPECT_FALSE(refuses([](RunDescription* run) { run->description = "two\nlines"; }));
+}
+
 TEST_F(Description, TheFolderOfRealPairsIsNotNeeded) {
   const std::string pairs = folder_.Path("pairs");
   std::filesystem::create_directory(pairs);

@@ -127,9 +127,9 @@ TEST(EstimatorFileText, RoundTrip) {
 TEST(EstimatorFileText, RoundTripOfAwkwardText) {
   EstimatorSpec spec = ParseEstimatorFile(TunedYaml(), "tuned.yaml");
   const std::vector<std::string> texts = {
-      "a: b, \"c\" #d \xC3\xA4\n- e", "~", "", " x", "1.0", "{a: b}", "---"};
+      "a: b, \"c\" #d \xC3\xA4 - e", "~", "", " x", "1.0", "{a: b}", "---"};
   Provenance provenance;
-  for (const std::string& text : texts) provenance.emplace_back("key " + text, text);
+  for (const std::string& text : texts) provenance.emplace_back("key " + text, text + "\n- two lines");
   for (const std::string& text : texts) {
     spec.label = text.empty() ? "null" : text;
     ExpectSame(ParseEstimatorFile(EstimatorFileText(spec, provenance), "again.yaml"), spec);

@@ -105,8 +105,8 @@ TEST(ToYaml, RoundTrip) {
 
 TEST(ToYaml, RoundTripOfAwkwardText) {
   Study study = SmallStudy();
-  study.name = "a: b, \"c\" #d \xC3\xA4\n- e";
-  study.description = "1.0";
+  study.name = "a: b, \"c\" #d \xC3\xA4 - e";
+  study.description = "1.0\n- e";
   study.estimators[0].label = "~";
   study.estimators[1].label = " x,\"y\" ";
   const std::string text = ToYaml(study);
@@ -189,6 +189,21 @@ TEST(ParseStudyErrors, ValuesThatAreNotAllowed) {
                       {":10:", "max_rotation_error_deg", "'-3'", "a number in [0, 180]"}));
   EXPECT_TRUE(Refuses(SmallStudyYaml() + "failure:\n  max_rotation_error_deg: .nan\n",
                       {":11:", "max_rotation_error_deg", "a number in [0, 180]"}));
+}
+
+// They are cells of tables, lines of legends and columns of CSV files.
+TEST(ParseStudyErrors, NamesOfMoreThanOneLine) {
+  for (const std::string text :
+       {"\"a\\nb\"", "\"a\\tb\"", "\"a\\rb\"", "\"a\\eb\"", "\"a\\u202Eb\"", "\"a\\u2028b\""}) {
+    EXPECT_TRUE(Refuses(Edited("name: small", "name: " + text), {"bad.yaml:1: name", "is not allowed"}))
+        << text;
+    EXPECT_TRUE(Refuses(Edited("label: ours", "label: " + text), {"bad.yaml:9: label", "is not allowed"}))
+        << text;
+    EXPECT_TRUE(
+        Refuses(Edited("[0.0, 0.3]", "[0.0, " + text + "]"), {"bad.yaml:6: outlier_ratio", "is not allowed"}))
+        << text;
+  }
+  EXPECT_EQ(ParseStudy(Edited("label: ours", "label: =_1+1"), "small.yaml").estimators[1].label, "=_1+1");
 }
 
 TEST(ParseStudyErrors, OptionsThatContradictEachOther) {
