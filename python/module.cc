@@ -24,6 +24,7 @@
 #include "experiments/claims/study_claims.h"
 #include "experiments/data/match_file.h"
 #include "experiments/run/run_study.h"
+#include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/answer_check.h"
@@ -90,9 +91,11 @@ Camera CameraOf(const std::array<double, 4>& k, int width, int height) {
 
 py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
                   double sigma_px, std::vector<double> noise_scale, const std::string& name,
-                  const std::string& file, const Settings& options, std::uint64_t seed) {
-  EstimatorSpec spec = file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file);
-  SetOptions(&spec, options);
+                  const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process) {
+  std::vector<EstimatorSpec> specs = {file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file)};
+  if (allow_process) AllowCommands(&specs);
+  EstimatorSpec& spec = specs.front();
+  SetOwnOptions(&spec, options);
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
   MotionProblem problem{{}, camera1, camera2, sigma_px, std::move(noise_scale)};
   for (py::ssize_t i = 0; i < x1.shape(0); ++i)
@@ -114,6 +117,7 @@ struct StudySource {
   Settings overrides;
   std::int64_t seed = -1, trials = 0;  // the study's own
   std::vector<EstimatorSpec> added;
+  bool allow_process = false;  // the commands of the study and of estimator files (command_permission.h)
   std::string Name() const { return path.empty() ? "study" : path; }
 };
 
@@ -129,10 +133,13 @@ Study StudyFrom(const StudySource& source) {
   for (const auto& [key, value] : source.overrides) Override(&study, key, value);
   if (source.seed >= 0) study.seed = static_cast<std::uint64_t>(source.seed);
   if (source.trials > 0) study.trials = static_cast<int>(source.trials);
+  if (source.allow_process) AllowCommands(&study.estimators);
   return study;
 }
 
-StudyPlan PlanFrom(const StudySource& source) { return PlanOf(StudyFrom(source), source.Name()); }
+StudyPlan PlanFrom(const StudySource& source, PlanEstimators estimators) {
+  return PlanOf(StudyFrom(source), source.Name(), estimators);
+}
 
 py::dict LevelsOf(const StudyPlan& plan, const Condition& condition) {
   py::dict levels;
@@ -142,7 +149,7 @@ py::dict LevelsOf(const StudyPlan& plan, const Condition& condition) {
 }
 
 py::list Conditions(const StudySource& source) {
-  const StudyPlan plan = PlanFrom(source);
+  const StudyPlan plan = PlanFrom(source, PlanEstimators::kNotMade);
   py::list rows;
   for (const Condition& condition : plan.conditions) {
     py::dict row("condition"_a = condition.index);
@@ -167,7 +174,7 @@ py::dict TruthOf(const TrialData& data) {
 }
 
 py::dict Simulate(const StudySource& source, std::int64_t condition_index, std::int64_t trial) {
-  const StudyPlan plan = PlanFrom(source);
+  const StudyPlan plan = PlanFrom(source, PlanEstimators::kNotMade);
   if (condition_index >= static_cast<std::int64_t>(plan.conditions.size())) {
     throw InputError(fmt::format("condition: {} is not allowed; the study has conditions 0 to {}",
                                  condition_index, plan.conditions.size() - 1));
@@ -219,7 +226,7 @@ StudySource WithFunctions(StudySource source, const Functions& functions) {
 
 py::dict Run(const StudySource& source, const Functions& functions, int threads, const std::string& out) {
   const FunctionsOfRun of_run(FunctionsIn(functions));
-  const StudyPlan plan = PlanFrom(WithFunctions(source, functions));
+  const StudyPlan plan = PlanFrom(WithFunctions(source, functions), PlanEstimators::kMade);
   const RunReport report = Stoppable([&] {
     ResultStore store = ResultStore::OpenForRun(out, plan);
     return RunStudy(plan, threads, &store);
@@ -309,8 +316,9 @@ py::list Estimators() {
 void AddStudySource(py::module_& module) {
   py::class_<StudySource>(module, "StudySource")
       .def(py::init([](const std::string& path, const std::string& text, const Settings& overrides,
-                       std::int64_t seed,
-                       std::int64_t trials) { return StudySource{path, text, overrides, seed, trials, {}}; }))
+                       std::int64_t seed, std::int64_t trials, bool allow_process) {
+        return StudySource{path, text, overrides, seed, trials, {}, allow_process};
+      }))
       .def("add_estimator",
            [](StudySource& source, const std::string& label, const std::string& name,
               const Settings& options) {

@@ -29,8 +29,12 @@ void CheckIsUtf8(std::string_view text, const std::string& path) {
 
 }  // namespace
 
+std::string Place::Text(const YAML::Mark& mark) const {
+  return fmt::format("{}:{}", path_, std::max(mark.line, 0) + 1);
+}
+
 void Place::Fail(const YAML::Mark& mark, const std::string& what) const {
-  throw InputError(fmt::format("{}:{}: {}", path_, std::max(mark.line, 0) + 1, what));
+  throw InputError(fmt::format("{}: {}", Text(mark), what));
 }
 
 void Place::Fail(const YAML::Node& node, const std::string& what) const { Fail(node.Mark(), what); }
@@ -45,8 +49,17 @@ std::string Scalar(const Place& place, const YAML::Node& node, const std::string
   return node.Scalar();
 }
 
+std::string Line(const Place& place, const YAML::Node& node, const std::string& key) {
+  const std::string line = Scalar(place, node, key);
+  if (FindNotInLine(line) != std::string::npos) {
+    place.Fail(node,
+               fmt::format("{}: {} is not allowed; give one line of text without tabs", key, Quoted(line)));
+  }
+  return line;
+}
+
 std::string Name(const Place& place, const YAML::Node& node, const std::string& key) {
-  const std::string name = Scalar(place, node, key);
+  const std::string name = Line(place, node, key);
   if (name.size() > kMaxNameBytes) {
     place.Fail(node, fmt::format("{}: {} is too long; at most {} bytes are allowed", key, Quoted(name),
                                  kMaxNameBytes));

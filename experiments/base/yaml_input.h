@@ -18,6 +18,9 @@ class Place {
  public:
   explicit Place(std::string path) : path_(std::move(path)) {}
   const std::string& path() const { return path_; }
+  // "file:line".
+  std::string Text(const YAML::Mark& mark) const;
+  std::string Text(const YAML::Node& node) const { return Text(node.Mark()); }
   [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& what) const;
   [[noreturn]] void Fail(const YAML::Node& node, const std::string& what) const;
   // Runs `action`; an InputError from it gets file and line.
@@ -37,7 +40,10 @@ class Place {
 // The text of a node that is one value, without control characters.
 std::string Scalar(const Place& place, const YAML::Node& node, const std::string& key);
 
-// A text of at most 200 bytes: tables, figures and pages show it.
+// The same without tabs and line ends.
+std::string Line(const Place& place, const YAML::Node& node, const std::string& key);
+
+// A line of at most 200 bytes: tables, figures and pages show it.
 std::string Name(const Place& place, const YAML::Node& node, const std::string& key);
 
 // The entries of a map; unknown keys (if `known` is not empty) and repeated ones are errors.

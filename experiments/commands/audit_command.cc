@@ -15,6 +15,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
@@ -40,7 +41,7 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
     options->conditions = ResolveCaseSettings({});
     return AllClaims(EstimatorRegistry());
   }
-  const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
+  const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes, PlanEstimators::kMade);
   options->seed = plan.study.seed;
   options->study = plan.study.name;
   options->study_identity = plan.identity;
@@ -165,6 +166,7 @@ void AddAuditCommand(CLI::App& app) {
   shards.shard->excludes(plan);
   shards.merge->excludes(plan);
   AddStudyOptions(command, &arguments->changes);
+  AddProcessOption(command, &arguments->changes.allow_process);
   command
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it, measured times excepted")

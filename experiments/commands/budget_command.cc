@@ -9,6 +9,7 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/run/find_effort.h"
 #include "experiments/study/study_file.h"
@@ -101,6 +102,7 @@ void AddBudgetCommand(CLI::App& app) {
                    "study file (YAML), or the name of one that comes with the program")
       ->required();
   AddStudyOptions(command, &arguments->changes);
+  AddProcessOption(command, &arguments->changes.allow_process);
   command->add_option("--time-ms", arguments->time_ms, "mean time of a call, ms")
       ->required()
       ->transform(NumberIn({1e-3, 1e6}));

@@ -4,6 +4,8 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/base/shared_files.h"
+#include "experiments/commands/process_option.h"
+#include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
 
 namespace rcme {
@@ -21,6 +23,7 @@ void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* 
           "option=value of the estimator, repeatable, after those of --estimator-file; see `rcme list "
           "options`")
       ->allow_extra_args(false);
+  AddProcessOption(command, &choice->allow_process);
 }
 
 namespace {
@@ -44,8 +47,10 @@ EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
     const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
     options.emplace_back(text.substr(0, equals), value);
   }
-  SetOptions(&spec, options);
-  return spec;
+  SetOwnOptions(&spec, options);
+  std::vector<EstimatorSpec> chosen = {std::move(spec)};
+  if (choice.allow_process) AllowAndSay(&chosen);
+  return chosen.front();
 }
 
 }  // namespace rcme

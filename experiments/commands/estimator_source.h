@@ -14,12 +14,13 @@ struct EstimatorChoice {
   std::string name = "rcme_calibrated";
   std::optional<std::string> file;
   std::vector<std::string> overrides;  // option=value each
+  bool allow_process = false;          // the command of the file
 };
 
-// The options --estimator-file and --set; `name` is the command's own option for the name.
+// The options --estimator-file, --set and --allow-process; `name` is the command's own option for the name.
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice);
 
-// Throws InputError (estimator_file.h, estimator_spec.h).
+// Throws InputError (estimator_file.h, estimator_spec.h). Says which command it allows.
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice);
 
 }  // namespace rcme

@@ -63,7 +63,7 @@ void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_
 void Export(const ExportArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
-  const StudyPlan plan = PlanOf(study, arguments.study);
+  const StudyPlan plan = PlanOf(study, arguments.study, PlanEstimators::kNotMade);
   if (plan.NumTrials() > kMaxTrials) {
     throw InputError(fmt::format("{}: {} trials are too many to export; at most {} are allowed (--trials)",
                                  arguments.study, plan.NumTrials(), kMaxTrials));

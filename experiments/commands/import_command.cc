@@ -7,9 +7,11 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -18,6 +20,7 @@ struct ImportArguments {
   std::vector<std::string> answers, labels;
   std::string study, out;
   int threads = 0;
+  bool allow_process = false;
 };
 
 EstimatorSpec SpecOfAnswers(const std::string& path, const std::string& label) {
@@ -41,7 +44,12 @@ void Import(const ImportArguments& arguments) {
     throw InputError(fmt::format("--label: {} for {} files of answers; give one for each",
                                  arguments.labels.size(), arguments.answers.size()));
   }
+  for (const std::string& label : arguments.labels) {
+    if (label.empty() || FindNotInLine(label) != std::string::npos)
+      throw InputError(fmt::format("--label: {} is not allowed; give one line of text", Quoted(label)));
+  }
   Study study = LoadStudy(arguments.study);
+  if (arguments.allow_process) AllowAndSay(&study.estimators);
   const size_t num_own = study.estimators.size();
   for (size_t i = 0; i < arguments.answers.size(); ++i) {
     const std::string& label = arguments.labels[i];
@@ -89,6 +97,7 @@ void AddImportCommand(CLI::App& app) {
       ->add_option("--threads", arguments->threads,
                    "threads; 0: one per core. The results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
+  AddProcessOption(command, &arguments->allow_process);
   command->callback([arguments] { Import(*arguments); });
 }
 

@@ -34,7 +34,7 @@ struct MapArguments {
 
 // The study's conditions and noise levels, and its seed.
 MapWork WorkOnStudy(const MapArguments& arguments) {
-  const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes);
+  const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes, PlanEstimators::kNotMade);
   MapWork work{{}, std::nullopt, plan.identity};
   ValidityMapOptions& map = work.map;
   map.seed = plan.study.seed;

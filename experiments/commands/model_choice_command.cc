@@ -25,7 +25,7 @@ void RunModelChoice(const ModelChoiceArguments& arguments) {
   const StopOnSignals stop;
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = arguments.trials;
-  const StudyPlan plan = PlanOf(study, arguments.study);
+  const StudyPlan plan = PlanOf(study, arguments.study, PlanEstimators::kNotMade);
   MakeResultFolder(arguments.out);
   const ChoiceCounts counts = CountChoices(plan, arguments.by, arguments.threads);
   const std::filesystem::path folder(arguments.out);

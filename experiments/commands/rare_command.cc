@@ -7,6 +7,7 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/rare/rare_output.h"
 
@@ -96,6 +97,7 @@ void AddRareCommand(CLI::App& app) {
       ->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json; made if it is missing")
       ->required();
   AddStudyOptions(command, &arguments->changes);
+  AddProcessOption(command, &arguments->changes.allow_process);
   command->add_option("--method", arguments->method, "splitting (default) or stratified")
       ->check(OneOf({"splitting", "stratified"}));
   command

@@ -5,6 +5,7 @@
 #include "experiments/answer/why.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/result_file/result_store.h"
 #include "experiments/trial/trial_fields.h"
@@ -73,9 +74,16 @@ bool AreEqual(const TrialRecord& a, const TrialRecord& b) {
   return text_of(a) == text_of(b);
 }
 
-void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t trial) {
+struct ReplayArguments {
+  std::string run;
+  std::uint32_t condition = 0, trial = 0;
+  bool allow_process = false;
+};
+
+void Replay(const ReplayArguments& arguments) {
+  const auto& [run, condition_index, trial, allow_process] = arguments;
   const ResultStore store = ResultStore::OpenForSingleTrials(run);
-  const StudyPlan plan = store.Plan();
+  const StudyPlan plan = PlanOfStored(store, allow_process);
   const Condition& condition = ChosenCondition(plan, condition_index);
   const TrialResult result = RunTrial(plan, condition, trial);
   PrintData(plan, condition, trial, result.data);
@@ -95,11 +103,7 @@ void Replay(const std::string& run, std::uint32_t condition_index, std::uint32_t
 void AddReplayCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("replay", "Run one trial of a result file again and print it in full");
-  struct Arguments {
-    std::string run;
-    std::uint32_t condition = 0, trial = 0;
-  };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command
       ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
@@ -108,7 +112,8 @@ void AddReplayCommand(CLI::App& app) {
   command->add_option("--trial", arguments->trial, "trial, from 0")
       ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
       ->required();
-  command->callback([arguments] { Replay(arguments->run, arguments->condition, arguments->trial); });
+  AddProcessOption(command, &arguments->allow_process);
+  command->callback([arguments] { Replay(*arguments); });
 }
 
 }  // namespace rcme

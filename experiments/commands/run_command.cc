@@ -11,6 +11,7 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/result_file/first_difference.h"
@@ -146,6 +147,7 @@ void AddRunCommand(CLI::App& app) {
                    "result file (SQLite); a run that was cut off is resumed, another study is refused")
       ->required();
   AddStudyOptions(command, &arguments->changes);
+  AddProcessOption(command, &arguments->changes.allow_process);
   CLI::Option* trials =
       command
           ->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")

@@ -1,19 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 
 #include "experiments/analysis/trial_output.h"
 #include "experiments/answer/why.h"
+#include "experiments/base/file_name.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/message.h"
 #include "experiments/base/scratch_folder.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/result_file/result_store.h"
 #include "parameters/input_error.h"
@@ -48,7 +49,7 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
                     "and --seed go with a study file (YAML)",
                     arguments.study));
   }
-  return ResultStore::OpenForSingleTrials(arguments.study).Plan();
+  return PlanOfStored(ResultStore::OpenForSingleTrials(arguments.study), arguments.changes.allow_process);
 }
 
 // Numbers of the estimators with these labels, each once, in the order asked for.
@@ -68,14 +69,9 @@ std::vector<size_t> EstimatorsOf(const Study& study, const std::vector<std::stri
   return chosen;
 }
 
-// In the working directory, the study's name with what a file name had better not hold replaced.
+// In the working directory.
 std::string DefaultOut(const StudyPlan& plan, const ShowArguments& arguments) {
-  std::string name = plan.study.name;
-  const auto is_odd = [](unsigned char c) {
-    return std::isalnum(c) == 0 && c != '_' && c != '-' && c != '.';
-  };
-  std::ranges::replace_if(name, is_odd, '_');
-  return fmt::format("trial_{}_c{}_t{}", name, arguments.condition, arguments.trial);
+  return fmt::format("trial_{}_c{}_t{}", MakeFileName(plan.study.name), arguments.condition, arguments.trial);
 }
 
 // What cannot be written at the end had better be known before the trial is run.
@@ -154,6 +150,7 @@ void AddShowCommand(CLI::App& app) {
                                          "where to draw, without suffix; default: trial_STUDY_cC_tT here");
   command->add_option("--json", arguments->json, "also keep what is drawn, as JSON, in this file");
   AddStudyOptions(command, &arguments->changes);
+  AddProcessOption(command, &arguments->changes.allow_process);
   command->callback([arguments, out] { Show(*arguments, out->count() > 0); });
 }
 

@@ -6,6 +6,7 @@
 
 #include "experiments/claims/study_cases.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -52,17 +53,24 @@ Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
     Override(&study, text.substr(0, equals), text.substr(equals + 1));
   }
   if (changes.seed >= 0) study.seed = static_cast<std::uint64_t>(changes.seed);
+  if (changes.allow_process) AllowAndSay(&study.estimators);
   return study;
 }
 
-StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes) {
+StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, PlanEstimators estimators) {
   const Study study = LoadChangedStudy(path, changes);
   try {
     RequireCases(study);  // before a folder of pairs is read
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }
-  return PlanOf(study, path);
+  return PlanOf(study, path, estimators);
+}
+
+StudyPlan PlanOfStored(const ResultStore& store, bool allow_process) {
+  Study study = store.StoredStudy();
+  if (allow_process) AllowAndSay(&study.estimators);
+  return store.Plan(study);
 }
 
 std::uint64_t SeedWithoutStudy(const StudyChanges& changes) {

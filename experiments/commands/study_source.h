@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/result_file/result_store.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {
@@ -14,6 +15,7 @@ struct StudyChanges {
   std::vector<std::string> overrides;   // key=value each
   std::vector<std::string> estimators;  // estimator files, to be added
   std::int64_t seed = -1;               // negative: the study's own
+  bool allow_process = false;           // the commands of the files (process_option.h)
 
   bool AreAny() const { return !overrides.empty() || !estimators.empty() || seed >= 0; }
 };
@@ -21,13 +23,17 @@ struct StudyChanges {
 // The options --set, --add-estimator and --seed.
 void AddStudyOptions(CLI::App* command, StudyChanges* changes);
 
-// The study of a YAML file, changed: estimators are added first, so that --set reaches them too. Throws
-// InputError (study_file.h, estimator_file.h), also for a label that the study has already.
+// The study of a YAML file, changed: estimators are added first, so that --set reaches them too. Says which
+// commands it allows. Throws InputError (study_file.h, estimator_file.h), also for a label that the study has
+// already.
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
 
 // The plan of the study of a YAML file, changed, that can give cases (claims/study_cases.h). Throws
 // InputError as LoadChangedStudy and RequireCases.
-StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes);
+StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, PlanEstimators estimators);
+
+// The plan of a result file's study, its commands allowed or refused. Throws InputError as ResultStore::Plan.
+StudyPlan PlanOfStored(const ResultStore& store, bool allow_process);
 
 // The seed of a command that may go without a study: --seed, or 1. Throws InputError for options that change
 // a study.

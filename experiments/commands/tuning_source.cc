@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/tuning_file.h"
@@ -16,6 +17,7 @@ void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
                    "study file (YAML) with a block `tune`, or the name of one (`rcme list studies`)")
       ->required();
   AddStudyOptions(command, &arguments->changes);
+  AddProcessOption(command, &arguments->changes.allow_process);
   command
       ->add_option(
           "--tune", arguments->overrides,

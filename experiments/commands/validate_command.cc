@@ -47,7 +47,7 @@ std::vector<PairSet> ReadSets(const std::string& pairs, const ValidateArguments&
     Override(&study, setting.substr(0, equals), setting.substr(equals + 1));
   }
   if (arguments.trials > 0) study.trials = arguments.trials;
-  return PairSetsOfStudy(MakePlan(study));
+  return PairSetsOfStudy(MakePlan(study, PlanEstimators::kNotMade));
 }
 
 // Of several folders or studies a set has the name of its own before its name.

@@ -115,9 +115,9 @@ void DropMissingFlags(const std::vector<bool>& has_flag, std::vector<SceneEvents
 std::vector<SceneEvents> EventsOf(const ResultStore& run, const StudyPlan& plan, TableClusters clusters) {
   std::vector<SceneEvents> scenes;
   for (const Condition& condition : plan.conditions)
-    scenes.push_back({condition.levels, std::vector<CellEvents>(plan.estimators.size())});
+    scenes.push_back({condition.levels, std::vector<CellEvents>(plan.study.estimators.size())});
   Members members(clusters);
-  std::vector<bool> has_flag(plan.estimators.size());
+  std::vector<bool> has_flag(plan.study.estimators.size());
   run.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     const Condition& condition = plan.conditions[problem.condition];
     const TrialData data = condition.source->Make(NameOfScene(plan, condition, problem.trial));
@@ -181,7 +181,7 @@ PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>&
   if (run.Description().keeps_counts)
     throw InputError(
         "the run keeps counts alone; the table needs every trial: rcme run without --keep counts");
-  const StudyPlan plan = run.Plan();
+  const StudyPlan plan = run.Plan(run.StoredStudy(), PlanEstimators::kNotMade);
   PaperTable table{plan.study.name, {}, plan.study.failure, {}};
   for (const EstimatorSpec& spec : plan.study.estimators) table.estimators.push_back(spec.label);
   const std::vector<SceneEvents> scenes = EventsOf(run, plan, clusters);

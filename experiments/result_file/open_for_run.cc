@@ -82,7 +82,8 @@ void CheckPathToWrite(const std::string& path) {
 }
 
 void CheckFits(const RunDescription& run, const StudyPlan& plan) {
-  if (plan.conditions.size() != run.conditions.size() || plan.estimators.size() != run.estimators.size())
+  if (plan.conditions.size() != run.conditions.size() ||
+      plan.study.estimators.size() != run.estimators.size())
     throw Damage("its tables are not those of its study");
 }
 

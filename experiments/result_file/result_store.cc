@@ -10,6 +10,7 @@
 #include "experiments/result_file/first_difference.h"
 #include "experiments/result_file/open_for_run.h"
 #include "experiments/result_file/trial_writer.h"
+#include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 
@@ -20,6 +21,16 @@ void CheckKeepsTrials(const ResultFile& file) {
   if (!file.description.keeps_counts) return;
   throw InputError(fmt::format(
       "{}: holds counts, not trials (--keep counts): `rcme summarize` and `rcme merge` read it", file.path));
+}
+
+// An InputError of `work` also says which program made the file.
+template <typename Work>
+auto NamingProgram(const RunDescription& run, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}; the file was made by {}", error.what(), run.origin.program));
+  }
 }
 
 }  // namespace
@@ -115,15 +126,17 @@ RunDescription ResultStore::Description() const {
   return run;
 }
 
-StudyPlan ResultStore::Plan() const {
+Study ResultStore::StoredStudy() const {
+  const RunDescription& run = connection_->file.description;
+  return NamingProgram(run,
+                       [&] { return ParseStudy(run.study_yaml, connection_->file.path + " (its study)"); });
+}
+
+StudyPlan ResultStore::Plan(const Study& stored, PlanEstimators estimators) const {
   const std::string& path = connection_->file.path;
+  if (estimators == PlanEstimators::kMade) RequireAllowedCommands(stored.estimators);
   const RunDescription run = Description();
-  StudyPlan plan;
-  try {
-    plan = PlanOf(ParseStudy(run.study_yaml, path + " (its study)"), path);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}; the file was made by {}", error.what(), run.origin.program));
-  }
+  StudyPlan plan = NamingProgram(run, [&] { return PlanOf(stored, path, estimators); });
   if (plan.identity != run.identity) {
     throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
                                  FirstDifference(run.identity, plan.identity)));

@@ -47,9 +47,12 @@ class ResultStore {
   // What the file says of its run. A condition's trials are those that runs asked for, under a stopping rule
   // those that it took; the options of --until are there as long as they alone give the trials in the file.
   RunDescription Description() const;
-  // The study in the file made ready to run: needed to compute its trials again, not to read them. Throws
-  // InputError if its data (a folder of pairs) are gone or have changed.
-  StudyPlan Plan() const;
+  // The study in the file. Whoever made the file may have put commands into it (study/command_permission.h).
+  Study StoredStudy() const;
+  // That study made ready to run: needed to compute its trials again, not to read them. Throws InputError if
+  // its data (a folder of pairs) are gone or have changed, or for a command that nobody has allowed.
+  StudyPlan Plan(const Study& stored, PlanEstimators estimators = PlanEstimators::kMade) const;
+  StudyPlan Plan() const { return Plan(StoredStudy()); }
 
   // Those of the first `num_trials` trials of a condition that the shard has and the file lacks, by their
   // place in the shard, ascending.

@@ -102,7 +102,9 @@ Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
     CheckTables(file_.database, {"problems", "trials"});
     if (!study) CheckFormat(file_.database, path);
     stored = ReadStored();
-    description_ = study ? Describe(PlanOf(*study, path)) : stored ? *stored : DescribeStudy();
+    description_ = study    ? Describe(PlanOf(*study, path, PlanEstimators::kNotMade))
+                   : stored ? *stored
+                            : DescribeStudy();
   });
   if (study && stored) {
     if (stored->identity != description_.identity) Note("the study is another than that of the file");
@@ -141,7 +143,7 @@ RunDescription Salvage::DescribeStudy() {
   study.trials = 1;
   study.description.clear();
   study.ademp.reset();
-  return Describe(PlanOf(study, file_.path));
+  return Describe(PlanOf(study, file_.path, PlanEstimators::kNotMade));
 }
 
 std::vector<SalvagedCondition> Salvage::ForEachSoundTrial(

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/study/command_permission.h"
 #include "experiments/study/study_keys.h"
 
 namespace rcme {
@@ -66,7 +67,11 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
   const YAML::Node options = node["options"] ? node["options"] : YAML::Node(YAML::NodeType::Map);
   if (node["name"]) place.At(node["name"], [&] { FindEstimator(spec.name); });
   ReadOptions(place, options, &spec);
-  place.At(node, [&] { Make(spec); });
+  place.At(node, [&] {
+    Configure(spec)->Make();  // throws where two options contradict each other
+    const YAML::Node command = node["process"] ? node["process"] : options["command"];
+    NoteCommandPlace(place.Text(command ? command : node), &spec);
+  });
   return spec;
 }
 

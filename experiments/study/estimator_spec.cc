@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/study/command_permission.h"
 #include "peers/peer_registry.h"
 
 namespace rcme {
@@ -41,6 +42,9 @@ std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec) {
   return ConfigureEstimator(spec.name, spec.options);
 }
 
-std::unique_ptr<MotionEstimator> Make(const EstimatorSpec& spec) { return Configure(spec)->Make(); }
+std::unique_ptr<MotionEstimator> Make(const EstimatorSpec& spec) {
+  RequireAllowedCommands({spec});
+  return Configure(spec)->Make();
+}
 
 }  // namespace rcme

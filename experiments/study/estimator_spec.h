@@ -15,6 +15,9 @@ struct EstimatorSpec {
   std::string name;   // in the estimator registry
   Settings options;   // every option that the estimator has, with its value as the option itself writes it
   std::optional<double> budget_ms;  // the time of a call that its effort was chosen for (rcme budget)
+  // "study.yaml:7": where its command stands, if a file brought one that nobody has allowed
+  // (command_permission.h).
+  std::string command_place = {};
 };
 
 // An estimator with its default options, labelled by its name. Throws InputError that lists the known names.
@@ -31,7 +34,8 @@ Settings AnswersOptions(const std::string& path);
 // "own rule, max_iterations 5000"; empty: nobody knows.
 std::string EffortInWords(const EstimatorSpec& spec);
 
-// The estimator, configured or made. Throw InputError as ConfigureEstimator does.
+// The estimator, configured or made. Throw InputError as ConfigureEstimator does; Make also for a command
+// that nobody has allowed.
 std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec);
 std::unique_ptr<MotionEstimator> Make(const EstimatorSpec& spec);
 

@@ -10,6 +10,7 @@
 #include "experiments/base/shared_files.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
+#include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_keys.h"
@@ -44,7 +45,7 @@ void ReadFactors(const Place& place, const YAML::Node& node, Study* study) {
     if (!levels.IsSequence() || levels.size() == 0) {
       place.Fail(levels, fmt::format("factors: {}: a list of at least one level is needed", key));
     }
-    for (const YAML::Node& level : levels) factor.levels.push_back(Scalar(place, level, key));
+    for (const YAML::Node& level : levels) factor.levels.push_back(Line(place, level, key));
     study->factors.push_back(std::move(factor));
   }
 }
@@ -196,8 +197,8 @@ bool HasOption(const EstimatorSpec& spec, const std::string& option) {
 }
 
 void OverrideOption(const std::string& option, const std::string& value, EstimatorSpec* spec) {
-  SetOptions(spec, {{option, value}});
-  Make(*spec);  // throws if options contradict each other
+  SetOwnOptions(spec, {{option, value}});
+  Configure(*spec)->Make();  // throws if options contradict each other
 }
 
 void OverrideData(const std::string& key, const std::string& value, Study* study) {
@@ -287,7 +288,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
       study.repeats_per_scene = static_cast<int>(WholeNumber(place, node, key, 1, kMaxRepeatsPerScene));
     if (key == "data") {
       for (const auto& [setting, value] : Entries(place, node, "data", {})) {
-        study.data.emplace_back(setting, Scalar(place, value, setting));
+        study.data.emplace_back(setting, Line(place, value, setting));
       }
     }
     if (key == "common_scenes") {

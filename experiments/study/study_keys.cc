@@ -36,7 +36,7 @@ const std::vector<StudyKey>& FixedKeys() {
       {"estimator", "process", "", "a command for sh", "an estimator in any language, by lines of JSON"},
       {"estimator", "answers", "", "a path, seen from the file that names it",
        "answers that were made elsewhere (`rcme export`)"},
-      {"estimator", "label", "the name", "letters, digits, _, - and .; different ones in a study",
+      {"estimator", "label", "the name", "one line of at most 200 bytes; different ones in a study",
        "what results call it"},
       {"estimator", "options", "", "a map of its options (`rcme list options`)",
        "those that are not at their defaults"},

@@ -6,6 +6,7 @@
 
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
+#include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 
@@ -77,7 +78,8 @@ StreamName NameOfScene(const StudyPlan& plan, const Condition& condition, std::u
   return NameOfTrial(plan, condition, trial / static_cast<std::uint32_t>(plan.study.repeats_per_scene));
 }
 
-StudyPlan MakePlan(const Study& given) {
+StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
+  if (estimators == PlanEstimators::kMade) RequireAllowedCommands(given.estimators);
   Study study = given;
   study.data = WithCalibration(given.data);
   if (std::ranges::count(study.factors, kCalibrationKey, &Factor::key) > 0) {
@@ -103,17 +105,17 @@ StudyPlan MakePlan(const Study& given) {
       plan.conditions.push_back(std::move(condition));
     }
   }
-  for (const EstimatorSpec& spec : study.estimators) {
-    plan.estimators.push_back(Make(spec));
+  if (estimators == PlanEstimators::kMade) {
+    for (const EstimatorSpec& spec : study.estimators) plan.estimators.push_back(Make(spec));
   }
   plan.study_yaml = ToYaml(study);
   plan.identity = Identity(plan);
   return plan;
 }
 
-StudyPlan PlanOf(const Study& study, const std::string& path) {
+StudyPlan PlanOf(const Study& study, const std::string& path, PlanEstimators estimators) {
   try {
-    return MakePlan(study);
+    return MakePlan(study, estimators);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }

@@ -23,7 +23,7 @@ struct StudyPlan {
   Study study;
   std::vector<std::string> factor_names;
   std::vector<Condition> conditions;
-  std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // as study.estimators
+  std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // as study.estimators, or none
   std::string study_yaml;                                          // the study in full (study_file.h)
   std::string identity;  // equal for two runs that may share a result file
 
@@ -36,9 +36,17 @@ StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::u
 // The same of its scene, noise and outliers, which the repeats of a scene share (Study::repeats_per_scene).
 StreamName NameOfScene(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
 
-// Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions.
-StudyPlan MakePlan(const Study& study);
+// Whether somebody will ask the estimators of a plan.
+enum class PlanEstimators {
+  kMade,
+  kNotMade,  // only its problems are of interest: a command of a file needs no permission
+};
+
+// Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions, a command that
+// nobody has allowed (command_permission.h).
+StudyPlan MakePlan(const Study& study, PlanEstimators estimators = PlanEstimators::kMade);
 // The same for the study of a file, which the message then names.
-StudyPlan PlanOf(const Study& study, const std::string& path);
+StudyPlan PlanOf(const Study& study, const std::string& path,
+                 PlanEstimators estimators = PlanEstimators::kMade);
 
 }  // namespace rcme

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "experiments/study/command_permission.h"
 #include "experiments/study/tuning_file.h"
 #include "parameters/input_error.h"
 
@@ -74,6 +75,7 @@ void AddGroups(SettingPlan* plan) {
 
 SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning) {
   const EstimatorSpec& base = TunedEstimator(tuning, study.estimators);
+  RequireAllowedCommands({base});
   SettingPlan plan;
   for (size_t s = 0; s < NumSettings(tuning); ++s) {
     const std::vector<std::string> levels = LevelsOfSetting(tuning, s);

@@ -29,7 +29,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         model PINHOLE (params fx, fy, cx, cy) or SIMPLE_PINHOLE (f, cx, cy), sizes in px; or K, whose image is taken to have
         its principal point in its centre.
     options : dict
-        estimator (its name; default rcme_calibrated) or estimator_file (a path); sigma_px, the standard deviation of the
+        estimator (its name; default rcme_calibrated) or estimator_file (a path); allow_process (bool; default False), whether
+        the command of an estimator file may run (docs/threat_model.md); sigma_px, the standard deviation of the
         noise of a coordinate in each image (default 0.5); noise_scale, N positive numbers: how many times as great each match's
         noise is (only `rcme.estimators()` that say so use it; default: all alike); seed of the random samples (default 1); and any option of the
         estimator: `rcme.estimators()` lists them.
@@ -61,7 +62,7 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     chosen = _options(options, len(x1))
     try:
         answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
-                                chosen["estimator_file"], chosen["options"], chosen["seed"])
+                                chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"])
     except ValueError as error:
         raise ValueError(f"options: {error}") from None
     return _pose_and_info(answer, len(x1))
@@ -89,6 +90,7 @@ def _options(options: Optional[Mapping[str, Any]], num_matches: int) -> dict[str
             "seed": _check.whole("options['seed']", rest.pop("seed", 1), 0, 2**63 - 1),
             "estimator": _check.plain("options['estimator']", "rcme_calibrated" if name is None else name),
             "estimator_file": "" if file is None else _check.existing("options['estimator_file']", file, "an estimator file"),
+            "allow_process": _check.yes_or_no("options['allow_process']", rest.pop("allow_process", False)),
             "options": _check.settings("options", rest)}
 
 

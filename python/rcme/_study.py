@@ -66,7 +66,7 @@ def simulate(study: Study, condition: int = 0, trial: int = 0, *, overrides: Opt
 
 def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, out: Optional[str] = None,
         trials: Optional[int] = None, threads: int = 0, seed: Optional[int] = None,
-        overrides: Optional[Mapping[str, Any]] = None) -> str:
+        overrides: Optional[Mapping[str, Any]] = None, allow_process: bool = False) -> str:
     """Runs a study and keeps every trial in a result file; estimators of yours run on the same trials as the study's own.
 
     Parameters
@@ -91,6 +91,8 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
         lock, which the rest of a trial does not need): more threads speed up what is not Python.
     overrides : dict of settings as `rcme run --set` takes them: a data key, a failure bound, an option of all estimators that
         have it ("mu") or of one ("rcme.mu")
+    allow_process : bool; whether the commands that the study or an estimator file names (estimators `process`) may run. Whoever
+        wrote the file wrote the command: without permission such a file is refused (docs/threat_model.md)
 
     Returns
     -------
@@ -101,7 +103,7 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
     ValueError : an argument, a study or a result file that is wrong. KeyboardInterrupt: Ctrl-C; the trials so far are kept.
     RuntimeError: another run or audit of this process has not ended.
     """
-    source = source_of(study, overrides, seed=seed, trials=trials)
+    source = source_of(study, overrides, seed=seed, trials=trials, allow_process=allow_process)
     functions = add_estimators(source, estimators)
     num_threads = _check.whole("threads", threads, 0, 1024)
     path = _own_path() if out is None else _check.path("out", out, "a result file")
@@ -111,7 +113,7 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
 
 
 def tune(study: Study, *, out: Optional[str] = None, threads: int = 0, seed: Optional[int] = None,
-         overrides: Optional[Mapping[str, Any]] = None) -> dict[str, Any]:
+         overrides: Optional[Mapping[str, Any]] = None, allow_process: bool = False) -> dict[str, Any]:
     """Finds options that meet the target of the study's block `tune`, with a guarantee, as `rcme tune` does.
 
     Returns a dict: `tuned` (levels, rates with intervals on fresh trials; None where no setting is certified), `why` (then the
@@ -119,7 +121,7 @@ def tune(study: Study, *, out: Optional[str] = None, threads: int = 0, seed: Opt
     to write the estimator file of the tuned one, for `run(..., estimators={"tuned": out})` with another seed. Other arguments
     and errors as for `run`.
     """
-    source = source_of(study, overrides, seed=seed)
+    source = source_of(study, overrides, seed=seed, allow_process=allow_process)
     num_threads = _check.whole("threads", threads, 0, 1024)
     path = None if out is None else _check.path("out", out, "an estimator file to write")
     with alone("tune"):
@@ -131,7 +133,7 @@ def tune(study: Study, *, out: Optional[str] = None, threads: int = 0, seed: Opt
 
 
 def source_of(study: Optional[Study], overrides: Optional[Mapping[str, Any]] = None, *, seed: Optional[int] = None,
-              trials: Optional[int] = None) -> _rcme.StudySource:
+              trials: Optional[int] = None, allow_process: bool = False) -> _rcme.StudySource:
     """The study as the C++ half takes it; without a study, of `audit`, an empty one."""
     path, text = "", ""
     if isinstance(study, Mapping):
@@ -140,7 +142,8 @@ def source_of(study: Optional[Study], overrides: Optional[Mapping[str, Any]] = N
         path = _check.existing_or_shared("study", study, "a study file (YAML), or a dict with the same keys")
     return _rcme.StudySource(path, text, _check.settings("overrides", overrides),
                              -1 if seed is None else _check.whole("seed", seed, 0, 2**63 - 1),
-                             0 if trials is None else _check.whole("trials", trials, 1, 2_000_000_000))
+                             0 if trials is None else _check.whole("trials", trials, 1, 2_000_000_000),
+                             _check.yes_or_no("allow_process", allow_process))
 
 
 def add_estimators(source: _rcme.StudySource,

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+import numpy as np
 import rcme
 from program import PROGRAM
 from small_study import STUDY
@@ -54,7 +55,7 @@ class AnyLanguage(unittest.TestCase):
         estimator = self.folder / "opencv.yaml"
         estimator.write_text(f"process: \"{sys.executable} {EXAMPLE}\"\nlabel: opencv\noptions: {{timeout_s: 100}}\n")
         by_process = self.folder / "process.sqlite"
-        self.program("run", self.study, "--add-estimator", estimator, "--out", by_process)
+        self.program("run", self.study, "--add-estimator", estimator, "--allow-process", "--out", by_process)
         self.program("export", self.study, "--out", self.folder / "problems")
         answers = self.folder / "answers.jsonl"
         with open(self.folder / "problems/problems.jsonl") as problems, open(answers, "w") as out:
@@ -106,6 +107,32 @@ class AnyLanguage(unittest.TestCase):
         self.assertIn("2 of 4 trials have no answer", said.stderr)
         self.assertEqual([record["status"] for record in records_of(run, "mine")],
                          ["too_uncertain", "unreadable_answer", "no_answer", "no_answer"])
+
+    def test_a_command_in_a_file_needs_permission(self):
+        marker, theirs = self.folder / "it_ran", self.folder / "theirs.yaml"
+        command = f"touch {marker}; exit 1"
+        theirs.write_text(f"process: {json.dumps(command)}\nlabel: theirs\n")
+        study = {**STUDY, "trials": 1, "estimators": [{"process": command, "label": "theirs"}]}
+        x = np.arange(40.0).reshape(20, 2)
+        matrix = [[700.0, 0, 320], [0, 700, 240], [0, 0, 1]]
+        for call in (lambda **more: rcme.run(study, **more), lambda **more: rcme.run(self.study, {"theirs": theirs}, **more),
+                     lambda **more: rcme.audit(study, only="estimator", **more),
+                     lambda **more: rcme.tune({**study, "tune": {"estimator": "theirs", "options": {"timeout_s": [5, 6]},
+                                                                 "target": "failure", "at_most": 0.5}}, **more),
+                     lambda **more: rcme.estimate_relative_pose(x, x, matrix, matrix, {"estimator_file": theirs, **more})):
+            with self.assertRaisesRegex(ValueError, "it_ran.*allow_process=True"):
+                call()
+            with self.assertRaisesRegex(ValueError, "it_ran.*allow_process=True"):
+                call(allow_process=False)
+            self.assertFalse(marker.exists())
+        rcme.simulate(study)  # asks no estimator
+        self.assertFalse(marker.exists())
+        rcme.estimate_relative_pose(x, x, matrix, matrix, {"estimator_file": theirs, "allow_process": True})
+        self.assertTrue(marker.exists())
+        marker.unlink()
+        # What a call gives itself is the caller's own.
+        rcme.estimate_relative_pose(x, x, matrix, matrix, {"estimator": "process", "command": command})
+        self.assertTrue(marker.exists())
 
     def test_wrong_files_are_bad_input(self):
         cases = {"answers": "no JSON\n", "answers.twice": '{"id": "a"}\n{"id": "a"}\n', "answers.bare": '{"R": 1}\n'}

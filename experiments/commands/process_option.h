@@ -1,0 +1,16 @@
+// The option --allow-process of the commands that ask estimators (study/command_permission.h).
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <vector>
+
+#include "experiments/study/estimator_spec.h"
+
+namespace rcme {
+
+void AddProcessOption(CLI::App* command, bool* is_allowed);
+
+// Allows the commands that files brought, and says on standard error which they are.
+void AllowAndSay(std::vector<EstimatorSpec>* estimators);
+
+}  // namespace rcme

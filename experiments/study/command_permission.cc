@@ -1,0 +1,76 @@
+#include "experiments/study/command_permission.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+// As peers/outside_estimators.cc calls them.
+constexpr const char *kProcess = "process", *kCommand = "command", *kNoCommand = "none";
+
+// The whole command, with escapes in place of what a terminal would not show as it is.
+std::string ShownCommand(const std::string& command) {
+  return fmt::format("'{}'", Printable(command, kMaxCommandBytes));
+}
+
+}  // namespace
+
+std::string FindCommand(const EstimatorSpec& spec) {
+  if (spec.name != kProcess) return {};
+  const auto command = std::ranges::find(spec.options, kCommand, &Settings::value_type::first);
+  return command == spec.options.end() || command->second == kNoCommand ? std::string() : command->second;
+}
+
+bool IsCommand(const EstimatorSpec& spec, const std::string& option) {
+  return spec.name == kProcess && option == kCommand;
+}
+
+void NoteCommandPlace(const std::string& place, EstimatorSpec* spec) {
+  const std::string command = FindCommand(*spec);
+  if (command.empty()) return;
+  if (command.size() > kMaxCommandBytes) {
+    throw InputError(fmt::format("command: {} is too long; at most {} bytes are allowed: write a script",
+                                 Quoted(command), kMaxCommandBytes));
+  }
+  spec->command_place = place;
+}
+
+void SetOwnOptions(EstimatorSpec* spec, const Settings& options) {
+  SetOptions(spec, options);
+  for (const auto& [option, value] : options) {
+    if (IsCommand(*spec, option)) spec->command_place.clear();
+  }
+}
+
+void RequireAllowedCommands(const std::vector<EstimatorSpec>& estimators) {
+  std::vector<std::string> refused;
+  for (const EstimatorSpec& spec : estimators) {
+    if (spec.command_place.empty()) continue;
+    refused.push_back(fmt::format("{} of estimator {} ({})", ShownCommand(FindCommand(spec)),
+                                  Quoted(spec.label), spec.command_place));
+  }
+  if (refused.empty()) return;
+  throw InputError(
+      fmt::format("a command in a file does not run unless you allow it: {}; read it, then add "
+                  "--allow-process (in Python: allow_process=True)",
+                  fmt::join(refused, ", ")));
+}
+
+std::vector<std::string> AllowCommands(std::vector<EstimatorSpec>* estimators) {
+  std::vector<std::string> sentences;
+  for (EstimatorSpec& spec : *estimators) {
+    if (spec.command_place.empty()) continue;
+    sentences.push_back(fmt::format("estimator {} runs the command {} ({})", Quoted(spec.label),
+                                    ShownCommand(FindCommand(spec)), spec.command_place));
+    spec.command_place.clear();
+  }
+  return sentences;
+}
+
+}  // namespace rcme
