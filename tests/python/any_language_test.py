@@ -113,7 +113,7 @@ class AnyLanguage(unittest.TestCase):
         command = f"touch {marker}; exit 1"
         theirs.write_text(f"process: {json.dumps(command)}\nlabel: theirs\n")
         study = {**STUDY, "trials": 1, "estimators": [{"process": command, "label": "theirs"}]}
-        x = np.arange(40.0).reshape(20, 2)
+        x = np.random.default_rng(1).uniform(0, 480, (20, 2))
         matrix = [[700.0, 0, 320], [0, 700, 240], [0, 0, 1]]
         for call in (lambda **more: rcme.run(study, **more), lambda **more: rcme.run(self.study, {"theirs": theirs}, **more),
                      lambda **more: rcme.audit(study, only="estimator", **more),
