@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 #include <glog/logging.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
+#include <string_view>
 
 #include "experiments/base/message.h"
 #include "experiments/base/program_name.h"
@@ -32,6 +36,26 @@ void CheckArguments(int argc, const char* const* argv) {
   }
 }
 
+// Memory that is not to be had, wherever it was asked for: not an abort, and no message that needs some
+// itself.
+[[noreturn]] void EndWithoutMemory() {
+  constexpr std::string_view kMessage =
+      "rcme: there is not enough memory; give it more, or a smaller input, study or number of threads\n";
+  static_cast<void>(!write(STDERR_FILENO, kMessage.data(), kMessage.size()));
+  std::_Exit(2);
+}
+
+// An exception that nobody can catch: thrown by a destructor, or by a thread of a library's.
+[[noreturn]] void Terminate() {
+  try {
+    if (const std::exception_ptr thrown = std::current_exception()) std::rethrow_exception(thrown);
+  } catch (const std::bad_alloc&) {
+    EndWithoutMemory();
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv, const char* installed_share) {
@@ -39,6 +63,7 @@ int RunProgram(int argc, const char* const* argv, const char* installed_share) {
   if (FindShare().empty()) UseShare(installed_share);
   if (argc > 0) NameProgram(argv[0]);
   RemoveAbandonedScratchFolders();
+  std::set_terminate(Terminate);
   std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
   CLI::App app{
@@ -118,6 +143,9 @@ int RunProgram(int argc, const char* const* argv, const char* installed_share) {
   } catch (const std::filesystem::filesystem_error& error) {
     PrintMessage("rcme: {}\n", Printable(error.what()));
     return 2;
+  } catch (const std::bad_alloc&) {
+    std::fflush(stdout);
+    EndWithoutMemory();
   } catch (const std::exception& error) {
     if (std::ferror(stdout)) {
       PrintMessage("rcme: standard output cannot be written ({})\n", error.what());

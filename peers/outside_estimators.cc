@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "estimator/estimator_registry.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/text_lines.h"
 #include "peers/answer_json.h"
 #include "peers/child_process.h"
 #include "peers/peer_registry.h"
@@ -89,7 +91,8 @@ class ProcessModel : public EstimatorModel {
   double timeout_s_ = 10.0;
 };
 
-constexpr size_t kMaxFileBytes = size_t{1} << 31;
+// Of a file of answers; `rcme export` writes no more problems.
+constexpr size_t kMaxFileBytes = size_t{1} << 31, kMaxLineBytes = size_t{16} << 20, kMaxAnswers = 1'000'000;
 
 std::uint64_t HashOf(std::string_view text, std::uint64_t hash) {
   for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3ULL;
@@ -101,29 +104,35 @@ struct AnswersFile {
   std::string digest;
 };
 
+// The next bytes; a read that fails is no end of the file.
+size_t BytesFrom(std::ifstream* file, const std::string& path, char* buffer, size_t size) {
+  file->read(buffer, static_cast<std::streamsize>(size));
+  if (file->bad()) throw InputError(fmt::format("answers: {} cannot be read", Quoted(path)));
+  return static_cast<size_t>(file->gcount());
+}
+
 // Throws InputError that names the line: no answer, no id, an id that stands twice.
 std::shared_ptr<const AnswersFile> ReadAnswers(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    throw InputError(fmt::format("answers: {} is not a file; give a file of answers", Quoted(path)));
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(fmt::format("answers: {} cannot be read", Quoted(path)));
+  TextLines lines(path, [&](char* buffer, size_t size) { return BytesFrom(&file, path, buffer, size); },
+                  {kMaxLineBytes, kMaxFileBytes});
   auto read = std::make_shared<AnswersFile>();
   std::uint64_t hash = 0xcbf29ce484222325ULL;
-  size_t num_bytes = 0;
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    num_bytes += line.size();
-    if (num_bytes > kMaxFileBytes)
-      throw InputError(fmt::format("answers: {} is too long; at most 2 GiB are allowed", Quoted(path)));
+  for (std::string_view line; lines.Next(&line);) {
     hash = HashOf(line, HashOf("\n", hash));
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     AnswerLine answer = AnswerFromJson(line);
-    if (answer.id.empty()) {
-      throw InputError(fmt::format("{}:{}: {}", path, number,
-                                   answer.fault.empty() ? "no id; give that of the problem" : answer.fault));
-    }
+    if (answer.id.empty())
+      lines.Fail(answer.fault.empty() ? "no id; give that of the problem" : answer.fault);
     const std::string id = answer.id;
     if (!read->answers.emplace(id, std::move(answer)).second)
-      throw InputError(fmt::format("{}:{}: id {} stands twice", path, number, Quoted(id)));
+      lines.Fail(fmt::format("id {} stands twice", Quoted(id)));
+    if (read->answers.size() > kMaxAnswers)
+      lines.Fail(fmt::format("too many answers; at most {} are allowed in a file", kMaxAnswers));
   }
   read->digest = fmt::format("{:016x}", hash);
   return read;

@@ -19,7 +19,7 @@ from audit_figures.panel import EmptyPanel
 from audit_figures.roc import RocPanel, is_roc
 from common.command_line import FigureParser, PlotError, run, written_figures
 from common.number_text import power_text
-from page.html import write_whole
+from common.whole_file import write_text
 
 EXAMPLE = """
 example:
@@ -107,7 +107,7 @@ def make(arguments):
     if options.page:
         audit = read_audit(os.path.join(options.folder, "audit.json"))
         written.append(options.out + "audit.html")
-        write_whole(written[-1], audit_page(audit, draw_family))
+        write_text(written[-1], audit_page(audit, draw_family))
     return written
 
 

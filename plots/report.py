@@ -13,7 +13,8 @@ import sys
 
 from common.command_line import Parser, PlotError, check_folder, run as run_script
 from common.style import label_of, split_unit
-from page.html import code, definitions, details, element, joined, listed, page, write_whole
+from common.whole_file import write_text
+from page.html import code, definitions, details, element, joined, listed, page
 from page.script import SCRIPT
 from page.style import CSS
 from report_page import tables
@@ -215,7 +216,7 @@ def parse(arguments):
 
 def make(arguments):
     options = parse(arguments)
-    write_whole(options.out, report(read_runs(options.folder)))
+    write_text(options.out, report(read_runs(options.folder)))
     return [options.out]
 
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "experiments/result_file/trial_writer.h"
 #include "parameters/parameter.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -94,8 +94,7 @@ std::string Places::Text() const {
 
 Places Places::FromText(const std::string& text) {
   Places places;
-  std::istringstream ranges(text);
-  for (std::string range; std::getline(ranges, range, ',');) {
+  for (const std::string& range : SplitText(text, ',')) {
     const size_t dash = range.find('-');
     const std::uint32_t first = PlaceIn(range.substr(0, dash));
     const std::uint32_t last = dash == std::string::npos ? first : PlaceIn(range.substr(dash + 1));

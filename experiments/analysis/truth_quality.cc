@@ -4,15 +4,15 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <sstream>
 #include <string_view>
+
+#include "parameters/text_lines.h"
 
 namespace rcme {
 
 std::string TruthQualityInWords(const std::string& identity) {
   long long num_pairs = 0, num_stated = 0, num_assumed = 0;
-  std::istringstream lines(identity);
-  for (std::string line; std::getline(lines, line);) {  // as match_folder.cc writes them
+  for (const std::string& line : SplitText(identity, '\n')) {  // as match_folder.cc writes them
     long long condition = 0, pairs = 0, stated = 0;
     unsigned long long digest = 0;
     const int num_read =

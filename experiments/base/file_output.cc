@@ -22,12 +22,6 @@ bool IsSpecial(const std::string& path) {
   return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
 }
 
-std::string PartOf(const std::string& path) { return fmt::format("{}.{}.part", path, getpid()); }
-
-[[noreturn]] void ThrowCannotWrite(const std::string& path, int error) {
-  throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(error)));
-}
-
 void CheckIsNoResultStore(const std::string& path) {
   constexpr std::string_view kMagic = "SQLite format 3";
   char head[kMagic.size()] = {};
@@ -43,21 +37,18 @@ void CheckIsNoResultStore(const std::string& path) {
 FileInPieces::FileInPieces(const std::string& path) : path_(path) {
   if (path.empty()) {
     file_ = stdout;
-    return;
-  }
-  if (!IsSpecial(path)) {
+  } else if (IsSpecial(path)) {
+    file_ = std::fopen(path.c_str(), "wb");
+  } else {
     CheckIsNoResultStore(path);
-    part_ = PartOf(path);
+    pending_.emplace(path);
+    file_ = fdopen(dup(pending_->descriptor()), "wb");
   }
-  file_ = std::fopen(part_.empty() ? path.c_str() : part_.c_str(), "wb");
   if (!file_) ThrowCannotWrite(path, errno);
 }
 
 FileInPieces::~FileInPieces() {
-  if (!file_ || file_ == stdout) return;
-  std::fclose(file_);
-  std::error_code ignored;
-  if (!part_.empty()) std::filesystem::remove(part_, ignored);
+  if (file_ && file_ != stdout) std::fclose(file_);
 }
 
 void FileInPieces::Write(const std::string& text) {
@@ -68,12 +59,8 @@ void FileInPieces::Write(const std::string& text) {
 void FileInPieces::Finish() {
   if (std::fflush(file_) != 0) ThrowCannotWrite(path_.empty() ? "standard output" : path_, errno);
   if (file_ == stdout) return;
-  const bool is_closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-  if (is_closed && (part_.empty() || std::rename(part_.c_str(), path_.c_str()) == 0)) return;
-  const int error = errno;
-  std::error_code ignored;
-  if (!part_.empty()) std::filesystem::remove(part_, ignored);
-  ThrowCannotWrite(path_, error);
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) ThrowCannotWrite(path_, errno);
+  if (pending_) pending_->PutInPlace();
 }
 
 void WriteFileWhole(const std::string& path, const std::string& text) {

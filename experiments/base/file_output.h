@@ -1,14 +1,17 @@
 #pragma once
 
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/base/pending_file.h"
+
 namespace rcme {
 
-// Writes a text file whole or not at all: to a temporary neighbour first, then renamed over `path`. A device
-// or pipe is written directly; a result store is never replaced: it may hold hours of work. Throws InputError
-// that names the path and the reason.
+// Writes a text file whole or not at all: to a temporary neighbour first (pending_file.h), then renamed over
+// `path`. It is on the disk when this returns. A device or pipe is written directly; a result store is never
+// replaced: it may hold hours of work. Throws InputError that names the path and the reason.
 void WriteFileWhole(const std::string& path, const std::string& text);
 
 // A file that is written piece by piece, whole or not at all: it takes its place at Finish, and without that
@@ -24,8 +27,8 @@ class FileInPieces {
   void Finish();
 
  private:
-  const std::string path_;  // as the user gave it
-  std::string part_;        // beside it; empty: written in place
+  const std::string path_;              // as the user gave it
+  std::optional<PendingFile> pending_;  // nothing: written in place
   std::FILE* file_ = nullptr;
 };
 

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "estimator/instruction_set.h"
-#include "experiments/base/file_output.h"
 #include "experiments/base/program_name.h"
 #include "experiments/claims/outcomes_json.h"
 #include "experiments/claims/trial_blocks.h"
@@ -93,7 +92,7 @@ void WriteRound(const Audit& plan, const AuditRound& round, const std::string& p
   Part part{pieces.work, IdentityOf(pieces), {0, 1}, {ProgramName(), InstructionSetName()}, {}};
   for (size_t group = 0; group < round.size(); ++group)
     part.results[{group, 0}].json = fmt::format("{}", round[group]);
-  WriteFileWhole(path, PartAsJson(part));
+  WritePart(path, part);
 }
 
 AuditRound ReadRound(const Audit& plan, const std::string& path) {
@@ -104,9 +103,8 @@ AuditRound ReadRound(const Audit& plan, const std::string& path) {
     throw InputError(fmt::format("{}: damaged: it lacks checks", path));
   AuditRound round(blocks.size());
   ReadEach(pieces, merged, 0, round.size(), [&](const PiecePlace& place, const std::string& json) {
-    round[place.group] = nlohmann::json::parse(json).get<size_t>();
-    if (round[place.group] > blocks[place.group].NumBlocks())
-      throw std::invalid_argument(fmt::format("{} blocks of {}", json, blocks[place.group].NumBlocks()));
+    const auto num_blocks = static_cast<std::int64_t>(blocks[place.group].NumBlocks());
+    round[place.group] = static_cast<size_t>(CountFrom(ParsePiece(json), num_blocks));
   });
   return round;
 }

@@ -48,10 +48,22 @@ std::vector<double> ColumnFrom(const Json& json) {
   std::vector<double> column;
   if (json.is_string()) {
     for (const char character : json.get<std::string>()) column.push_back(FromCharacter(character));
+  } else if (!json.is_array()) {
+    throw std::invalid_argument("outcomes that are no list");
   } else {
     for (const Json& number : json) column.push_back(NumberFrom(number));
   }
   return column;
+}
+
+void RequireInRange(const Target& target, const std::vector<Outcome>& outcomes) {
+  if (target.kind != Target::Kind::kBoundedMean) return;
+  for (const Outcome& outcome : outcomes) {
+    const double value = outcome[target.statistic];
+    if (value < target.range.lower || value > target.range.upper)
+      throw std::invalid_argument(
+          fmt::format("an outcome of {}, not of {} to {}", value, target.range.lower, target.range.upper));
+  }
 }
 
 }  // namespace
@@ -72,7 +84,7 @@ std::string OutcomesAsJson(const Check& check, const std::vector<Outcome>& outco
 }
 
 std::vector<Outcome> OutcomesFrom(const Check& check, const std::string& text, size_t num_trials) {
-  const Json json = Json::parse(text);
+  const Json json = ParsePiece(text);
   const std::vector<size_t> statistics = StatisticsOf(check);
   if (!json.is_array() || json.size() != statistics.size())
     throw std::invalid_argument(fmt::format("it has {} statistics, not {}", json.size(), statistics.size()));
@@ -83,6 +95,7 @@ std::vector<Outcome> OutcomesFrom(const Check& check, const std::string& text, s
       throw std::invalid_argument(fmt::format("it has {} trials, not {}", column.size(), num_trials));
     for (size_t i = 0; i < num_trials; ++i) outcomes[i][statistics[s]] = column[i];
   }
+  for (const Target& target : check.targets) RequireInRange(target, outcomes);
   return outcomes;
 }
 

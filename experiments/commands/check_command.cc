@@ -9,6 +9,7 @@
 #include "experiments/base/columns.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/result_file/new_trials.h"
 #include "experiments/result_file/salvage.h"
 #include "parameters/input_error.h"
 
@@ -61,38 +62,13 @@ std::string DamageAsTable(const RunDescription& run, const std::vector<SalvagedC
   return rows.size() > 1 ? FormatColumns(rows) + more : "";
 }
 
-// Sound trials on their way into a new result file, many at a time.
-class SoundTrials {
- public:
-  explicit SoundTrials(ResultStore* store) : store_(store) {}
-
-  void Add(const StoredTrial& trial) {
-    problems_.push_back(trial.problem);
-    records_.insert(records_.end(), trial.records.begin(), trial.records.end());
-    if (problems_.size() >= kBatch) Flush();
-  }
-  void Flush() {
-    store_->Add(problems_, records_);
-    problems_.clear();
-    records_.clear();
-  }
-
- private:
-  static constexpr size_t kBatch = 1000;
-  ResultStore* store_;
-  std::vector<ProblemRecord> problems_;
-  std::vector<TrialRecord> records_;
-};
-
 std::vector<SalvagedCondition> SaveGood(Salvage* salvage, const std::string& out) {
   if (std::filesystem::exists(out))
     throw InputError(fmt::format("--save-good: {} exists already; give the path of a new file", out));
-  ResultStore store = ResultStore::Create(out, salvage->description());
-  SoundTrials trials(&store);
+  NewTrials saved(out, salvage->description());
   std::vector<SalvagedCondition> conditions =
-      salvage->ForEachSoundTrial([&](const StoredTrial& trial) { trials.Add(trial); });
-  trials.Flush();
-  store.Commit();
+      salvage->ForEachSoundTrial([&](const StoredTrial& trial) { saved.Add(trial); });
+  saved.Finish(salvage->description());
   return conditions;
 }
 
@@ -153,7 +129,8 @@ void AddCheckCommand(CLI::App& app) {
       "columns, the type and range of every number, one record per estimator in every trial, a checksum\n"
       "(CRC-32) per trial, and per condition how many trials there are and the sum of their checksums.\n"
       "This command goes on where those stop. It names the trials that are not sound; with --save-good it\n"
-      "writes the sound ones to a new file, which `rcme run` then completes: a trial is a function of the\n"
+      "writes the sound ones to a new file, whole or not at all, which `rcme run` then completes: a trial is "
+      "a function of the\n"
       "study, its seed and its number, so that the result is the same as if nothing had happened.\n"
       "The exit code is 0 for a sound file and where the sound trials were saved, 2 for a damaged one.\n"
       "\n"

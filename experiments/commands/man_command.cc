@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
-#include <sstream>
 
 #include "experiments/base/file_output.h"
 #include "experiments/commands/command_tree.h"
@@ -11,6 +10,7 @@
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -68,8 +68,7 @@ std::string OptionText(const DescribedOption& option) {
 std::string FooterText(const std::string& footer) {
   std::string text;
   bool is_literal = false;
-  std::istringstream lines(footer);
-  for (std::string line; std::getline(lines, line);) {
+  for (const std::string& line : SplitText(footer, '\n')) {
     const bool wants_literal = line.starts_with(' ');
     if (wants_literal != is_literal) text += wants_literal ? ".PP\n.nf\n" : ".fi\n.PP\n";
     is_literal = wants_literal;

@@ -64,7 +64,7 @@ void JoinTheParts(const MergeArguments& arguments) {
   }
   CheckIsNoInput(arguments.out, arguments.parts);
   const Part joined = JoinParts(arguments.parts);
-  WriteFileWhole(arguments.out, PartAsJson(joined));
+  WritePart(arguments.out, joined);
   PrintMessage("{} parts of a {}, {} pieces -> {}\n", arguments.parts.size(), joined.work,
                joined.results.size(), arguments.out);
 }

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
 #include "experiments/analysis/report_data.h"
 #include "experiments/base/file_output.h"
 #include "experiments/base/message.h"
+#include "experiments/base/regular_file.h"
 #include "experiments/base/scratch_folder.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
@@ -15,6 +14,8 @@
 
 namespace rcme {
 namespace {
+
+constexpr size_t kMaxPageBytes = size_t{1} << 32;
 
 struct ReportArguments {
   std::vector<std::string> runs;
@@ -34,9 +35,7 @@ void CheckReportFolder(const std::string& out) {
 std::string PageFrom(const std::string& folder) {
   const std::string page = folder + "/report.html";
   DrawOrThrow("report", "report", {folder, "--out", page});
-  std::ostringstream text;
-  text << std::ifstream(page, std::ios::binary).rdbuf();
-  return text.str();
+  return RegularFile(page, {"page", "a page"}).Read(kMaxPageBytes);
 }
 
 void WriteReport(const ReportArguments& arguments) {

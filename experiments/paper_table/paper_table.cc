@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include "experiments/data/match_folder.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -158,10 +158,8 @@ SceneGroup ParseSceneGroup(const std::string& text) {
   const size_t equals = text.find('=');
   SceneGroup group{text.substr(0, equals), {}};
   if (equals != std::string::npos) {
-    std::istringstream list(text.substr(equals + 1));
-    for (std::string pattern; std::getline(list, pattern, ',');) {
-      if (!pattern.empty()) group.patterns.push_back(pattern);
-    }
+    group.patterns = SplitText(text.substr(equals + 1), ',');
+    std::erase_if(group.patterns, [](const std::string& pattern) { return pattern.empty(); });
   }
   if (group.name.empty() || group.patterns.empty()) {
     throw InputError(fmt::format(

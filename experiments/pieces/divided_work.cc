@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <new>
 #include <set>
 #include <utility>
 
@@ -147,7 +148,7 @@ void PartInWork::DoEach(const std::vector<PiecePlace>& places,
 }
 
 void PartInWork::Write() {
-  WriteFileWhole(path_, PartAsJson(part_));
+  WritePart(path_, part_);
   last_write_ = std::chrono::steady_clock::now();
 }
 
@@ -204,6 +205,8 @@ void ReadEach(const PiecePlan& plan, const MergedParts& merged, size_t first, si
     const auto& [place, result] = *piece;
     try {
       read(place, result.json);
+    } catch (const std::bad_alloc&) {
+      throw;  // no damage of the part's
     } catch (const std::exception& error) {
       throw InputError(
           fmt::format("{}: damaged: {}: {}", merged.paths.at(place), InWords(plan, place), error.what()));

@@ -2,42 +2,176 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
+#include "experiments/base/file_output.h"
 #include "experiments/base/json_output.h"
 #include "experiments/base/regular_file.h"
+#include "experiments/result_file/checksum.h"
 #include "parameters/input_error.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksumKey = "\"checksum\": \"";
+constexpr int kMaxPieceDepth = 8;       // of lists within lists; the deepest piece has three
+constexpr size_t kMaxFirstValues = 64;  // of the first line, which has ten
+constexpr const char* kAgain = "remove the file and run its shard again";
+
 std::string QuotedAsJson(const std::string& text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Part PartFrom(const Json& json) {
-  Part part;
-  part.work = json.at("work").get<std::string>();
-  part.identity = json.at("identity").get<std::string>();
-  part.shard = {json.at("shard").get<std::uint32_t>(), json.at("num_shards").get<std::uint32_t>()};
-  if (part.shard.count < 1 || part.shard.count > kMaxShards || part.shard.number > part.shard.count)
-    throw std::invalid_argument(
-        fmt::format("there is no shard {} of {}", part.shard.number, part.shard.count));
-  part.origin = {json.at("program").get<std::string>(), json.at("instruction_set").get<std::string>()};
-  for (const Json& piece : json.at("pieces")) {
-    const PiecePlace place{piece.at("group").get<size_t>(), piece.at("piece").get<size_t>()};
-    const PieceResult result{piece.at("result").dump(), piece.at("seconds").get<double>()};
-    if (!part.results.emplace(place, result).second)
-      throw std::invalid_argument(
-          fmt::format("piece {} of group {} is there twice", place.piece, place.group));
-  }
-  return part;
+std::string FirstLine(const Part& part) {
+  return fmt::format(
+      "\"work\": {}, \"program\": {}, \"instruction_set\": {}, \"shard\": {}, \"num_shards\": {}, "
+      "\"num_pieces\": {}, \"identity\": {}}}",
+      QuotedAsJson(part.work), QuotedAsJson(part.origin.program), QuotedAsJson(part.origin.instruction_set),
+      part.shard.number, part.shard.count, part.results.size(), QuotedAsJson(part.identity));
 }
+
+std::string PieceLine(const PiecePlace& place, const PieceResult& result) {
+  return fmt::format("\"group\": {}, \"piece\": {}, \"seconds\": {:.6f}, \"result\": {}}}", place.group,
+                     place.piece, result.seconds, result.json);
+}
+
+// Of a line's text behind its checksum; `of_first`: the first line's checksum, empty for that itself.
+std::string LineChecksum(const std::string& of_first, std::string_view text) {
+  return fmt::format("{:08x}", ChecksumOf({of_first, std::string(text)}));
+}
+
+// What stands in a text in a fixed order, bit by bit.
+class FixedText {
+ public:
+  explicit FixedText(std::string_view rest) : rest_(rest) {}
+
+  bool Skip(std::string_view text) {
+    const bool is_next = rest_.starts_with(text);
+    if (is_next) rest_.remove_prefix(text.size());
+    return is_next;
+  }
+  std::string_view Take(size_t size) {
+    const std::string_view taken = rest_.substr(0, size);
+    rest_.remove_prefix(taken.size());
+    return taken;
+  }
+  template <typename Number>
+  bool Read(Number* number) {
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), *number);
+    if (error != std::errc()) return false;
+    rest_.remove_prefix(static_cast<size_t>(end - rest_.data()));
+    return true;
+  }
+  std::string_view rest() const { return rest_; }
+
+ private:
+  std::string_view rest_;
+};
+
+// Reads the lines of one part, each checked before anything of it is used.
+class PartReader {
+ public:
+  PartReader(const std::string& name, TextLines::Source source)
+      : name_(name), lines_(name, std::move(source), {kMaxPartLineBytes, kMaxPartBytes}) {}
+
+  Part Read() {
+    ReadFirst();
+    for (std::string_view line; lines_.Next(&line);) ReadPiece(line);
+    if (part_.results.size() != num_pieces_)
+      throw InputError(fmt::format("{}: damaged: it has {} pieces, not {}; {}", name_, part_.results.size(),
+                                   num_pieces_, kAgain));
+    return std::move(part_);
+  }
+
+ private:
+  [[noreturn]] void FailDamaged(const std::string& what) const {
+    lines_.Fail(fmt::format("damaged: {}; {}", what, kAgain));
+  }
+
+  void RequireChecksum(FixedText* line) {
+    if (!line->Skip(kChecksumKey)) FailDamaged("the line has no checksum");
+    const std::string checksum(line->Take(8));
+    if (!line->Skip("\", ") || checksum != LineChecksum(first_checksum_, line->rest()))
+      FailDamaged("the checksum is not that of the line");
+    if (first_checksum_.empty()) first_checksum_ = checksum;
+  }
+
+  void ReadFirst() {
+    std::string_view text;
+    lines_.Next(&text);
+    if (!text.starts_with(kFormatStart))
+      throw InputError(fmt::format("{}: is not a part that --shard writes", name_));
+    FixedText line(text);
+    line.Skip("{\"format\": \"");
+    if (!line.Skip(fmt::format("{}\", ", kPartFormat)))
+      throw InputError(fmt::format(
+          "{}: its format is '{}', not '{}': another version of the program wrote it; run its shard "
+          "again, into a new file",
+          name_, line.rest().substr(0, line.rest().find('"')).substr(0, 40), kPartFormat));
+    RequireChecksum(&line);
+    try {
+      TakeFirst("{" + std::string(line.rest()));
+    } catch (const nlohmann::json::exception& error) {
+      FailDamaged(error.what());
+    } catch (const std::invalid_argument& error) {
+      FailDamaged(error.what());
+    }
+  }
+
+  void TakeFirst(const std::string& text) {
+    size_t num_values = 0;
+    const auto is_flat = [&](int depth, Json::parse_event_t, Json&) {
+      if (depth > 1 || ++num_values > kMaxFirstValues) throw std::invalid_argument("it describes no part");
+      return true;
+    };
+    const Json json = Json::parse(text, is_flat);
+    part_.work = json.at("work").get<std::string>();
+    part_.identity = json.at("identity").get<std::string>();
+    part_.origin = {json.at("program").get<std::string>(), json.at("instruction_set").get<std::string>()};
+    part_.shard = {static_cast<std::uint32_t>(CountFrom(json.at("shard"), kMaxShards)),
+                   static_cast<std::uint32_t>(CountFrom(json.at("num_shards"), kMaxShards))};
+    if (part_.shard.number > part_.shard.count || part_.shard.count < 1)
+      throw std::invalid_argument(
+          fmt::format("there is no shard {} of {}", part_.shard.number, part_.shard.count));
+    num_pieces_ =
+        static_cast<size_t>(CountFrom(json.at("num_pieces"), static_cast<std::int64_t>(kMaxPartBytes)));
+  }
+
+  void ReadPiece(std::string_view text) {
+    FixedText line(text);
+    if (text.size() > kMaxPieceBytes)
+      lines_.Fail(fmt::format("the piece is too long; at most {} bytes are allowed", kMaxPieceBytes));
+    if (!line.Skip("{")) FailDamaged("the line is no piece");
+    RequireChecksum(&line);
+    PiecePlace place;
+    PieceResult result;
+    const bool has_form = line.Skip("\"group\": ") && line.Read(&place.group) && line.Skip(", \"piece\": ") &&
+                          line.Read(&place.piece) && line.Skip(", \"seconds\": ") &&
+                          line.Read(&result.seconds) && line.Skip(", \"result\": ") &&
+                          line.rest().ends_with('}');
+    if (!has_form || !(result.seconds >= 0.0) || std::isinf(result.seconds))
+      FailDamaged("the line is no piece");
+    if (!part_.results.empty() && !(part_.results.rbegin()->first < place))
+      FailDamaged(
+          fmt::format("piece {} of group {} is there twice, or out of order", place.piece, place.group));
+    result.json = line.rest().substr(0, line.rest().size() - 1);
+    part_.results.emplace_hint(part_.results.end(), place, std::move(result));
+  }
+
+  const std::string name_;
+  TextLines lines_;
+  Part part_;
+  std::string first_checksum_;
+  size_t num_pieces_ = 0;
+};
 
 }  // namespace
 
@@ -55,43 +189,60 @@ double NumberFrom(const Json& json) {
   throw std::invalid_argument("a number that is none");
 }
 
-// A line for each piece.
-std::string PartAsJson(const Part& part) {
-  std::string text = fmt::format(
-      "{{\"format\": \"{}\", \"work\": {}, \"program\": {}, \"instruction_set\": {},\n\"shard\": {}, "
-      "\"num_shards\": {}, \"identity\": {},\n\"pieces\": [",
-      kPartFormat, QuotedAsJson(part.work), QuotedAsJson(part.origin.program),
-      QuotedAsJson(part.origin.instruction_set), part.shard.number, part.shard.count,
-      QuotedAsJson(part.identity));
-  const char* separator = "\n";
+Json ParsePiece(const std::string& json) {
+  return Json::parse(json, [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kMaxPieceDepth) throw std::invalid_argument("lists within lists within lists");
+    return true;
+  });
+}
+
+std::int64_t CountFrom(const Json& json, std::int64_t most) {
+  if (!json.is_number_integer()) throw std::invalid_argument("a count that is no whole number");
+  const bool is_possible = json.is_number_unsigned()
+                               ? json.get<std::uint64_t>() <= static_cast<std::uint64_t>(most)
+                               : json.get<std::int64_t>() >= 0 && json.get<std::int64_t>() <= most;
+  if (!is_possible)
+    throw std::invalid_argument(fmt::format("a count of {}, not of 0 to {}", json.dump(), most));
+  return json.get<std::int64_t>();
+}
+
+void RequireSize(const Json& json, size_t size) {
+  if (!json.is_array() || json.size() != size)
+    throw std::invalid_argument(fmt::format("it is no list of {}", size));
+}
+
+std::string PartAsText(const Part& part) {
+  const std::string first = FirstLine(part), checksum = LineChecksum("", first);
+  std::string text =
+      fmt::format("{{\"format\": \"{}\", {}{}\", {}\n", kPartFormat, kChecksumKey, checksum, first);
   for (const auto& [place, result] : part.results) {
-    text += fmt::format("{}{{\"group\": {}, \"piece\": {}, \"seconds\": {:.6f}, \"result\": {}}}", separator,
-                        place.group, place.piece, result.seconds, result.json);
-    separator = ",\n";
+    const std::string line = PieceLine(place, result);
+    text += fmt::format("{{{}{}\", {}\n", kChecksumKey, LineChecksum(checksum, line), line);
   }
-  return text + "\n]}\n";
+  return text;
+}
+
+void WritePart(const std::string& path, const Part& part) {
+  const std::string text = PartAsText(part);
+  if (text.size() > kMaxPartBytes)
+    throw InputError(fmt::format("{}: the part has more than {} MiB; divide the work into more shards", path,
+                                 kMaxPartBytes >> 20));
+  WriteFileWhole(path, text);
 }
 
 Part ReadPart(const std::string& path) {
-  constexpr size_t kMaxBytes = size_t{1} << 32;
   RegularFile file(path, {"part", "a part that --shard writes"});
-  try {
-    const Json json = Json::parse(file.Read(kMaxBytes));
-    const std::string format = json.at("format").get<std::string>();
-    if (format != kPartFormat)
-      throw std::invalid_argument(fmt::format("its format is '{}', not '{}'", format, kPartFormat));
-    return PartFrom(json);
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: not a whole part that --shard writes ({})", path, error.what()));
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: damaged, or not a part that --shard writes ({})", path, error.what()));
-  }
+  return PartReader(path, [&](char* buffer, size_t size) { return file.Read(size).copy(buffer, size); })
+      .Read();
+}
+
+Part ParsePart(std::string_view text, const std::string& name) {
+  return PartReader(name, ReadFrom(text)).Read();
 }
 
 bool IsPart(const std::string& path) {
   try {
-    const std::string begin = fmt::format("{{\"format\": \"{}\"", kPartFormat);
-    return RegularFile(path, {"file", "a file"}).Read(begin.size()) == begin;
+    return RegularFile(path, {"file", "a file"}).Read(kFormatStart.size()) == kFormatStart;
   } catch (const InputError&) {
     return false;
   }

@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-constexpr const char* kChecksum = "checksum";
+constexpr const char *kChecksum = "checksum", *kRuleChecksum = "stopping_rule_checksum";
 
 // Every row of the tables but the checksum's, column by column: a whole number as its digits.
 std::string ChecksumOfRows(SQLite::Database& database) {
@@ -47,23 +47,30 @@ void Insert(SQLite::Database& database, const char* table, const Values&... valu
   statement.exec();
 }
 
+// Its own, so that it is known of a file whose description is damaged elsewhere.
+std::string ChecksumOfStoppingRule(const std::string& identity, const std::string& rule) {
+  return fmt::format("{:08x}", ChecksumOf({identity, rule}));
+}
+
 // The rows of the table `run` but the checksum.
 std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
-  std::map<std::string, std::string> values = {{"format", kResultFormat},
-                                               {"name", run.study},
-                                               {"description", run.description},
-                                               {"seed", std::to_string(run.seed)},
-                                               {"trials", std::to_string(run.trials)},
-                                               {"repeats_per_scene", std::to_string(run.repeats_per_scene)},
-                                               {"stopping_rule", run.stopping_rule},
-                                               {"until_options", run.until_options},
-                                               {"until_trials", std::to_string(run.until_trials)},
-                                               {"shard", run.shard},
-                                               {"keep", run.keeps_counts ? "counts" : "all"},
-                                               {"program", run.origin.program},
-                                               {"instruction_set", run.origin.instruction_set},
-                                               {"study", run.study_yaml},
-                                               {"identity", run.identity}};
+  std::map<std::string, std::string> values = {
+      {"format", kResultFormat},
+      {"name", run.study},
+      {"description", run.description},
+      {"seed", std::to_string(run.seed)},
+      {"trials", std::to_string(run.trials)},
+      {"repeats_per_scene", std::to_string(run.repeats_per_scene)},
+      {"stopping_rule", run.stopping_rule},
+      {kRuleChecksum, ChecksumOfStoppingRule(run.identity, run.stopping_rule)},
+      {"until_options", run.until_options},
+      {"until_trials", std::to_string(run.until_trials)},
+      {"shard", run.shard},
+      {"keep", run.keeps_counts ? "counts" : "all"},
+      {"program", run.origin.program},
+      {"instruction_set", run.origin.instruction_set},
+      {"study", run.study_yaml},
+      {"identity", run.identity}};
   Ademp keys;
   for (const auto& [key, text] : Parts(keys)) values["ademp_" + key] = "";
   for (const auto& [key, text] : run.ademp) values["ademp_" + key] = text;
@@ -244,6 +251,12 @@ void WriteDescription(SQLite::Database& database, const RunDescription& run) {
     for (const auto& [name, value] : estimator.options) Insert(database, "options", number(e), name, value);
   }
   Insert(database, "run", std::string(kChecksum), ChecksumOfRows(database));
+}
+
+std::optional<std::string> SoundStoppingRule(SQLite::Database& database, const std::string& identity) {
+  const std::string rule = UncheckedRunValue(database, "stopping_rule");
+  const bool is_sound = UncheckedRunValue(database, kRuleChecksum) == ChecksumOfStoppingRule(identity, rule);
+  return is_sound ? std::optional(rule) : std::nullopt;
 }
 
 std::string UncheckedRunValue(SQLite::Database& database, const std::string& key) {

@@ -10,8 +10,7 @@
 
 #include "experiments/base/progress.h"
 #include "experiments/base/stop_request.h"
-#include "experiments/result_file/new_result_file.h"
-#include "experiments/result_file/trial_writer.h"
+#include "experiments/result_file/new_trials.h"
 #include "experiments/trial/trial_fields.h"
 #include "parameters/input_error.h"
 
@@ -78,40 +77,6 @@ void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, M
   report->missing_shards.assign(shards.begin(), shards.end());
 }
 
-// The merged file with its trials, in one transaction: the trials of a part lie on almost every page, which
-// would be written again with each.
-class MergedTrials {
- public:
-  MergedTrials(const std::string& out, const RunDescription& run) : file_(out, run) {
-    NamingFile(out, [&] {
-      writer_.emplace(&file_.file());
-      transaction_.emplace(file_.file().database);
-    });
-  }
-  void Add(const StoredTrial& trial) {
-    NamingFile(file_.path(), [&] { writer_->AddTrial(trial.problem, trial.records); });
-  }
-  StoredTrial Read(std::uint32_t condition, std::uint32_t trial) {
-    return NamingFile(file_.path(), [&] {
-      return ReadStoredTrial(file_.file().database, file_.file().Frame(), condition, trial).value();
-    });
-  }
-  void Finish(const RunDescription& run) {
-    NamingFile(file_.path(), [&] {
-      file_.file().totals.WriteChanged(file_.file().database);
-      transaction_->commit();
-    });
-    transaction_.reset();
-    writer_.reset();
-    file_.Finish(run);
-  }
-
- private:
-  NewResultFile file_;
-  std::optional<TrialWriter> writer_;
-  std::optional<SQLite::Transaction> transaction_;
-};
-
 }  // namespace
 
 bool TrialsHeld::Add(std::uint32_t condition, std::uint32_t trial) {
@@ -142,7 +107,7 @@ MergeReport MergeResults(const std::vector<std::string>& parts, const std::strin
   MergeReport report;
   report.run = descriptions.Merged();
   Progress progress("trials merged", descriptions.num_trials());
-  MergedTrials merged(out, report.run);
+  NewTrials merged(out, report.run);
   TrialsHeld held;
   for (const std::string& path : parts) {
     ReadPart(path, report.run.identity, [&](const StoredTrial& trial) {

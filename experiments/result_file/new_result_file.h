@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "experiments/base/pending_file.h"
 #include "experiments/result_file/result_file.h"
 
 namespace rcme {
@@ -12,9 +13,6 @@ namespace rcme {
 class NewResultFile {
  public:
   NewResultFile(const std::string& path, const RunDescription& run);
-  ~NewResultFile();
-  NewResultFile(const NewResultFile&) = delete;
-  NewResultFile& operator=(const NewResultFile&) = delete;
 
   const std::string& path() const { return path_; }
   ResultFile& file() { return *file_; }
@@ -22,8 +20,9 @@ class NewResultFile {
   void Finish(const RunDescription& run);
 
  private:
-  const std::string path_, part_;
-  std::optional<ResultFile> file_;
+  const std::string path_;
+  std::optional<PendingFile> pending_;
+  std::optional<ResultFile> file_;  // closed before it is put in place, or removed
 };
 
 }  // namespace rcme

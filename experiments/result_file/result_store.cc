@@ -71,20 +71,6 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
   });
 }
 
-ResultStore ResultStore::Create(const std::string& path, const RunDescription& run) {
-  CheckPathToWrite(path);
-  if (std::filesystem::exists(path))
-    throw InputError(fmt::format("{}: exists already; give a new file", path));
-  return NamingFile(path, [&] {
-    auto connection = std::make_unique<Connection>(
-        std::make_unique<ResultFile>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE));
-    connection->file.database.exec(kTakeLock);
-    connection->file.Create(run);
-    connection->writer.emplace(&connection->file);
-    return ResultStore(std::move(connection));
-  });
-}
-
 ResultStore ResultStore::OpenUnchecked(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
   return NamingFile(path, [&] {

@@ -32,9 +32,6 @@ class ResultStore {
   // file or a damaged one, is in use by another run, or holds another study (the message says what differs)
   // or another shard of it.
   static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan, const Shard& shard = {});
-  // Makes a new file for a run that is described, whatever it was run by. Throws InputError if the path
-  // cannot be written or holds a file.
-  static ResultStore Create(const std::string& path, const RunDescription& run);
   // Opens an existing file to read. Throws InputError if it is not a result file, or damaged.
   static ResultStore OpenForReading(const std::string& path);
   // The same to run or read single trials, without a pass over all of them: RecordsOf checks the one it

@@ -113,9 +113,11 @@ Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
     description_.origin = stored->origin;
   }
   if (!stored) {
-    description_.stopping_rule = "not known: that part of the file was damaged";
     description_.origin = {"not known", "not known"};
-    Note("what stopped its run is not known: rates saved from it have anytime-valid intervals");
+    std::optional<std::string> rule;
+    IsUndamaged([&] { rule = SoundStoppingRule(file_.database, description_.identity); }, note);
+    description_.stopping_rule = rule.value_or("not known: that part of the file was damaged");
+    if (!rule) Note("what stopped its run is not known: rates saved from it have anytime-valid intervals");
   }
   const size_t num_conditions = description_.conditions.size();
   frame_ = {ChecksumOf({description_.identity}), num_conditions, description_.estimators.size()};

@@ -27,8 +27,9 @@ class Salvage {
   explicit Salvage(const std::string& path, const std::optional<Study>& study = std::nullopt);
 
   // Of a run that computes what is not saved. Where the description in the file is damaged, it asks for one
-  // trial per condition, for how many there were is not known: who runs it says so again; its stopping rule
-  // then says that the rule is not known, so that intervals hold whatever it was.
+  // trial per condition, for how many there were is not known: who runs it says so again. The stopping rule
+  // has a checksum of its own; where that is not right either, it says that the rule is not known, so that
+  // intervals hold whatever it was.
   const RunDescription& description() const { return description_; }
 
   // Hands every sound trial to `keep`, ordered by condition and trial; returns what each condition holds.

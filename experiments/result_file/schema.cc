@@ -146,6 +146,9 @@ const std::vector<RunKey>& RunKeys() {
       {"max_rotation_error_deg", "failure bound: a motion with a greater rotation error has failed"},
       {"max_direction_error_deg", "failure bound: a motion with a greater error of the direction has failed"},
       {"stopping_rule", "not empty: the number of trials depended on their outcomes, in these words"},
+      {"stopping_rule_checksum",
+       "CRC-32 of identity and stopping_rule: which kind of interval holds is known although other rows are "
+       "damaged"},
       {"until_options", "options of `rcme run` that alone gave `until_trials` trials; empty: none"},
       {"until_trials", "how many trials those gave in all conditions"},
       {"shard",

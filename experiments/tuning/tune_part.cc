@@ -81,16 +81,9 @@ Json CountsAsJson(const std::vector<SettingCount>& counts) {
   return json;
 }
 
-void RequireSize(const Json& json, size_t size) {
-  if (!json.is_array() || json.size() != size)
-    throw std::invalid_argument(fmt::format("it is no list of {}", size));
-}
-
-// Of n trials in which something can happen at most once.
-std::int64_t CountFrom(const Json& json, std::int64_t n) {
-  const auto count = json.get<std::int64_t>();
-  if (count < 0 || count > n) throw std::invalid_argument(fmt::format("{} of {} trials", count, n));
-  return count;
+// What no trials can have given is damage, whatever the checksums say.
+void RequirePossible(bool is_possible, const char* what) {
+  if (!is_possible) throw std::invalid_argument(fmt::format("its counts cannot be: {}", what));
 }
 
 void AddCounts(const Json& json, std::int64_t n, std::vector<SettingCount>* counts) {
@@ -98,7 +91,13 @@ void AddCounts(const Json& json, std::int64_t n, std::vector<SettingCount>* coun
   for (size_t s = 0; s < counts->size(); ++s) {
     RequireSize(json[s], 4);
     const auto number = [&](size_t i) { return CountFrom(json[s][i], n); };
-    (*counts)[s] += {n, number(0), number(1), number(2), number(3)};
+    const SettingCount count{n, number(0), number(1), number(2), number(3)};
+    RequirePossible(count.failures + count.refusals <= n, "more failures and refusals than trials");
+    RequirePossible(count.false_refusals <= count.refusals, "more false refusals than refusals");
+    RequirePossible(count.false_refusals <= count.good, "more false refusals than good trials");
+    RequirePossible(count.good - count.false_refusals <= n - count.refusals,
+                    "more good trials than were refused or not");
+    (*counts)[s] += count;
   }
 }
 
@@ -112,18 +111,37 @@ Json VerifiedAsJson(const std::vector<VerifiedEstimator>& estimators) {
   return json;
 }
 
+// One estimator's counts of a piece, and how many trials of it the first estimator failed or refused.
+VerifiedEstimator VerifiedFrom(const Json& json, std::int64_t n, std::int64_t num_bad_of_first) {
+  RequireSize(json, 7);
+  const auto number = [&](size_t i) { return CountFrom(json[i], n); };
+  const VerifiedEstimator one{
+      {}, {number(0), n}, {number(1), n}, {number(2), n}, {number(3), number(4), number(5), number(6)}};
+  const PairedCounts& paired = one.against_first;
+  RequirePossible(one.failure.errors + one.refusal.errors == one.failure_or_refusal.errors,
+                  "failures and refusals are not their sum");
+  RequirePossible(paired.n() == n, "the pairs are not the trials");
+  RequirePossible(paired.both + paired.second_only == one.failure_or_refusal.errors,
+                  "the pairs have other failures and refusals");
+  RequirePossible(paired.both + paired.first_only == num_bad_of_first,
+                  "the pairs have other failures and refusals of the first estimator");
+  return one;
+}
+
 void AddVerified(const Json& json, std::int64_t n, std::vector<VerifiedEstimator>* estimators) {
   RequireSize(json, estimators->size());
+  if (estimators->empty()) return;
+  RequireSize(json[0], 7);
+  const std::int64_t num_bad_of_first = CountFrom(json[0][2], n);
   for (size_t e = 0; e < estimators->size(); ++e) {
-    RequireSize(json[e], 7);
-    const auto number = [&](size_t i) { return CountFrom(json[e][i], n); };
+    const VerifiedEstimator one = VerifiedFrom(json[e], n, num_bad_of_first);
     VerifiedEstimator& sum = (*estimators)[e];
-    size_t i = 0;
-    for (ErrorCount* count : {&sum.failure, &sum.refusal, &sum.failure_or_refusal}) {
-      count->n += n;
-      count->errors += number(i++);
+    for (const auto count :
+         {&VerifiedEstimator::failure, &VerifiedEstimator::refusal, &VerifiedEstimator::failure_or_refusal}) {
+      (sum.*count).n += n;
+      (sum.*count).errors += (one.*count).errors;
     }
-    sum.against_first.Merge({number(3), number(4), number(5), number(6)});
+    sum.against_first.Merge(one.against_first);
   }
 }
 
@@ -155,6 +173,8 @@ void SetEntropies(const Json& json, size_t first, size_t num_trials, EntropiesOf
         const Json& number = json[e][trial][k];
         if (!number.is_null()) (*entropies)[e][first + trial].*kEntropies[k] = NumberFrom(number);
       }
+      const TrialEntropies& one = (*entropies)[e][first + trial];
+      RequirePossible(!(one.good_winner && one.bad_winner), "a trial has two winners");
     }
   }
 }
@@ -215,7 +235,7 @@ TuningSource CountsOf(const StudyPlan& plan, const SettingPlan& settings, const 
     SettingCounts counts(num_conditions, std::vector<SettingCount>(settings.settings.size()));
     ReadEach(work.pieces, merged, first, first + num_conditions,
              [&](const PiecePlace& place, const std::string& json) {
-               AddCounts(Json::parse(json), NumTrialsOf(plan, place), &counts[place.group - first]);
+               AddCounts(ParsePiece(json), NumTrialsOf(plan, place), &counts[place.group - first]);
              });
     return counts;
   };
@@ -226,7 +246,7 @@ TuningSource CountsOf(const StudyPlan& plan, const SettingPlan& settings, const 
     const size_t first = FirstGroup(plan, Kind::kPlainCalls);
     ReadEach(work.pieces, merged, first, first + plan.conditions.size(),
              [&](const PiecePlace& place, const std::string& json) {
-               AddVerified(Json::parse(json), NumTrialsOf(plan, place), &estimators);
+               AddVerified(ParsePiece(json), NumTrialsOf(plan, place), &estimators);
              });
     return estimators;
   };
@@ -241,8 +261,7 @@ EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningPieces& work, c
   ReadEach(work.pieces, merged, first, first + plan.conditions.size(),
            [&](const PiecePlace& place, const std::string& json) {
              const size_t begin = (place.group - first) * num_trials + place.piece * kTrialsOfPiece;
-             SetEntropies(Json::parse(json), begin, static_cast<size_t>(NumTrialsOf(plan, place)),
-                          &entropies);
+             SetEntropies(ParsePiece(json), begin, static_cast<size_t>(NumTrialsOf(plan, place)), &entropies);
            });
   return entropies;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <stdexcept>
 
 namespace rcme {
@@ -35,22 +36,32 @@ std::string TrialsAsJson(const std::vector<ValidityTrial>& trials) {
   return json.dump();
 }
 
+// What no trial can have given is damage, whatever the checksums say.
+void RequirePossible(const ValidityTrial& trial) {
+  for (const auto share : {&ValidityTrial::exact_conditioning, &ValidityTrial::observed_conditioning}) {
+    if (!(trial.*share >= 0.0 && trial.*share <= 1.0))
+      throw std::invalid_argument(fmt::format("a conditioning of {}, not of 0 to 1", trial.*share));
+  }
+  if (!(trial.parallax_rad >= 0.0 && trial.parallax_rad <= std::numbers::pi))
+    throw std::invalid_argument(fmt::format("a parallax of {} rad, not of 0 to pi", trial.parallax_rad));
+}
+
 void AddTrials(const Json& json, size_t most, std::vector<ValidityTrial>* trials) {
-  if (json.size() > most) throw std::invalid_argument(fmt::format("{} trials of {}", json.size(), most));
+  if (!json.is_array() || json.size() > most)
+    throw std::invalid_argument(fmt::format("it is no list of up to {} trials", most));
   for (const Json& numbers : json) {
-    if (numbers.size() != kNumbers.size()) throw std::invalid_argument("a trial that is none");
+    RequireSize(numbers, kNumbers.size());
     ValidityTrial& trial = trials->emplace_back();
     for (size_t i = 0; i < kNumbers.size(); ++i) trial.*kNumbers[i] = NumberFrom(numbers[i]);
+    RequirePossible(trial);
   }
 }
 
 void AddCovered(const Json& json, std::int64_t most, CoveredCounts* sum) {
+  RequireSize(json, sum->size());
   for (size_t q = 0; q < sum->size(); ++q) {
-    for (size_t c = 0; c < (*sum)[q].size(); ++c) {
-      const auto count = json.at(q).at(c).get<std::int64_t>();
-      if (count < 0 || count > most) throw std::invalid_argument(fmt::format("{} of {} draws", count, most));
-      (*sum)[q][c] += count;
-    }
+    RequireSize(json[q], (*sum)[q].size());
+    for (size_t c = 0; c < (*sum)[q].size(); ++c) (*sum)[q][c] += CountFrom(json[q][c], most);
   }
 }
 
@@ -102,7 +113,7 @@ TrialsOfCell TrialsIn(const MapWork& work, const PiecePlan& pieces, const Merged
     std::vector<ValidityTrial> trials;
     ReadEach(pieces, merged, cell, cell + 1, [&](const PiecePlace& place, const std::string& json) {
       const TrialRange range = TrialsOfPiece(work, place);
-      AddTrials(Json::parse(json), range.end - range.first, &trials);
+      AddTrials(ParsePiece(json), range.end - range.first, &trials);
     });
     return trials;
   };
@@ -113,7 +124,7 @@ CountsOfCell CountsIn(const MapWork& work, const PiecePlan& pieces, const Merged
     CoveredCounts sum{};
     const size_t group = NumMapCells(work) + cell;
     ReadEach(pieces, merged, group, group + 1, [&](const PiecePlace&, const std::string& json) {
-      AddCovered(Json::parse(json), work.reference->num_draws, &sum);
+      AddCovered(ParsePiece(json), work.reference->num_draws, &sum);
     });
     return sum;
   };

@@ -10,10 +10,8 @@ Colours are those of Okabe and Ito (readable with every common colour-vision def
 carrier: each estimator also has its own marker and dash pattern, so a grey print says the same.
 """
 
-import contextlib
 import itertools
 import math
-import os
 import textwrap
 from dataclasses import dataclass, replace
 
@@ -27,6 +25,7 @@ from matplotlib.path import Path  # noqa: E402
 
 from common import sheet  # noqa: E402
 from common.text_size import fill  # noqa: E402
+from common.whole_file import write_whole  # noqa: E402
 
 BLACK, ORANGE, SKY_BLUE, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"  # Okabe-Ito's yellow is too pale for a line on white
@@ -272,20 +271,11 @@ def written_as(figure, kind, path, dpi):
 def save(figure, path_without_suffix, dpi=RC["savefig.dpi"]):
     """Writes PATH.png, PATH.pdf or what else the sheet asks for, and returns the paths.
 
-    All are written beside their place under a temporary name and then moved, so a reader never meets half a file and
-    a failure leaves what was there.
+    All are written before the first takes its place, so a reader never meets half a file and a failure leaves what was
+    there.
     """
-    folder, name = os.path.split(path_without_suffix)
-    temporary = {kind: os.path.join(folder, f".{name}.{os.getpid()}.{kind}.tmp") for kind in sheet.current().formats}
-    try:
-        for kind, path in temporary.items():
-            written_as(figure, kind, path, dpi)
-        written = []
-        for kind, path in temporary.items():
-            written.append(f"{path_without_suffix}.{kind}")
-            os.replace(path, written[-1])
-        return written
-    finally:
-        for path in temporary.values():
-            with contextlib.suppress(FileNotFoundError):
-                os.remove(path)
+    def write(kind):
+        return lambda part: written_as(figure, kind, part, dpi)
+    files = {f"{path_without_suffix}.{kind}": write(kind) for kind in sheet.current().formats}
+    write_whole(files)
+    return list(files)

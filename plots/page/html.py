@@ -4,10 +4,8 @@
 """
 
 import base64
-import contextlib
 import hashlib
 import html
-import os
 import re
 
 VOID = {"img", "meta", "source"}  # elements without an end tag
@@ -86,15 +84,3 @@ def page(title, style, script, body):
                    element("meta", http_equiv="Content-Security-Policy", content=policy),
                    element("title", title), element("style", Html(style)))
     return Html("<!DOCTYPE html>\n") + element("html", head, Html("\n"), element("body", body, element("script", Html(script))), lang="en") + "\n"
-
-
-def write_whole(path, text):
-    """Beside its place first, then moved: a reader never meets half a page, and a failure leaves what was there."""
-    temporary = os.path.join(os.path.dirname(path), f".{os.path.basename(path)}.{os.getpid()}.tmp")
-    try:
-        with open(temporary, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(temporary, path)
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.remove(temporary)

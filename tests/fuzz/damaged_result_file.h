@@ -16,6 +16,7 @@
 #include "experiments/analysis/comparison_output.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/analysis/trial_table.h"
+#include "experiments/result_file/new_trials.h"
 #include "experiments/result_file/salvage.h"
 #include "experiments/run/run_study.h"
 #include "tests/test_support/small_study.h"
@@ -118,11 +119,12 @@ class DamagedResultFile : public testing::Test {
     {
       RunDescription run = salvage.description();
       run.stopping_rule.clear();  // where it is damaged, the intervals are others, so that they hold
-      ResultStore store = ResultStore::Create(saved, run);
+      NewTrials store(saved, run);
       salvage.ForEachSoundTrial([&](const StoredTrial& trial) {
-        store.Add({trial.problem}, trial.records);
+        store.Add(trial);
         ++num_sound;
       });
+      store.Finish(run);
     }
     {
       ResultStore store = ResultStore::OpenForRun(saved, *plan_);

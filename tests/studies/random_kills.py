@@ -70,7 +70,9 @@ def num_trials(rcme, path):
 
 def num_pieces(_, path):
     """How many pieces a part of a tuning or an audit holds."""
-    return len(json.loads(path.read_text(encoding="utf-8"))["pieces"])
+    first, *pieces = path.read_text(encoding="utf-8").splitlines()
+    assert json.loads(first)["num_pieces"] == len(pieces)
+    return len(pieces)
 
 
 def summary(rcme, path, keep):

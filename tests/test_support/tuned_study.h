@@ -21,6 +21,18 @@ inline StudyPlan TunedPlan(const std::string& tune, const std::string& estimator
   return MakePlan(ParseStudy(TunedYaml(tune, estimator, more), "tuned.yaml"));
 }
 
+// Three, five and four pieces of each condition, some of fewer than ten trials.
+inline StudyPlan PlanInPieces() {
+  return TunedPlan(
+      "  target: failure\n"
+      "  at_most: 0.3\n"
+      "  max_refusal: 0.9\n"
+      "  explore: 25\n"
+      "  calibrate: 47\n"
+      "  verify: 33\n"
+      "  options: {mu: [1, 2, 3, 6]}\n");
+}
+
 inline SettingPlan SettingsOf(const StudyPlan& plan) {
   return MakeSettingPlan(plan.study, *plan.study.tuning);
 }

@@ -18,7 +18,7 @@
 #include "experiments/claims/audit_output.h"
 #include "experiments/claims/outcomes_json.h"
 #include "experiments/claims/trial_blocks.h"
-#include "tests/test_support/changed_json.h"
+#include "tests/test_support/changed_part.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -254,7 +254,7 @@ TEST_F(AuditParts, MissingShardsAreNamed) {
 
 TEST_F(AuditParts, APartGoesOnWhereItWas) {
   const auto results_of = [](const std::string& path) {
-    Json part = JsonOf(path);
+    Json part = PartAsJson(path);
     for (Json& piece : part["pieces"]) EXPECT_EQ(piece.erase("seconds"), 1);
     return part.dump();
   };
@@ -263,9 +263,9 @@ TEST_F(AuditParts, APartGoesOnWhereItWas) {
   num_trials_run = 0;
   Part(1, 3, false);
   EXPECT_EQ(num_trials_run, 0);
-  Json part = JsonOf(path);
+  Json part = PartAsJson(path);
   part["pieces"].erase(1);
-  WriteFileWhole(path, part.dump());
+  WriteJsonAsPart(path, part);
   const MergedAudit cut = MergeAuditParts(Claims(), Options(), paths);
   EXPECT_EQ(cut.missing.shards, std::vector<std::uint32_t>{1});
   Part(1, 3, false);
@@ -302,17 +302,17 @@ TEST_F(AuditParts, ARoundOfAnotherAuditIsRefused) {
   EXPECT_TRUE(is_refused(PlanAudit(Claims(), seed), RoundPath(), "'seed: 1' there"));
   EXPECT_TRUE(is_refused(plan, PathOf(1, 3), "'audit' there, 'round of an audit' here"));
   const auto changed = [&](const std::function<void(Json*)>& change) {
-    return ChangedJson(RoundPath(), change);
+    return ChangedPart(RoundPath(), change);
   };
   EXPECT_TRUE(is_refused(plan, changed([](Json* p) { p->at("pieces").erase(2); }), "lacks checks"));
-  EXPECT_TRUE(
-      is_refused(plan, changed([](Json* p) { p->at("pieces").at(0).at("result") = 65; }), "65 blocks of 64"));
+  EXPECT_TRUE(is_refused(plan, changed([](Json* p) { p->at("pieces").at(0).at("result") = 65; }),
+                         "a count of 65, not of 0 to 64"));
 }
 
 TEST_F(AuditParts, DamageIsNamed) {
   const std::string part = Part(1, 1);
   const auto is_refused = [&](const std::function<void(Json*)>& change, const std::string& word) {
-    return IsRefused({ChangedJson(part, change)},
+    return IsRefused({ChangedPart(part, change)},
                      {part, "damaged: block 0 of check 0 of claim mixed.several", word});
   };
   const auto result_of = [](Json* p) -> Json& { return p->at("pieces").at(0).at("result"); };

@@ -8,15 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "experiments/base/file_output.h"
 #include "experiments/base/stop_request.h"
-#include "tests/test_support/changed_json.h"
+#include "tests/test_support/changed_part.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -62,7 +60,7 @@ class DividedWork : public testing::Test {
   }
   std::string Joined(const Paths& paths, const std::string& name) const {
     const std::string path = folder_.Path(name);
-    WriteFileWhole(path, PartAsJson(JoinParts(paths)));
+    WritePart(path, JoinParts(paths));
     return path;
   }
   static bool IsRefused(const Paths& paths, const Paths& words, const PiecePlan& plan = Plan()) {
@@ -111,10 +109,10 @@ TEST_F(DividedWork, WhatIsStoppedIsKeptAndGoesOn) {
   const size_t num_pieces = PiecesOf(Plan(), {1, 2}).size();
   for (int done = 0; done + 3 <= static_cast<int>(num_pieces); done += 3) {
     EXPECT_THROW(Part(1, 2, 3), Stopped);
-    EXPECT_EQ(JsonOf(Path(1, 2)).at("pieces").size(), static_cast<size_t>(done + 3));
+    EXPECT_EQ(PartAsJson(Path(1, 2)).at("pieces").size(), static_cast<size_t>(done + 3));
   }
   Part(1, 2);
-  EXPECT_EQ(JsonOf(Path(1, 2)).at("pieces").size(), num_pieces);
+  EXPECT_EQ(PartAsJson(Path(1, 2)).at("pieces").size(), num_pieces);
   EXPECT_NO_THROW(Part(1, 2, 0));  // nothing is left
   try {
     Part(2, 2, 4);
@@ -134,14 +132,14 @@ TEST_F(DividedWork, ARequestStopsItBetweenTwoPieces) {
                              return Knit(place);
                            }),
                Stopped);
-  EXPECT_EQ(JsonOf(Path(1, 1)).at("pieces").size(), 3);
+  EXPECT_EQ(PartAsJson(Path(1, 1)).at("pieces").size(), 3);
   const StopOnSignals forgets_the_signal;
 }
 
 TEST_F(DividedWork, MissingShardsAreNamed) {
   Paths paths = Parts(7);
   paths.erase(paths.begin() + 4);
-  paths[1] = ChangedJson(paths[1], [](Json* part) { part->at("pieces").erase(0); });
+  paths[1] = ChangedPart(paths[1], [](Json* part) { part->at("pieces").erase(0); });
   const MergedParts merged = MergeParts(Plan(), paths);
   const MissingPieces missing = MissingIn(Plan(), merged, 0, 3);
   EXPECT_EQ(missing.num_pieces, 1 + PiecesOf(Plan(), {5, 7}).size());
@@ -155,7 +153,7 @@ TEST_F(DividedWork, MissingShardsAreNamed) {
 TEST_F(DividedWork, WhatDoesNotBelongTogetherIsRefused) {
   const std::string first = Part(1, 3), second = Part(2, 3);
   const auto changed = [&](const std::string& key, const std::string& value) {
-    return ChangedJson(first, [&](Json* part) { part->at(key) = value; });
+    return ChangedPart(first, [&](Json* part) { part->at(key) = value; });
   };
   const std::string program = changed("program", "rcme 0.0.1");
   EXPECT_TRUE(IsRefused({second, program}, {program, "another program, 'rcme 0.0.1' there"}));
@@ -175,7 +173,7 @@ TEST_F(DividedWork, WhatDoesNotBelongTogetherIsRefused) {
   EXPECT_TRUE(IsRefused({first}, {first, "another knitting", "'wool: red' there, 'wool: blue' here"}, wool));
   EXPECT_TRUE(IsRefused({first}, {"'sleeve: 9 rows' there, 'sleeve: 10 rows' here"}, longer));
   EXPECT_TRUE(ThrowsInputError([&] { Part(1, 3, 1000, wool); }, {first, "wool: red"}));
-  const std::string before = JsonOf(second).dump();
+  const std::string before = PartAsJson(second).dump();
   EXPECT_TRUE(ThrowsInputError(
       [&] {
         PartInWork(Plan(), {1, 3}, second);
@@ -186,15 +184,15 @@ TEST_F(DividedWork, WhatDoesNotBelongTogetherIsRefused) {
         PartInWork(Plan(), {1, 3}, changed("instruction_set", "abacus"));
       },
       {machine, "another instruction set, 'abacus' there"}));
-  EXPECT_EQ(JsonOf(second).dump(), before);
+  EXPECT_EQ(PartAsJson(second).dump(), before);
 }
 
 TEST_F(DividedWork, APieceThatIsThereTwiceCountsOnceOrIsRefused) {
   const std::string part = Part(1, 3);
-  const std::string later = ChangedJson(
+  const std::string later = ChangedPart(
       part, [](Json* json) { json->at("pieces").at(0).at("seconds") = 17.5; });  // its time may differ
   EXPECT_EQ(MergeParts(Plan(), {part, later}).results.size(), PiecesOf(Plan(), {1, 3}).size());
-  const std::string other = ChangedJson(part, [](Json* json) { json->at("pieces").at(0).at("result") = 5; });
+  const std::string other = ChangedPart(part, [](Json* json) { json->at("pieces").at(0).at("result") = 5; });
   const std::string row = fmt::format("row {} of sleeve", PiecesOf(Plan(), {1, 3}).front().piece);
   EXPECT_TRUE(IsRefused({part, other}, {other, row, "is not equal to that of", part}));
   EXPECT_TRUE(ThrowsInputError([&] { JoinParts({part, other}); }, {other, "not equal", part}));
@@ -218,19 +216,26 @@ TEST_F(DividedWork, SaysWhatThePiecesTook) {
 TEST_F(DividedWork, DamageIsNamed) {
   const std::string part = Part(1, 2);
   const auto is_refused = [&](const std::function<void(Json*)>& change, const std::string& word) {
-    return IsRefused({ChangedJson(part, change)}, {part, word});
+    return IsRefused({ChangedPart(part, change)}, {part, word});
   };
   const auto piece = [](Json* p) -> Json& { return p->at("pieces").at(0); };
   EXPECT_TRUE(is_refused([](Json* p) { p->at("format") = "rcme part 0"; }, "its format is 'rcme part 0'"));
-  EXPECT_TRUE(is_refused([](Json* p) { p->erase("pieces"); }, "not a whole part"));
   EXPECT_TRUE(is_refused([](Json* p) { p->at("shard") = 3; }, "there is no shard 3 of 2"));
   EXPECT_TRUE(is_refused([](Json* p) { p->at("num_shards") = 0; }, "there is no shard 1 of 0"));
-  EXPECT_TRUE(is_refused([&](Json* p) { piece(p).at("group") = 3; }, "group 3 is none of its shard"));
-  EXPECT_TRUE(
-      is_refused([&](Json* p) { piece(p).at("piece") = 9; }, "row 9 of group 0 is none of its shard"));
+  const auto alone = [&](const char* key, int number) {
+    return [&piece, key, number](Json* p) {
+      piece(p).at(key) = number;
+      p->at("pieces") = Json::array({piece(p)});
+    };
+  };
+  EXPECT_TRUE(is_refused(alone("group", 3), "group 3 is none of its shard"));
+  EXPECT_TRUE(is_refused(alone("piece", 9), "row 9 of group 0 is none of its shard"));
   EXPECT_TRUE(is_refused([](Json* p) { p->at("shard") = 2; }, "is none of its shard"));
   EXPECT_TRUE(is_refused([&](Json* p) { p->at("pieces").at(1) = piece(p); }, "is there twice"));
-  EXPECT_TRUE(is_refused([&](Json* p) { piece(p).erase("result"); }, "not a whole part"));
+  EXPECT_TRUE(is_refused([&](Json* p) { std::swap(p->at("pieces").at(1), piece(p)); }, "out of order"));
+  EXPECT_TRUE(is_refused([&](Json* p) { piece(p).erase("result"); }, "the line is no piece"));
+  EXPECT_TRUE(is_refused([&](Json* p) { piece(p).at("seconds") = -1; }, "the line is no piece"));
+  EXPECT_TRUE(is_refused([](Json* p) { p->at("work") = Json::array({Json::array()}); }, "describes no part"));
   EXPECT_TRUE(ThrowsInputError(
       [&] {
         ReadEach(Plan(), MergeParts(Plan(), {part}), 1, 3,
@@ -238,15 +243,58 @@ TEST_F(DividedWork, DamageIsNamed) {
       },
       {part, "damaged", "of collar", "a hole"}));
 
-  std::ostringstream text;
-  text << std::ifstream(part).rdbuf();
-  const std::string cut = folder_.Path("cut.json");
-  WriteFileWhole(cut, text.str().substr(0, text.str().size() / 2));
-  EXPECT_TRUE(IsRefused({cut}, {cut, "not a whole part"}));
+  const std::string text = ReadBytes(part);
+  const std::string cut = folder_.Write("cut.json", text.substr(0, text.size() / 2));
+  EXPECT_TRUE(IsRefused({cut}, {cut, "damaged"}));
+  const std::string shorter =
+      folder_.Write("shorter.json", text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+  EXPECT_TRUE(IsRefused({shorter}, {shorter, "pieces, not"}));
   EXPECT_TRUE(IsPart(cut));
   EXPECT_FALSE(IsPart(folder_.Write("no.json", "{}")));
   EXPECT_FALSE(IsPart(folder_.Path("none.json")));
   EXPECT_TRUE(IsRefused({folder_.Path("none.json")}, {"none.json", "no such part"}));
+}
+
+// As the last version wrote it: one JSON object without checksums.
+TEST_F(DividedWork, AnEarlierFormatIsRefusedByName) {
+  const std::string old =
+      folder_.Write("old.json", "{\"format\": \"rcme part 1\", \"work\": \"knitting\", \"pieces\": [\n]}\n");
+  EXPECT_TRUE(IsPart(old));
+  EXPECT_TRUE(IsRefused({old}, {old, "'rcme part 1', not 'rcme part 2'", "run its shard again"}));
+}
+
+// Every byte of a part replaced, one after the other: what is read is what was written, or damage is named.
+TEST(PartFile, EveryByteIsProtected) {
+  const Part part{"knitting",
+                  "wool: red\n",
+                  {1, 2},
+                  {"rcme 1", "AVX2"},
+                  {{{0, 1}, {"[0,7,3,0]", 0.5}}, {{1, 0}, {"[1]", 1.5}}}};
+  const std::string text = PartAsText(part);
+  EXPECT_EQ(PartAsText(ParsePart(text, "part")), text);
+  int num_refused = 0;
+  for (size_t i = 0; i < text.size(); ++i) {
+    for (const int flip : {1, 2, 8, 0x55}) {
+      std::string damaged = text;
+      damaged[i] = static_cast<char>(damaged[i] ^ flip);
+      num_refused += ThrowsInputError([&] { ParsePart(damaged, "part"); }, {"part"});
+    }
+  }
+  EXPECT_EQ(num_refused, static_cast<int>(4 * text.size()));
+}
+
+// What is refused before it fills memory: lines and lists without end.
+TEST(PartFile, IsNotFollowedFar) {
+  const auto is_refused = [](const std::string& text, const std::string& word) {
+    return ThrowsInputError([&] { ParsePart(text, "part"); }, {"part", word});
+  };
+  EXPECT_TRUE(
+      is_refused(std::string(kMaxPartLineBytes + 1, 'x'), "1: the line is too long; at most 67108864 bytes"));
+  const std::string first = PartAsText({"knitting", "", {1, 1}, {"", ""}, {}});
+  EXPECT_TRUE(is_refused(first + "{" + std::string(kMaxPieceBytes, '['),
+                         "2: the piece is too long; at most 8388608 bytes"));
+  EXPECT_THROW(ParsePiece(std::string(1000, '[') + std::string(1000, ']')), std::invalid_argument);
+  EXPECT_NO_THROW(ParsePiece("[[[1]]]"));
 }
 
 TEST(PartFile, KeepsEveryNumberToItsLastBit) {

@@ -9,8 +9,8 @@
 #include "experiments/analysis/summary_output.h"
 #include "experiments/analysis/trial_table.h"
 #include "experiments/data/match_file.h"
+#include "experiments/result_file/new_trials.h"
 #include "experiments/run/run_study.h"
-#include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -52,9 +52,9 @@ TEST_F(Description, ComesBackAsItWasWritten) {
   EXPECT_GT(run.estimators[1].options.size(), 5u);
   run.origin = {"rcme 1", "AVX2"};
   run.until_options = "--until ci=0.1";
-  { ResultStore::Create(path_, run); }
+  NewTrials(path_, run).Finish(run);
   EXPECT_EQ(TextOf(ResultStore::OpenForReading(path_).Description()), TextOf(run));
-  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::Create(path_, run); }, {path_, "exists already"}));
+  EXPECT_TRUE(ThrowsInputError([&] { NewTrials(path_, run); }, {path_, "exists already"}));
 }
 
 // Of a program that knows other estimators and other scenes, with a study that this one cannot read.
@@ -65,10 +65,11 @@ TEST_F(Description, ResultsOfUnknownEstimatorsAreRead) {
   run.factors = {"phase_of_the_moon"};
   run.estimators[1] = {"theirs", "estimator_of_theirs", "", {{"option_of_theirs", "many"}}};
   {
-    ResultStore store = ResultStore::Create(path_, run);
+    NewTrials store(path_, run);
     std::vector<TrialRecord> records(2);
     records[1].estimator = 1;
-    AddRecords(store, records);
+    store.Add({ProblemRecord(), records, 0});
+    store.Finish(run);
   }
   const ResultStore store = ResultStore::OpenForReading(path_);
   EXPECT_NE(SummaryAsCsv(Summarize(store, false)).find("phase_of_the_moon,estimator"), std::string::npos);

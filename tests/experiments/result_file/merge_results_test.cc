@@ -11,6 +11,7 @@
 #include "experiments/analysis/summarize.h"
 #include "experiments/analysis/summary_output.h"
 #include "experiments/analysis/trial_table.h"
+#include "experiments/result_file/new_trials.h"
 #include "experiments/run/run_study.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/shard_files.h"
@@ -163,13 +164,14 @@ TEST_F(MergeTest, ATrialThatIsThereTwiceHasToBeTheSame) {
   const std::string whole = Run({1, 1}), forged = folder_.Path("forged.sqlite");
   {
     const ResultStore store = ResultStore::OpenForReading(whole);
-    ResultStore copy = ResultStore::Create(forged, store.Description());
+    NewTrials copy(forged, store.Description());
     store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
       std::vector<TrialRecord> changed = records;
       changed[0].seconds *= 2.0;  // which no two runs share
       if (problem.condition == 1 && problem.trial == 7) ++changed[1].num_explained;
-      copy.Add({problem}, changed);
+      copy.Add({problem, changed, 0});
     });
+    copy.Finish(store.Description());
   }
   EXPECT_TRUE(Refuses({whole, forged}, {forged, "condition 1, trial 7", "num_explained"}));
   EXPECT_EQ(Bytes(Merge({Run({1, 2}), whole})), Bytes(whole));

@@ -12,7 +12,7 @@
 #include "experiments/tuning/transfer_output.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
-#include "tests/test_support/changed_json.h"
+#include "tests/test_support/changed_part.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
 #include "tests/test_support/tuned_study.h"
@@ -22,18 +22,6 @@ namespace {
 
 using Paths = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
-
-// Three, five and four pieces of each condition, some of fewer than ten trials.
-StudyPlan Plan() {
-  return TunedPlan(
-      "  target: failure\n"
-      "  at_most: 0.3\n"
-      "  max_refusal: 0.9\n"
-      "  explore: 25\n"
-      "  calibrate: 47\n"
-      "  verify: 33\n"
-      "  options: {mu: [1, 2, 3, 6]}\n");
-}
 
 std::string Bytes(const StudyPlan& plan, const TuneResult& result, const std::vector<EntropyRoc>& rocs) {
   return TuneAsTable(plan, result, rocs) + TuneAsJson(plan, SettingsOf(plan), result, rocs);
@@ -64,7 +52,7 @@ class TuneParts : public testing::Test {
   }
 
   const TempFolder folder_;
-  const StudyPlan plan_ = Plan();
+  const StudyPlan plan_ = PlanInPieces();
   const SettingPlan settings_ = SettingsOf(plan_);
 };
 
@@ -128,7 +116,7 @@ TEST_F(TuneParts, DamageIsNamed) {
   // Whether a change of the first piece of a group is found when it is read.
   const auto is_refused = [&](size_t group, const std::function<void(Json*)>& change,
                               const std::string& word) {
-    const std::string changed = ChangedJson(path, [&](Json* part) {
+    const std::string changed = ChangedPart(path, [&](Json* part) {
       for (Json& piece : part->at("pieces")) {
         if (piece["group"] == group && piece["piece"] == 0) change(&piece["result"]);
       }
@@ -141,12 +129,28 @@ TEST_F(TuneParts, DamageIsNamed) {
   EXPECT_TRUE(is_refused(
       3, [](Json* r) { r->at(0).erase(1); }, "no list of 4"));
   EXPECT_TRUE(is_refused(
-      3, [](Json* r) { r->at(0).at(1) = 11; }, "11 of 10 trials"));
+      3, [](Json* r) { r->at(0).at(1) = 11; }, "a count of 11, not of 0 to 10"));
   EXPECT_TRUE(is_refused(
-      4, [](Json* r) { r->at(0).at(1) = -1; }, "-1 of 10 trials"));
+      4, [](Json* r) { r->at(0).at(1) = -1; }, "a count of -1, not of 0 to 10"));
   EXPECT_TRUE(is_refused(
       4, [](Json* r) { r->at(0).at(1) = "x"; }, "number"));
+  // [failures, refusals, good, false refusals] of ten trials; the first is what a random damage made of [0,
+  // 7, 3, 0].
+  const auto counts = [&](const Json& of_setting, const std::string& word) {
+    return is_refused(
+        3, [&](Json* r) { r->at(0) = of_setting; }, word);
+  };
+  EXPECT_TRUE(counts({0, 7, 3, 7}, "more false refusals than good trials"));
+  EXPECT_TRUE(counts({6, 5, 0, 0}, "more failures and refusals than trials"));
+  EXPECT_TRUE(counts({0, 2, 9, 3}, "more false refusals than refusals"));
+  EXPECT_TRUE(counts({0, 7, 9, 0}, "more good trials than were refused or not"));
   EXPECT_TRUE(is_refused(6, erase, "no list of 2"));
+  EXPECT_TRUE(is_refused(
+      7,
+      [](Json* r) {
+        r->at(1).at(0) = {nullptr, nullptr, 1.0, 2.0};
+      },
+      "a trial has two winners"));
   EXPECT_TRUE(is_refused(
       6, [](Json* r) { r->at(1).erase(0); }, "no list of 10"));
   EXPECT_TRUE(is_refused(
@@ -155,7 +159,16 @@ TEST_F(TuneParts, DamageIsNamed) {
   EXPECT_TRUE(is_refused(
       9, [](Json* r) { r->at(2).erase(0); }, "no list of 7"));
   EXPECT_TRUE(is_refused(
-      9, [](Json* r) { r->at(2).at(6) = 11; }, "11 of 10 trials"));
+      9, [](Json* r) { r->at(2).at(6) = 11; }, "a count of 11, not of 0 to 10"));
+  // [failures, refusals, either, both, first only, second only, neither] of ten trials.
+  const auto plain = [&](const Json& of_estimator, const std::string& word) {
+    return is_refused(
+        9, [&](Json* r) { r->at(0) = {0, 0, 0, 0, 0, 0, 10}, r->at(1) = of_estimator; }, word);
+  };
+  EXPECT_TRUE(plain({1, 0, 0, 0, 0, 0, 10}, "failures and refusals are not their sum"));
+  EXPECT_TRUE(plain({0, 0, 0, 0, 0, 0, 9}, "the pairs are not the trials"));
+  EXPECT_TRUE(plain({1, 0, 1, 0, 0, 0, 10}, "the pairs have other failures and refusals"));
+  EXPECT_TRUE(plain({0, 0, 0, 0, 1, 0, 9}, "other failures and refusals of the first estimator"));
 }
 
 }  // namespace

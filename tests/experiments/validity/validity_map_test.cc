@@ -221,12 +221,16 @@ TEST(MapParts, DamageIsNamed) {
     };
     return ThrowsInputError(read, {"a.json: damaged: block 0 of " + pieces.groups[group].name, word});
   };
-  EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1,1]]", "a trial that is none"));
+  EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1,1]]", "no list of 7"));
   EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1,1,\"x\"]]", "a number that is none"));
-  EXPECT_TRUE(is_refused(0, "[[],[],[],[]]", "4 trials of 3"));
-  EXPECT_TRUE(is_refused(4, "[[1,1,1,1]]", "out of range"));
-  EXPECT_TRUE(is_refused(4, "[[1,1,1,1],[1,1,21,1]]", "21 of 20 draws"));
-  EXPECT_TRUE(is_refused(4, "[[1,1,1,1],[1,1,-1,1]]", "-1 of 20 draws"));
+  // f, pose, fresh point, ml pose; exact and observed conditioning, parallax.
+  EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1.5,1,1]]", "a conditioning of 1.5, not of 0 to 1"));
+  EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1,-0.5,1]]", "a conditioning of -0.5, not of 0 to 1"));
+  EXPECT_TRUE(is_refused(0, "[[1,1,1,1,1,1,4]]", "a parallax of 4 rad, not of 0 to pi"));
+  EXPECT_TRUE(is_refused(0, "[[],[],[],[]]", "no list of up to 3 trials"));
+  EXPECT_TRUE(is_refused(4, "[[1,1,1,1]]", "no list of 2"));
+  EXPECT_TRUE(is_refused(4, "[[1,1,1,1],[1,1,21,1]]", "a count of 21, not of 0 to 20"));
+  EXPECT_TRUE(is_refused(4, "[[1,1,1,1],[1,1,-1,1]]", "a count of -1, not of 0 to 20"));
 }
 
 TEST(MapCommand, WritesBothTablesAndPrintsTheirPaths) {

@@ -1,0 +1,239 @@
+// Part files of which bytes were changed: whoever merges them gets the very same tables as before, or a
+// refusal that names the file. Also where the damage has right checksums, so that nothing but the arithmetic
+// of counts is left to find it: then nothing else than a refusal or a table happens.
+//
+// RCME_DAMAGES=1000 sets how many random damages there are of the parts of each work; the seeds are 1 and 2.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "experiments/claims/audit_output.h"
+#include "experiments/claims/audit_part.h"
+#include "experiments/tuning/transfer.h"
+#include "experiments/tuning/transfer_output.h"
+#include "experiments/tuning/tune_json.h"
+#include "experiments/tuning/tune_output.h"
+#include "experiments/tuning/tune_part.h"
+#include "experiments/validity/map_part.h"
+#include "parameters/input_error.h"
+#include "tests/test_support/changed_part.h"
+#include "tests/test_support/temp_folder.h"
+#include "tests/test_support/tuned_study.h"
+
+namespace rcme {
+namespace {
+
+using Paths = std::vector<std::string>;
+constexpr std::uint32_t kNumShards = 2;
+
+int NumDamages() {
+  const char* number = std::getenv("RCME_DAMAGES");
+  return number ? std::atoi(number) : 100;
+}
+
+// The parts of a work, and all that is made of them.
+struct DividedTables {
+  std::string work;
+  Paths parts;
+  std::function<std::string()> tables;
+};
+
+class DamagedParts : public testing::Test {
+ protected:
+  Paths PathsOf(const std::string& work) const {
+    Paths paths;
+    for (std::uint32_t number = 1; number <= kNumShards; ++number)
+      paths.push_back(folder_.Path(fmt::format("{}_{}.part", work, number)));
+    return paths;
+  }
+
+  DividedTables Tuning() const {
+    const TuningPieces work = PiecesOfTuning(plan_);
+    const Paths paths = PathsOf("tuning");
+    for (int round = 0; round < 2; ++round) {
+      const MergedParts merged = round == 0 ? MergedParts{} : MergeParts(work.pieces, paths);
+      for (std::uint32_t n = 1; n <= kNumShards; ++n)
+        RunTuningPart(plan_, settings_, work, merged, {n, kNumShards}, 1, paths[n - 1]);
+    }
+    const auto tables = [this, work, paths] {
+      const MergedParts merged = MergeParts(work.pieces, paths);
+      RequireWhole(work.pieces, merged);
+      const TuneResult result =
+          Tune(plan_, settings_, Unreached::kStop, CountsOf(plan_, settings_, work, merged));
+      const auto rocs = RocsOf(plan_, EntropiesIn(plan_, work, merged));
+      return TuneAsTable(plan_, result, rocs) + TuneAsJson(plan_, settings_, result, rocs);
+    };
+    return {"tuning", paths, tables};
+  }
+
+  DividedTables Transfer() const {
+    const TuningPieces work = PiecesOfTransfer(plan_);
+    const Paths paths = PathsOf("transfer");
+    for (std::uint32_t n = 1; n <= kNumShards; ++n)
+      RunTuningPart(plan_, settings_, work, {}, {n, kNumShards}, 1, paths[n - 1]);
+    const auto tables = [this, work, paths] {
+      const MergedParts merged = MergeParts(work.pieces, paths);
+      RequireWhole(work.pieces, merged);
+      const TransferResult result =
+          MeasureTransfer(plan_, settings_, "", CountsOf(plan_, settings_, work, merged));
+      return TransferAsTable(plan_, result) + TransferAsJson(plan_, settings_, result);
+    };
+    return {"transfer", paths, tables};
+  }
+
+  // A rate, and a mean within bounds, of numbers that are drawn.
+  static std::vector<Claim> Claims() {
+    Check check;
+    check.targets = {ClaimedRate("rate", 0.3, {0.2, 0.4}, 0), ClaimedMean("mean", 0.5, {0.4, 0.6}, 1)};
+    check.targets.back().kind = Target::Kind::kBoundedMean;
+    check.targets.back().planned_spread = 0.29;
+    check.limits = {200, 200, 200};
+    check.trial = [](const StreamName& name) -> Outcome {
+      RandomStream rng(name);
+      const double u = rng.Uniform();
+      return {u < 0.3 ? 1.0 : 0.0, u};
+    };
+    Claim claim;
+    claim.id = "drawn.numbers";
+    claim.checks = {check};
+    return {claim};
+  }
+
+  DividedTables Audit() const {
+    const Paths paths = PathsOf("audit");
+    const rcme::Audit plan = PlanAudit(Claims(), {});
+    for (std::uint32_t n = 1; n <= kNumShards; ++n)
+      RunAuditPart(plan, FirstRound(plan), {n, kNumShards}, paths[n - 1]);
+    const auto tables = [paths] {
+      const MergedAudit merged = MergeAuditParts(Claims(), {}, paths);
+      if (merged.missing.num_pieces > 0) throw InputError("blocks are missing");
+      return AuditAsJson(merged.audit) + AuditAsTable(merged.audit);
+    };
+    return {"audit", paths, tables};
+  }
+
+  DividedTables Map() const {
+    MapWork work;
+    work.map.trials = 20;
+    work.map.sigmas_px = {0.5, 1.0};
+    work.map.nums_points = {8};
+    work.map.conditions = AtBaselines({0.5});
+    work.map.num_threads = 1;
+    work.reference.emplace();
+    work.reference->sigmas_px = {0.5};
+    work.reference->nums_points = {8};
+    work.reference->num_samples = 4;
+    work.reference->num_draws = 10;
+    work.reference->num_noises = 20;
+    const Paths paths = PathsOf("map");
+    for (std::uint32_t n = 1; n <= kNumShards; ++n) RunMapPart(work, {n, kNumShards}, paths[n - 1]);
+    const auto tables = [work, paths] {
+      const PiecePlan pieces = PiecesOfMap(work);
+      const MergedParts merged = MergeParts(pieces, paths);
+      RequireWhole(pieces, merged);
+      return ValidityMapCsv(work.map, TrialsIn(work, pieces, merged)) +
+             ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, merged));
+    };
+    return {"map", paths, tables};
+  }
+
+  static void RequireWhole(const PiecePlan& pieces, const MergedParts& merged) {
+    if (MissingIn(pieces, merged, 0, pieces.groups.size()).num_pieces > 0)
+      throw InputError("pieces are missing");
+  }
+
+  const TempFolder folder_;
+  const StudyPlan plan_ = PlanInPieces();
+  const SettingPlan settings_ = SettingsOf(plan_);
+};
+
+// Other bytes than these: a bit, a byte, a digit or a run of bytes changed, lost, doubled or moved, or the
+// end cut off.
+std::string Damaged(const std::string& bytes, std::mt19937* rng, std::string* what) {
+  std::string damaged = bytes;
+  while (damaged == bytes) {
+    const size_t place = (*rng)() % bytes.size(), length = 1 + (*rng)() % 64, to = (*rng)() % bytes.size();
+    const auto kind = (*rng)() % 8;
+    *what = fmt::format("damage of kind {} at byte {}", kind, place);
+    if (kind == 0) damaged[place] = static_cast<char>(damaged[place] ^ (1 << (*rng)() % 8));
+    if (kind == 1) damaged[place] = static_cast<char>((*rng)() % 256);
+    if (kind == 2) {
+      const size_t digit = bytes.find_first_of("0123456789", place);
+      if (digit != std::string::npos) damaged[digit] = static_cast<char>('0' + (*rng)() % 10);
+    }
+    if (kind == 3) damaged.erase(place, length);
+    if (kind == 4) damaged.insert(place, bytes.substr(place, length));
+    if (kind == 5) damaged.replace(place, length, bytes.substr(to, length));
+    if (kind == 6) damaged.resize(place);
+    if (kind == 7) {  // whole lines change places, which no line's own checksum tells
+      const size_t begin = bytes.rfind('\n', place) + 1, end = bytes.find('\n', place) + 1;
+      damaged.erase(begin, end - begin);
+      damaged.insert(damaged.find('\n', std::min(to, damaged.size())) + 1, bytes.substr(begin, end - begin));
+    }
+  }
+  return damaged;
+}
+
+TEST_F(DamagedParts, NoneChangesATableInSilence) {
+  std::mt19937 rng(1);
+  for (const DividedTables& work : {Tuning(), Transfer(), Audit(), Map()}) {
+    const std::string sound = work.tables();
+    int num_refused = 0, num_same = 0;
+    for (int i = 0; i < NumDamages(); ++i) {
+      const std::string& path = work.parts[rng() % kNumShards];
+      const std::string bytes = ReadBytes(path);
+      std::string what;
+      folder_.Write(std::filesystem::path(path).filename(), Damaged(bytes, &rng, &what));
+      try {
+        EXPECT_EQ(work.tables() == sound, true) << work.work << ": " << what << ": changed in silence";
+        ++num_same;
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << what << ": " << error.what();
+        ++num_refused;
+      }
+      folder_.Write(std::filesystem::path(path).filename(), bytes);
+    }
+    fmt::print("{}: {} damages: {} refused, {} without effect\n", work.work, NumDamages(), num_refused,
+               num_same);
+    EXPECT_GT(num_refused, NumDamages() * 9 / 10);
+  }
+}
+
+// One number of one piece replaced, with right checksums, by whoever can compute them.
+TEST_F(DamagedParts, ImpossibleCountsAreRefusedAndNothingElseHappens) {
+  std::mt19937 rng(2);
+  for (const DividedTables& work : {Tuning(), Transfer(), Audit(), Map()}) {
+    int num_refused = 0;
+    for (int i = 0; i < NumDamages(); ++i) {
+      const std::string& path = work.parts[rng() % kNumShards];
+      const std::string bytes = ReadBytes(path);
+      nlohmann::ordered_json part = PartAsJson(path);
+      nlohmann::ordered_json* value = &part["pieces"][rng() % part["pieces"].size()]["result"];
+      while (value->is_array() && !value->empty()) value = &(*value)[rng() % value->size()];
+      if (value->is_number_integer())
+        *value = value->get<std::int64_t>() + (rng() % 2 == 0 ? 1'000'000 : -1'000'000);
+      else
+        *value = nlohmann::ordered_json::array({"x", 1e300});
+      WriteJsonAsPart(path, part);
+      try {
+        work.tables();
+        ADD_FAILURE() << work.work << ": an impossible number was counted";
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+        ++num_refused;
+      }
+      folder_.Write(std::filesystem::path(path).filename(), bytes);
+    }
+    fmt::print("{}: {} impossible numbers with right checksums: {} refused\n", work.work, NumDamages(),
+               num_refused);
+  }
+}
+
+}  // namespace
+}  // namespace rcme
