@@ -152,7 +152,8 @@ class Refusals(Written):
         first = ("claims", 0, "evidence", 0, "targets", 0)
         for path, value, named in [
                 (("seed",), "1", "whole number"), (("confidence_per_target",), 1.2, "0..1"),
-                (("claims", 0, "verdict"), "true", "'does not hold'"),
+                (("claims", 0, "verdict"), "true", "'does not hold'"), (("claims", 0, "side"), "left", "'too narrow', 'too wide'"),
+                ((*first, "side"), "left", "'too narrow', 'too wide'"),
                 (("claims", 0, "family"), "../up", "file's name"), (("claims", 0), 7, "claim 1 must be an object"),
                 (("claims", 0, "evidence"), None, "'evidence': null; expected a list"),
                 (("claims", 0, "evidence", 0, "conditions"), {"sigma_px": 1}, "an object of texts"),
@@ -195,8 +196,9 @@ class Page(unittest.TestCase):
         cls.folder = pathlib.Path(scratch.name)
         claims = [dict(claim(f"inlier.{EVIL}", [evidence(coverage(0.0), sigma_px=s) for s in SIGMAS], "holds", EVIL, "sigma_px"),
                        sentence=EVIL, statistic=EVIL, label=EVIL),
-                  claim("sigma_p.order", [evidence([target(EVIL, "rate", 0.7, 0.95, 0.93, 0.97, half=0.01)], scene=EVIL),
-                                          dict(evidence([]), not_possible=EVIL)], "does not hold")]
+                  dict(claim("sigma_p.order", [
+                      evidence([target(EVIL, "rate", 0.7, 0.95, 0.93, 0.97, half=0.01, side="too narrow")], scene=EVIL),
+                      dict(evidence([]), not_possible=EVIL)], "does not hold"), side="too narrow and too wide")]
         cls.content = dict(file_with(*claims), study=EVIL)
         (cls.folder / "audit.json").write_text(json.dumps(cls.content))
         with contextlib.redirect_stdout(io.StringIO()) as out:
@@ -211,8 +213,9 @@ class Page(unittest.TestCase):
                                               "inlier", "sigma_p"])
         text = "".join(structure.text)
         for words in ("\u2717 does not hold (1 of 2): ", "\u2713 holds (1 of 2): ", "70.0 [69.0, 71.0] %", "0.95 in [0.93, 0.97]",
-                      f"not possible: {EVIL}", f"\u201c{EVIL}.\u201d"):
+                      f"not possible: {EVIL}", f"\u201c{EVIL}.\u201d", "\u2717 does not hold: too narrow and too wide"):
             self.assertIn(words, text)
+        self.assertIn("\u2717 does not hold: too narrow", structure.text)
         for one in self.content["claims"]:
             for row in one["evidence"]:
                 for measured in row["targets"]:

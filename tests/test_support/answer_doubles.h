@@ -155,7 +155,7 @@ inline const std::vector<AnswerFault>& AnswerFaults() {
        FlipDirection<20>},
       {"sign of t flipped in 1 %, P stated without it", FoundBy::kFailureClaim, FullAnswer,
        FlipDirection<10>},
-      {"P a third too small", FoundBy::kFailureClaim, FullAnswer, ScaleProbability<67>},
+      {"P three tenths of what is right", FoundBy::kFailureClaim, FullAnswer, ScaleProbability<30>},
       {"P twice as great", FoundBy::kFailureClaim, FullAnswer, ScaleProbability<200>},
       {"one P for all", FoundBy::kFailureClaim, FullAnswer,
        [](MotionEstimate* a, RandomStream&) { a->failure_probability = 1.0 / 24.0; }},
