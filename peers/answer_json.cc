@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "parameters/plain_text.h"
@@ -117,8 +118,12 @@ std::string ProblemId(const MotionProblem& problem, std::uint32_t seed) {
 }
 
 std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed) {
+  return ProblemAsJson(problem, seed, ProblemId(problem, seed));
+}
+
+std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed, const std::string& id) {
   Json json = {{"format", kProblemFormat},
-               {"id", ProblemId(problem, seed)},
+               {"id", id},
                {"x1", PointsAsJson(problem.matches, &Correspondence::x1_px)},
                {"x2", PointsAsJson(problem.matches, &Correspondence::x2_px)},
                {"camera1", CameraAsJson(problem.camera1)},
@@ -130,14 +135,19 @@ std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed) {
 }
 
 AnswerLine AnswerFromJson(std::string_view line) {
-  // A depth that is not an answer's is refused before it is built: nothing recurses without end.
-  const auto is_shallow = [](int depth, Json::parse_event_t, Json&) {
+  // A depth that is not an answer's is refused before it is built: nothing recurses without end. Of a key
+  // that stands twice nobody knows which value is meant.
+  std::set<std::string> keys;
+  const auto is_allowed = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (depth > kMaxDepth) Fail("lists within lists within lists; expected one JSON object");
+    const bool is_key = depth == 1 && event == Json::parse_event_t::key;
+    if (is_key && !keys.insert(parsed.get<std::string>()).second)
+      Fail(fmt::format("key {} stands twice", Quoted(parsed.get<std::string>())));
     return true;
   };
   AnswerLine read;
   try {
-    const Json json = Json::parse(line, is_shallow);
+    const Json json = Json::parse(line, is_allowed);
     if (!json.is_object()) Fail(fmt::format("{} is no JSON object", Quoted(line.substr(0, 80))));
     if (const auto id = json.find("id"); id != json.end() && !id->is_null()) read.id = TextIn(*id, "id");
     read.answer = AnswerIn(json);
@@ -153,6 +163,17 @@ AnswerLine AnswerFromJson(std::string_view line) {
 const OutsideAnswer& Readable(const AnswerLine& line) {
   if (!line.fault.empty()) Fail(line.fault);
   return line.answer;
+}
+
+const OutsideAnswer& ReadableAnswerTo(const std::string& id, const AnswerLine& line) {
+  if (!line.id.empty() && line.id != id) {
+    Fail(fmt::format("the answer's id is {}; expected {}, that of the problem it was asked", Quoted(line.id),
+                     Quoted(id)));
+  }
+  const OutsideAnswer& answer = Readable(line);
+  if (line.id.empty())
+    Fail(fmt::format("the answer has no id; expected {}, that of the problem", Quoted(id)));
+  return answer;
 }
 
 }  // namespace rcme

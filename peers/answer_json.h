@@ -15,7 +15,8 @@ std::string ProblemId(const MotionProblem& problem, std::uint32_t seed);
 
 // {"format", "id", "x1", "x2", "camera1", "camera2", "sigma_px", "seed"}, "noise_scale" where the problem has
 // one, and a line end; numbers such that they are read back bit for bit.
-std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed);
+std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed, const std::string& id);
+std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed);  // with its ProblemId
 
 // What stands on one line.
 struct AnswerLine {
@@ -27,5 +28,7 @@ AnswerLine AnswerFromJson(std::string_view line);
 
 // The answer; throws NoOutsideAnswer (unreadable_answer) where it cannot be read.
 const OutsideAnswer& Readable(const AnswerLine& line);
+// The same for the answer to the question of that id; another's cannot be read either.
+const OutsideAnswer& ReadableAnswerTo(const std::string& id, const AnswerLine& line);
 
 }  // namespace rcme

@@ -2,6 +2,7 @@
 // answers that were made elsewhere.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -26,52 +27,78 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kNone = "none";
 
+// A process and what it was asked last.
+struct AskedProcess {
+  AskedProcess(ProcessKeeper* keeper, const std::string& command) : process(keeper, command) {}
+
+  // What the answer has to carry: the id of the problem, and where that is asked again, which time it is.
+  std::string NextId(const std::string& problem) {
+    num_times = problem == last_problem ? num_times + 1 : 1;
+    last_problem = problem;
+    return num_times == 1 ? problem : fmt::format("{}-{}", problem, num_times);
+  }
+
+  ChildProcess process;
+  std::string last_problem;
+  int num_times = 0;
+};
+
 // One process per thread that asks; each answers one problem after the other, and a new one takes the place
-// of one that gave no answer.
+// of one that gave no answer to the problem it was asked.
 class ProcessEstimator : public MotionEstimator {
  public:
   ProcessEstimator(std::string command, double timeout_s)
       : command_(std::move(command)), timeout_s_(timeout_s) {}
+  ~ProcessEstimator() override {
+    const Clock::time_point deadline = Clock::now() + kTimeToEnd;
+    for (const auto& idle : idle_) idle->process.CloseInput();
+    for (const auto& idle : idle_) idle->process.WaitForEnd(deadline);
+  }
 
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
     return CallOutside(problem, [&] { return Ask(problem, SeedForOutside(rng)); });
   }
 
- private:
+  // Throws NoOutsideAnswer.
   OutsideAnswer Ask(const MotionProblem& problem, std::uint32_t seed) const {
     if (command_ == kNone) throw NoOutsideAnswer(MotionStatus::kNoAnswer, "no command is given");
     const Clock::time_point start = Clock::now();
     const auto timeout =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s_));
-    std::unique_ptr<ChildProcess> process = Take();
-    const std::string line = process->Ask(ProblemAsJson(problem, seed), start + timeout);
-    OutsideAnswer answer = Readable(AnswerFromJson(line));
-    Give(std::move(process));
+    std::unique_ptr<AskedProcess> asked = Take();
+    const std::string id = asked->NextId(ProblemId(problem, seed));
+    const std::string line = asked->process.Ask(ProblemAsJson(problem, seed, id), start + timeout);
+    OutsideAnswer answer = ReadableAnswerTo(id, AnswerFromJson(line));
+    Give(std::move(asked));
     if (!(answer.seconds >= 0.0))
       answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
     return answer;
   }
 
-  std::unique_ptr<ChildProcess> Take() const {
+ private:
+  static constexpr std::chrono::milliseconds kTimeToEnd{500};  // once their input has ended
+
+  std::unique_ptr<AskedProcess> Take() const {
     {
       const std::lock_guard lock(mutex_);
       if (!idle_.empty()) {
-        std::unique_ptr<ChildProcess> process = std::move(idle_.back());
+        std::unique_ptr<AskedProcess> asked = std::move(idle_.back());
         idle_.pop_back();
-        return process;
+        return asked;
       }
     }
-    return std::make_unique<ChildProcess>(command_);
+    return std::make_unique<AskedProcess>(&keeper_, command_);
   }
-  void Give(std::unique_ptr<ChildProcess> process) const {
+  void Give(std::unique_ptr<AskedProcess> asked) const {
     const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(process));
+    idle_.push_back(std::move(asked));
   }
 
   std::string command_;
   double timeout_s_;
-  mutable std::mutex mutex_;  // of idle_
-  mutable std::vector<std::unique_ptr<ChildProcess>> idle_;
+  mutable ProcessKeeper keeper_;  // outlives the processes
+  mutable std::mutex mutex_;      // of idle_
+  mutable std::vector<std::unique_ptr<AskedProcess>> idle_;
 };
 
 class ProcessModel : public EstimatorModel {
@@ -90,6 +117,20 @@ class ProcessModel : public EstimatorModel {
   std::string command_ = kNone;
   double timeout_s_ = 10.0;
 };
+
+// Of noise-free matches, the second camera a tenth of the greatest depth to the right.
+MotionProblem MakeFirstProblem() {
+  const Camera camera{500.0, 500.0, 319.5, 239.5, 640, 480};
+  MotionProblem problem;
+  problem.camera1 = problem.camera2 = camera;
+  problem.sigma_px = 0.5;
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector2d point(120.0 + 100.0 * (i % 5), 90.0 + 100.0 * (i / 5));
+    const double disparity_px = 50.0 + 10.0 * ((7 * i) % 11);
+    problem.matches.push_back({point, point - Eigen::Vector2d(disparity_px, 0.0)});
+  }
+  return problem;
+}
 
 // Of a file of answers; `rcme export` writes no more problems.
 constexpr size_t kMaxFileBytes = size_t{1} << 31, kMaxLineBytes = size_t{16} << 20, kMaxAnswers = 1'000'000;
@@ -180,6 +221,26 @@ class AnswersModel : public EstimatorModel {
 }  // namespace
 
 std::string DigestOfAnswers(const std::string& path) { return ReadAnswers(path)->digest; }
+
+void RequireProcessStarts(const std::string& command, double timeout_s) {
+  constexpr double kLongStart_s = 10.0;  // who has not ended by then has started
+  constexpr int kNumTries = 2;
+  std::string end;
+  for (int i = 0; i < kNumTries; ++i) {
+    try {
+      ProcessEstimator(command, std::min(timeout_s, kLongStart_s)).Ask(MakeFirstProblem(), 1);
+      return;
+    } catch (const NoOutsideAnswer& none) {
+      if (none.status() != MotionStatus::kNoAnswer) return;
+      end = none.what();
+    }
+  }
+  throw InputError(fmt::format(
+      "process: {} cannot be used: asked a problem of twenty matches, {} without an answer. Its messages are "
+      "above; try it as sh would: rcme export STUDY --trials 1 --out FOLDER, then COMMAND < "
+      "FOLDER/problems.jsonl",
+      Quoted(command), end));
+}
 
 void AddOutsideEstimators() {
   AddEstimator({"process", "a process of yours that answers lines of JSON",

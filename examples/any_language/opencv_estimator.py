@@ -27,7 +27,7 @@ def estimate(x1, x2, camera1, camera2, options):
 
 
 def answer_to(problem):
-    """The answer as a dict; the id is for `rcme import`, the seconds are those of the estimate alone."""
+    """The answer as a dict; the id says which problem it answers, the seconds are those of the estimate alone."""
     start = time.process_time()
     found = estimate(problem["x1"], problem["x2"], problem["camera1"], problem["camera2"], problem)
     about = {"id": problem["id"], "seconds": time.process_time() - start}

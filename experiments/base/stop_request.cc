@@ -7,9 +7,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::atomic<int> stop_signal = 0;  // 0: none has come
 std::atomic<Clock::time_point> time_limit = Clock::time_point::max();
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may use nothing else");
 
 void Note(int signal) { stop_signal = signal; }
 

@@ -1,11 +1,12 @@
 // Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request: what is in hand is finished and kept,
-// then the program ends. The same signal a second time ends it at once.
+// then the program ends. A wait for an estimator outside the program is cut off by the signals
+// (parameters/stop_signal.h). The same signal a second time ends it at once.
 #pragma once
 
 #include <chrono>
 #include <csignal>
-#include <stdexcept>
-#include <string>
+
+#include "parameters/stop_signal.h"
 
 namespace rcme {
 
@@ -27,12 +28,6 @@ void StopAfter(std::chrono::duration<double> time);
 
 // Whether one has come; the work looks between one piece and the next.
 bool IsStopRequested();
-
-// Work that ended because of it.
-class Stopped : public std::runtime_error {
- public:
-  explicit Stopped(const std::string& message) : std::runtime_error(message) {}
-};
 
 // 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM. 75, "try again" (EX_TEMPFAIL), after a time
 // limit.

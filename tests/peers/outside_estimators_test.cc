@@ -12,6 +12,7 @@
 #include "parameters/input_error.h"
 #include "peers/answer_json.h"
 #include "peers/peer_registry.h"
+#include "tests/peers/process_entry.h"
 #include "tests/test_support/random_problem.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -27,27 +28,27 @@ MotionProblem ProblemOf(std::uint64_t seed) {
   return problem;
 }
 
-// Answers every line with the same one.
+// Answers every line with the same one, which is no JSON object.
 std::string Always(const std::string& answer) {
   std::string script = "while read -r line; do echo '";
   script += answer;
   script += "'; done";
   return script;
 }
-constexpr const char* kAnswer =
-    R"({"R": [[1,0,0],[0,1,0],[0,0,1]], "t": [2,0,0], "inliers": [4,1,2,3,0,7,9]})";
 
-const EstimatorEntry& Registered(const std::string& name) {
-  static const bool is_added = [] {
-    AddOutsideEstimators();
-    return true;
-  }();
-  EXPECT_TRUE(is_added);
-  return FindEstimator(name);
+// Answers every line with these keys and values beside the problem's id.
+std::string AlwaysWithId(const std::string& keys) {
+  std::string script = R"(while read -r line; do id=$(printf %.80s "$line"); id=${id#*\"id\":\"}; )"
+                       R"(printf '{"id":"%s"' "${id%%\"*}"; echo ')";
+  script += keys;
+  script += "}'; done";
+  return script;
 }
+constexpr const char* kAnswer =
+    R"(, "R": [[1,0,0],[0,1,0],[0,0,1]], "t": [2,0,0], "inliers": [4,1,2,3,0,7,9])";
 
 std::unique_ptr<MotionEstimator> Process(const std::string& command, const std::string& timeout_s = "20") {
-  return MakeEstimator(Registered("process").name, {{"command", command}, {"timeout_s", timeout_s}});
+  return MakeEstimator(ProcessEntryName(), {{"command", command}, {"timeout_s", timeout_s}});
 }
 
 MotionEstimate Ask(const MotionEstimator& estimator, std::uint64_t seed = 1) {
@@ -132,13 +133,33 @@ TEST(AnswerJson, WhatIsNoAnswerHasAFault) {
                                   line(R"(, "seconds": -1)"),
                                   line(R"(, "status": "invalid_motion")"),
                                   line(R"(, "message": 3)"),
+                                  line(R"(, "t": [1,0,0])"),
                                   line(R"(, "id": 3)")}) {
     EXPECT_NE(AnswerFromJson(text).fault, "") << text.substr(0, 60);
   }
 }
 
+TEST(AnswerJson, AnAnswerBelongsToTheProblemOfItsId) {
+  const std::string pose = R"("R": [1,0,0,0,1,0,0,0,1], "t": [1,0,0]})";
+  const auto message = [](const std::string& line) {
+    try {
+      ReadableAnswerTo("a", AnswerFromJson(line));
+    } catch (const NoOutsideAnswer& none) {
+      EXPECT_EQ(none.status(), MotionStatus::kUnreadableAnswer);
+      return std::string(none.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(R"({"id": "a", )" + pose), "");
+  EXPECT_THAT(message(R"({"id": "b", )" + pose), HasSubstr("'b'; expected 'a'"));
+  EXPECT_THAT(message(R"({"id": "aa", )" + pose), HasSubstr("expected 'a'"));
+  EXPECT_THAT(message(R"({"id": "", )" + pose), HasSubstr("expected 'a'"));
+  EXPECT_THAT(message("{" + pose), HasSubstr("no id; expected 'a'"));
+  EXPECT_THAT(message(R"({"id": "a", "R": [1]})"), HasSubstr("R"));
+}
+
 TEST(ProcessEstimator, AnswersAreEstimates) {
-  const auto process = Process(Always(kAnswer));
+  const auto process = Process(AlwaysWithId(kAnswer));
   for (const std::uint64_t seed : {1, 2, 3}) {
     const MotionEstimate estimate = Ask(*process, seed);
     ASSERT_EQ(estimate.status, MotionStatus::kOk) << estimate.message;
@@ -155,17 +176,18 @@ TEST(ProcessEstimator, TimeOutsCrashesAndNonsenseAreStatuses) {
     MotionStatus status;
     std::string words;
   };
-  for (const Case& c :
-       {Case{"sleep 60", MotionStatus::kTimedOut, "in time"},
-        Case{"read -r line; sleep 60", MotionStatus::kTimedOut, "in time"},
-        Case{"exit 3", MotionStatus::kNoAnswer, "exit code 3"},
-        Case{"read -r line; exit 0", MotionStatus::kNoAnswer, "exit code 0"},
-        Case{"read -r line; kill -9 $$", MotionStatus::kNoAnswer, "signal 9"},
-        Case{"no_such_program_at_all 2>/dev/null", MotionStatus::kNoAnswer, "exit code 127"},
-        Case{Always("hello"), MotionStatus::kUnreadableAnswer, "hello"},
-        Case{Always("{}\n{}"), MotionStatus::kUnreadableAnswer, ""},
-        Case{Always(R"({"status": "too_uncertain", "message": "no"})"), MotionStatus::kTooUncertain, "no"},
-        Case{Always(R"({})"), MotionStatus::kNoCandidate, ""}}) {
+  for (const Case& c : {Case{"sleep 60", MotionStatus::kTimedOut, "in time"},
+                        Case{"read -r line; sleep 60", MotionStatus::kTimedOut, "in time"},
+                        Case{"exit 3", MotionStatus::kNoAnswer, "exit code 3"},
+                        Case{"read -r line; exit 0", MotionStatus::kNoAnswer, "exit code 0"},
+                        Case{"read -r line; kill -9 $$", MotionStatus::kNoAnswer, "signal 9"},
+                        Case{"no_such_program_at_all 2>/dev/null", MotionStatus::kNoAnswer, "exit code 127"},
+                        Case{Always("hello"), MotionStatus::kUnreadableAnswer, "hello"},
+                        Case{Always("{}\n{}"), MotionStatus::kUnreadableAnswer, ""},
+                        Case{Always("{}"), MotionStatus::kUnreadableAnswer, "no id"},
+                        Case{AlwaysWithId(R"(, "status": "too_uncertain", "message": "no")"),
+                             MotionStatus::kTooUncertain, "no"},
+                        Case{AlwaysWithId(""), MotionStatus::kNoCandidate, ""}}) {
     const auto process = Process(c.command, c.status == MotionStatus::kTimedOut ? "0.5" : "20");
     const auto start = std::chrono::steady_clock::now();
     for (int call = 0; call < 2; ++call) {  // what gave no answer is begun again
@@ -184,12 +206,12 @@ TEST(ProcessEstimator, AProblemLargerThanAnyBuffer) {
   while (problem.matches.size() < 40'000)
     problem.matches.insert(problem.matches.end(), few.begin(), few.end());
   RandomStream rng({1, 0, 0, 0});
-  EXPECT_EQ(Process(Always(kAnswer))->Estimate(problem, rng).status, MotionStatus::kOk);
+  EXPECT_EQ(Process(AlwaysWithId(kAnswer))->Estimate(problem, rng).status, MotionStatus::kOk);
   EXPECT_EQ(Process("sleep 60", "0.3")->Estimate(problem, rng).status, MotionStatus::kTimedOut);
 }
 
 TEST(ProcessEstimator, SeveralThreadsHaveAProcessEach) {
-  const auto process = Process(Always(kAnswer));
+  const auto process = Process(AlwaysWithId(kAnswer));
   std::atomic<int> num_ok = 0;
   {
     std::vector<std::jthread> threads;
@@ -211,8 +233,8 @@ TEST(AnswersEstimator, LooksUpTheProblemById) {
   std::string line = "{\"id\": \"" + id;
   line += "\", \"R\": [1,0,0,0,1,0,0,0,1], \"t\": [1,0,0]}\n";
   std::ofstream(path) << line << "{\"id\": \"other\", \"R\": [1]}\n";
-  const auto answers =
-      MakeEstimator(Registered("answers").name, {{"file", path}, {"digest", DigestOfAnswers(path)}});
+  ProcessEntryName();
+  const auto answers = MakeEstimator("answers", {{"file", path}, {"digest", DigestOfAnswers(path)}});
   EXPECT_NE(Ask(*answers, 1).status, MotionStatus::kNoAnswer);
   EXPECT_EQ(Ask(*answers, 2).status, MotionStatus::kNoAnswer);
   std::ofstream(path, std::ios::app) << line;

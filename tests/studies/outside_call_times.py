@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples/any_language/opencv_estimator.py"
 NOTHING = """import sys
 for line in sys.stdin:
-    print('{"status": "no_candidate"}', flush=True)
+    print('{"id": "%s", "status": "no_candidate"}' % line.split('"id":"', 1)[1].split('"', 1)[0], flush=True)
 """
 STUDY = {"name": "outside_call_times", "trials": 200, "data": {"scene": "uniform_volume", "num_matches": 500,
                                                               "outlier_ratio": 0.2, "severity": "skipped"},
