@@ -12,6 +12,7 @@
 #include "experiments/base/stop_request.h"
 #include "experiments/result_file/open_for_run.h"
 #include "experiments/run/for_each_trial.h"
+#include "experiments/run/refusal_watch.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -104,12 +105,18 @@ RunReport CountStudy(const StudyPlan& plan, int num_threads, const std::string& 
     std::int64_t num_trials = 0;
     const std::vector<TrialsOfCondition> missing = counts.Missing(&num_trials);
     const std::int64_t num_to_run = NumTrials(missing), num_before = num_trials - num_to_run;
-    if (num_to_run > 0) NoteOrigin(file.get());
+    if (num_to_run > 0) {
+      RequireProcessesStart(plan.study.estimators);
+      NoteOrigin(file.get());
+    }
+    RefusalWatch refusals;
     Progress progress("trials", num_trials, num_before);
     try {
       ForEachTrial(missing, num_threads, &progress,
                    [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
-                     counts.Add(RunTrial(plan, condition, trial));
+                     const TrialResult result = RunTrial(plan, condition, trial);
+                     counts.Add(result);
+                     refusals.Add(result.records);
                    });
     } catch (const Stopped&) {
       counts.Flush();
@@ -120,6 +127,7 @@ RunReport CountStudy(const StudyPlan& plan, int num_threads, const std::string& 
       throw;
     }
     counts.Flush();
+    refusals.WarnOfRefusals(plan.study.estimators);
     const std::chrono::duration<double> elapsed = Clock::now() - start;
     return RunReport{num_trials, num_to_run, elapsed.count()};
   });

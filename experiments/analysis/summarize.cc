@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "experiments/analysis/scene_split.h"
@@ -223,6 +224,21 @@ Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
                    pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(store.Description()));
 }
 
+std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {
+  std::vector<std::string> found;
+  for (const auto& [label, effort] : summary.efforts) {
+    // Of all trials are rates of both kinds of refusal, which exclude each other.
+    std::map<std::uint32_t, double> refused;
+    for (const SummaryRow& row : summary.rows) {
+      const bool is_refusal = row.quantity == "no_candidate" || row.quantity == "other_refusal";
+      if (row.estimator == label && is_refusal && row.n > 0) refused[row.condition] += row.value;
+    }
+    const auto is_all = [](const auto& of_condition) { return of_condition.second > 1.0 - 1e-9; };
+    if (!refused.empty() && std::ranges::all_of(refused, is_all)) found.push_back(label);
+  }
+  return found;
+}
+
 Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups) {
   const RunDescription run = store.Description();
   Summary summary{run.study,
@@ -235,6 +251,7 @@ Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& 
                   TruthQualityInWords(run.identity)};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
+  summary.num_retried = run.retried_trials;
   std::vector<Cell> cells(groups.levels.size(), Cell(run.estimators.size(), run.repeats_per_scene));
   Cell* of_scene = nullptr;
   ForEachTrialByScene(

@@ -56,11 +56,15 @@ struct Summary {
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
   int repeats_per_scene = 1;
-  std::string truth_quality;  // truth_quality.h
+  std::string truth_quality;     // truth_quality.h
+  std::int64_t num_retried = 0;  // trials that were run again (RunDescription::retried_trials)
 };
 
 // Whether an estimator of the run states probabilities of failure.
 bool HasFailureProbabilities(const Summary& summary);
+
+// The estimators that refused every trial of every condition.
+std::vector<std::string> FindAlwaysRefusing(const Summary& summary);
 
 // A quantity of the summary, for `rcme list quantities`.
 struct QuantityHelp {

@@ -230,6 +230,10 @@ std::string SummaryAsTable(const Summary& summary) {
       "maa_10_deg: mean share of errors up to 1, 2, ..., 10 deg. All quantities, those with refusals left\n"
       "out among them: --format csv or json.\n";
   if (!summary.truth_quality.empty()) text += summary.truth_quality + "\n";
+  if (summary.num_retried > 0) {
+    text += fmt::format("{} trials were run again because an answer was missing (rcme run --retry).\n",
+                        summary.num_retried);
+  }
   return text + EffortsInWords(summary);
 }
 
@@ -262,6 +266,7 @@ std::string SummaryAsJson(const Summary& summary) {
                                  {"rows", nlohmann::ordered_json::array()}};
   for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;
   if (!summary.truth_quality.empty()) json["truth"] = summary.truth_quality;
+  if (summary.num_retried > 0) json["retried_trials"] = summary.num_retried;
   for (const SummaryRow& row : summary.rows) {
     nlohmann::ordered_json entry = {{"condition", row.condition}};
     for (size_t f = 0; f < row.levels.size(); ++f) entry["levels"][summary.factor_names[f]] = row.levels[f];

@@ -42,6 +42,8 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
     return AllClaims(EstimatorRegistry());
   }
   const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes, PlanEstimators::kMade);
+  const bool is_run = !arguments.only_plan && arguments.shards.parts.empty();
+  if (is_run) RequireProcessesStart(plan.study.estimators);
   options->seed = plan.study.seed;
   options->study = plan.study.name;
   options->study_identity = plan.identity;

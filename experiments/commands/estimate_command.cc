@@ -83,7 +83,9 @@ class Answerer {
       : arguments_(arguments),
         given_(CamerasOf(arguments.intrinsics)),
         spec_(ChosenEstimator(arguments.estimator)),
-        estimator_(Make(spec_)) {}
+        estimator_(Make(spec_)) {
+    RequireProcessesStart({spec_});
+  }
 
   const EstimatorSpec& spec() const { return spec_; }
   const MotionEstimator& estimator() const { return *estimator_; }
@@ -231,7 +233,11 @@ void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
     Progress progress("pairs", std::ssize(files), 0);
     for (const std::string& path : files) {
       if (IsStopRequested()) break;
-      answer_file(path);
+      try {
+        answer_file(path);
+      } catch (const Stopped&) {
+        break;  // while an estimator outside the program was waited for
+      }
       progress.Advance(1);
       ++num_done;
     }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -27,7 +28,8 @@ struct RunArguments {
   std::int64_t trials = 0, repeats_per_scene = 0;  // 0: the study's own
   int threads = 0;
   std::string keep = "all";
-  std::string shard, max_time;  // empty: all of the study, no limit
+  std::vector<std::string> retry;  // statuses
+  std::string shard, max_time;     // empty: all of the study, no limit
   std::string until, until_event = "failure", merged;
   std::int64_t max_trials = UntilOptions{}.max_trials;
 };
@@ -44,6 +46,33 @@ Study StudyFrom(const RunArguments& arguments) {
   if (arguments.repeats_per_scene > 0)
     study.repeats_per_scene = static_cast<int>(arguments.repeats_per_scene);
   return study;
+}
+
+// The ways in which an answer from outside the program can be missing, by name: whether it comes may depend
+// on the machine. All else an estimator says itself, and it would say so again.
+std::map<std::string, MotionStatus> MissingAnswers() {
+  std::map<std::string, MotionStatus> missing;
+  for (const MotionStatus status :
+       {MotionStatus::kNoAnswer, MotionStatus::kTimedOut, MotionStatus::kUnreadableAnswer})
+    missing[StatusName(status)] = status;
+  return missing;
+}
+
+std::vector<std::string> NamesOfMissingAnswers() {
+  std::vector<std::string> names;
+  for (const auto& [name, status] : MissingAnswers()) names.push_back(name);
+  return names;
+}
+
+// Takes nothing out where an estimator cannot be asked again.
+void RemoveForRetry(const StudyPlan& plan, const RunArguments& arguments, ResultStore* store) {
+  RequireProcessesStart(plan.study.estimators);
+  const std::map<std::string, MotionStatus> missing = MissingAnswers();
+  std::vector<MotionStatus> statuses;
+  for (const std::string& name : arguments.retry) statuses.push_back(missing.at(name));
+  const std::int64_t num_removed = store->RemoveForRetry(statuses);
+  PrintMessage("--retry {}: {} trials are run again{}\n", fmt::join(arguments.retry, ","), num_removed,
+               num_removed > 0 ? ", which the file notes" : "");
 }
 
 // What every condition took, as a table.
@@ -114,8 +143,11 @@ void Run(const RunArguments& arguments) {
   const Shard shard = arguments.shard.empty() ? Shard() : ParseShard(arguments.shard, ThisEnvironment());
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
   const bool keeps_counts = arguments.keep == "counts";
+  if (keeps_counts && !arguments.retry.empty())
+    throw InputError("--retry: not with --keep counts: which trials to run again is not in the counts");
   std::optional<ResultStore> store;
   if (!keeps_counts) store.emplace(ResultStore::OpenForRun(arguments.out, plan, shard));
+  if (!arguments.retry.empty()) RemoveForRetry(plan, arguments, &*store);
   PrintMessage("{}: {} conditions, {} trials, {} estimators{} -> {}\n", plan.study.name,
                plan.conditions.size(), plan.NumTrials(), plan.estimators.size(),
                shard.count > 1 ? ", of which shard " + shard.Text() : "", arguments.out);
@@ -200,6 +232,13 @@ void AddRunCommand(CLI::App& app) {
       ->capture_default_str()
       ->excludes(until)
       ->excludes(repeats);
+  command
+      ->add_option("--retry", arguments->retry,
+                   "no_answer,timed_out,unreadable_answer: trials in which an estimator outside the program "
+                   "ended so are run again, whole, and replaced; the file notes how many")
+      ->delimiter(',')
+      ->check(OneOf(NamesOfMissingAnswers()))
+      ->excludes(until);
   AddTimeLimit(command, "trials", &arguments->max_time);
   command
       ->add_option("--threads", arguments->threads,

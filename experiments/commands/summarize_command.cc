@@ -8,6 +8,7 @@
 #include "experiments/analysis/summary_output.h"
 #include "experiments/analysis/trial_table.h"
 #include "experiments/base/file_output.h"
+#include "experiments/base/message.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "parameters/input_error.h"
@@ -45,6 +46,16 @@ Settings LabelsOf(const std::vector<std::string>& texts) {
     labels.emplace_back(text.substr(0, equals), text.substr(equals + 1));
   }
   return labels;
+}
+
+void WarnOfRefusals(const Summary& summary) {
+  for (const std::string& label : FindAlwaysRefusing(summary)) {
+    PrintMessage(
+        "warning: {} refused every trial: no number here is of a motion of its; rcme replay RUN --condition "
+        "0 "
+        "--trial 0 shows why\n",
+        label);
+  }
 }
 
 std::string TextOf(const Summary& summary, const Arguments& arguments) {
@@ -127,6 +138,7 @@ void AddSummarizeCommand(CLI::App& app) {
       if (!arguments->fifths_of.empty())
         throw InputError(arguments->run + ": --fifths-of needs all trials, not counts (rcme run --keep all)");
       const Summary summary = SummarizeCounts(OpenCounts(arguments->run), arguments->with_times, pooling);
+      WarnOfRefusals(summary);
       return PrintOrWrite(arguments->out, TextOf(summary, *arguments));
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
@@ -135,6 +147,7 @@ void AddSummarizeCommand(CLI::App& app) {
         arguments->fifths_of.empty()
             ? Summarize(store, arguments->with_times, pooling)
             : Summarize(store, arguments->with_times, GroupByFifth(store, arguments->fifths_of));
+    WarnOfRefusals(summary);
     PrintOrWrite(arguments->out,
                  arguments->format == "table" ? Tables(store, summary) : TextOf(summary, *arguments));
   });

@@ -65,6 +65,7 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
       {kRuleChecksum, ChecksumOfStoppingRule(run.identity, run.stopping_rule)},
       {"until_options", run.until_options},
       {"until_trials", std::to_string(run.until_trials)},
+      {"retried_trials", std::to_string(run.retried_trials)},
       {"shard", run.shard},
       {"keep", run.keeps_counts ? "counts" : "all"},
       {"program", run.origin.program},
@@ -78,7 +79,7 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
   return values;
 }
 
-// The table `run`, every key of which there has to be.
+// The table `run`, every key of which there has to be but those that are newer than its format.
 class RunValues {
  public:
   explicit RunValues(SQLite::Database& database) {
@@ -92,6 +93,8 @@ class RunValues {
     if (found == values_.end()) throw Damage(fmt::format("table run lacks '{}'", key));
     return found->second;
   }
+
+  bool Has(const std::string& key) const { return values_.contains(key); }
 
   std::int64_t WholeNumber(const std::string& key, std::int64_t max) const {
     long long value = 0;
@@ -164,6 +167,7 @@ RunDescription ReadRun(SQLite::Database& database) {
   run.stopping_rule = values.Text("stopping_rule");
   run.until_options = values.Text("until_options");
   run.until_trials = values.WholeNumber("until_trials", kMax);
+  if (values.Has("retried_trials")) run.retried_trials = values.WholeNumber("retried_trials", kMax);
   run.shard = values.Text("shard");
   run.keeps_counts = values.Text("keep") == "counts";
   if (!run.keeps_counts && values.Text("keep") != "all") throw Damage("'keep' of table run is not possible");

@@ -29,6 +29,7 @@ RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {
   run.stopping_rule = earlier.stopping_rule;
   run.until_options = earlier.until_options;
   run.until_trials = earlier.until_trials;
+  run.retried_trials = earlier.retried_trials;
   run.origin = earlier.origin;
   return run;
 }

@@ -126,7 +126,9 @@ void PartDescriptions::AddAskedFor(const RunDescription& run) {
     merged_.until_options = before.until_options;
     merged_.until_trials = before.until_trials;
     merged_.origin = before.origin;
+    merged_.retried_trials = before.retried_trials;
   }
+  merged_.retried_trials += run.retried_trials;
   merged_.conditions = std::move(conditions);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "experiments/base/progress.h"
@@ -73,6 +74,43 @@ void ResultFile::SetDescription(const RunDescription& run) {
   WriteDescription(database, run);
   change.commit();
   description = run;
+}
+
+std::int64_t ResultFile::RemoveForRetry(const std::vector<MotionStatus>& statuses) {
+  std::vector<StoredTrial> removed;
+  ForEachTrial(std::nullopt, [&](const StoredTrial& trial) {
+    const auto is_retried = [&](const TrialRecord& record) {
+      return std::ranges::count(statuses, record.status) > 0;
+    };
+    if (std::ranges::any_of(trial.records, is_retried))
+      removed.push_back({trial.problem, {}, trial.checksum});
+  });
+  if (removed.empty()) return 0;
+  RunDescription run = description;
+  run.retried_trials += std::ssize(removed);
+  run.until_options.clear();  // they alone do not give these trials
+  try {
+    SQLite::Transaction change(database);
+    for (const char* table : {"trials", "problems"}) {
+      SQLite::Statement remove(database,
+                               fmt::format("DELETE FROM {} WHERE condition = ? AND trial = ?", table));
+      for (const StoredTrial& trial : removed) {
+        remove.bind(1, trial.problem.condition);
+        remove.bind(2, trial.problem.trial);
+        remove.exec();
+        remove.reset();
+      }
+    }
+    for (const StoredTrial& trial : removed) totals.Remove(trial.problem.condition, trial.checksum);
+    totals.WriteChanged(database);
+    WriteDescription(database, run);
+    change.commit();
+  } catch (...) {
+    totals = TrialTotals::Read(database);
+    throw;
+  }
+  description = run;
+  return std::ssize(removed);
 }
 
 void ResultFile::ForEachTrial(std::optional<std::uint32_t> condition,

@@ -31,6 +31,9 @@ class ResultFile {
 
   TrialFrame Frame() const;
   void SetDescription(const RunDescription& run);
+  // Takes out the whole trials in which an estimator ended with one of these statuses, and notes their number
+  // as trials that are run again. Returns it; where it is 0, nothing is written.
+  std::int64_t RemoveForRetry(const std::vector<MotionStatus>& statuses);
   // Every trial, or those of one condition; throws Damage at the first that is not sound, or at the end if
   // they are not those that were counted.
   void ForEachTrial(std::optional<std::uint32_t> condition,

@@ -164,6 +164,13 @@ void ResultStore::Commit() {
   NamingFile(connection_->file.path, [&] { connection_->writer.value().Commit(); });
 }
 
+std::int64_t ResultStore::RemoveForRetry(const std::vector<MotionStatus>& statuses) {
+  return NamingFile(connection_->file.path, [&] {
+    connection_->writer.value().Commit();
+    return connection_->file.RemoveForRetry(statuses);
+  });
+}
+
 void ResultStore::Set(const RunDescription& run) {
   NamingFile(connection_->file.path, [&] { connection_->Set(run); });
 }

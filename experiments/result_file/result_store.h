@@ -66,6 +66,11 @@ class ResultStore {
   // Writes what has been added.
   void Commit();
 
+  // Takes out the trials in which an answer was missing in one of these ways, so that they are missing and
+  // run again, and notes their number (RunDescription::retried_trials), which it returns. Nothing is written
+  // where it is 0.
+  std::int64_t RemoveForRetry(const std::vector<MotionStatus>& statuses);
+
   // How many trials a condition has may depend on their outcomes (run_until.h). Noted before the first trial
   // of such a run and for good: intervals that look once no longer hold.
   void NoteStoppingRule(const std::string& rule);

@@ -151,6 +151,9 @@ const std::vector<RunKey>& RunKeys() {
        "damaged"},
       {"until_options", "options of `rcme run` that alone gave `until_trials` trials; empty: none"},
       {"until_trials", "how many trials those gave in all conditions"},
+      {"retried_trials",
+       "how many trials were run again because an answer from outside the program was missing (`rcme run "
+       "--retry`), each time counted; a file of an earlier version has no such row"},
       {"shard",
        "which shards of the study the file is of: `3/64`, or merged ones that are complete, `1-3,7/64` or "
        "`none/64`; empty: the whole study"},

@@ -52,6 +52,13 @@ void TrialTotals::Add(std::uint32_t condition, std::uint32_t trial_checksum) {
   changed_.insert(condition);
 }
 
+void TrialTotals::Remove(std::uint32_t condition, std::uint32_t trial_checksum) {
+  TrialTotal& total = totals_.at(condition);
+  --total.num_trials;
+  total.checksum -= trial_checksum;
+  changed_.insert(condition);
+}
+
 void TrialTotals::Clear(std::uint32_t condition) {
   totals_.at(condition) = {};
   changed_.insert(condition);

@@ -33,6 +33,7 @@ class TrialTotals {
   std::int64_t NumTrials() const;
 
   void Add(std::uint32_t condition, std::uint32_t trial_checksum);
+  void Remove(std::uint32_t condition, std::uint32_t trial_checksum);
   void Clear(std::uint32_t condition);
   // Writes the rows that have changed since.
   void WriteChanged(SQLite::Database& database);

@@ -10,6 +10,7 @@
 #include "experiments/base/progress.h"
 #include "experiments/base/stop_request.h"
 #include "experiments/run/for_each_trial.h"
+#include "experiments/run/refusal_watch.h"
 
 namespace rcme {
 namespace {
@@ -97,17 +98,20 @@ RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store, c
   const TrialsToRun trials = FindTrialsToRun(plan, shard, store);
   const std::int64_t num_to_run = NumTrials(trials.missing), num_before = trials.num_trials - num_to_run;
   if (num_to_run > 0) {
+    RequireProcessesStart(plan.study.estimators);
     const std::string warning = store->NoteOrigin(ThisProgram());
     if (!warning.empty()) PrintMessage("warning: {}\n", warning);
   }
   Progress progress("trials", trials.num_trials, num_before);
   RecordBuffer buffer(store);
+  RefusalWatch refusals;
   std::atomic<std::int64_t> num_done = num_before;
   try {
     ForEachTrial(trials.missing, num_threads, &progress,
                  [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
                    const TrialResult result = RunTrial(plan, condition, trial);
                    buffer.Add(result.problem, result.records);
+                   refusals.Add(result.records);
                    ++num_done;
                  });
   } catch (const Stopped&) {
@@ -118,6 +122,7 @@ RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store, c
     throw;
   }
   buffer.Flush();
+  refusals.WarnOfRefusals(plan.study.estimators);
   const std::chrono::duration<double> elapsed = Clock::now() - start;
   return {trials.num_trials, num_to_run, elapsed.count()};
 }

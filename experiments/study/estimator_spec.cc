@@ -38,6 +38,18 @@ std::string EffortInWords(const EstimatorSpec& spec) {
   return effort->has_own_rule ? "own rule, " + limit : limit;
 }
 
+void RequireProcessesStart(const std::vector<EstimatorSpec>& specs) {
+  RequireAllowedCommands(specs);
+  for (const EstimatorSpec& spec : specs) {
+    if (spec.name != "process") continue;
+    const std::unique_ptr<EstimatorModel> model = Configure(spec);
+    const std::vector<Parameter> parameters = model->Parameters();
+    double timeout_s = 0.0;
+    ParseReal(FindParameter(parameters, "timeout_s").Value(), &timeout_s);
+    RequireProcessStarts(FindParameter(parameters, "command").Value(), timeout_s);
+  }
+}
+
 std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec) {
   return ConfigureEstimator(spec.name, spec.options);
 }

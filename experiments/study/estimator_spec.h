@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "estimator/estimator_model.h"
 #include "parameters/settings.h"
@@ -33,6 +34,11 @@ Settings AnswersOptions(const std::string& path);
 // What limits the work of a call, in words: "num_iterations 200", "3.1 ms a call (num_iterations 1840)",
 // "own rule, max_iterations 5000"; empty: nobody knows.
 std::string EffortInWords(const EstimatorSpec& spec);
+
+// Throws InputError where the command of an estimator that is a process is not allowed (command_permission.h)
+// or cannot be used (RequireProcessStarts of peers/peer_registry.h). To be called before work that is asked of
+// these estimators begins.
+void RequireProcessesStart(const std::vector<EstimatorSpec>& specs);
 
 // The estimator, configured or made. Throw InputError as ConfigureEstimator does; Make also for a command
 // that nobody has allowed.

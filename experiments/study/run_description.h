@@ -46,6 +46,7 @@ struct RunDescription {
   // Options of `rcme run` that alone gave `until_trials` trials in all; empty: none.
   std::string until_options;
   std::int64_t until_trials = 0;
+  std::int64_t retried_trials = 0;  // run again because an answer from outside the program was missing
   // Which shards of the study: "3/64" (study/shard.h), of several that were merged "1-3,7/64", "none/64" if
   // every one of them lacks trials; empty: all of it.
   std::string shard;
