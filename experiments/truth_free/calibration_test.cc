@@ -14,9 +14,11 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr PooledParameter kUnknown = {kNaN, kNaN, {-kNaN, kNaN}, 0.0};
 constexpr double kTooWide = 50.0;  // times what is nominal: half of an interval that says nothing
+// Decomposed from projections the intrinsics of one camera differ by rounding.
 bool IsOfCamera(const NamedPair& pair, const Camera& camera) {
   const auto same = [&](const Camera& other) {
-    return other.K() == camera.K() && other.width == camera.width && other.height == camera.height;
+    return other.K().isApprox(camera.K(), 1e-4) && other.width == camera.width &&
+           other.height == camera.height;
   };
   return same(pair.problem.camera1) && same(pair.problem.camera2);
 }

@@ -81,9 +81,10 @@ void JudgeCovariances(TruthFreeTest* test) {
                  &twins_covered = test->twin_coverage.interval;
   const bool covers_too_little = covered.upper < least;
   if (covers_too_little || (ratio.lower > 1.0 && !IsNominal(test->ratio))) {
-    test->cause =
-        CauseOf(twins.lower > 1.0 || covered.upper<twins_covered.lower, simulated.lower> kApproximation ||
-                twins_covered.upper < least);
+    const bool is_worse_than_twins = covered.upper < twins_covered.lower;
+    const bool is_worse_in_simulation = twins_covered.upper < least;
+    test->cause = CauseOf(twins.lower > 1.0 || is_worse_than_twins,
+                          simulated.lower > kApproximation || is_worse_in_simulation);
     if (test->cause != FaultCause::kNone) test->verdict = TruthFreeVerdict::kTooSmall;
   } else if (IsNominal(test->ratio)) {
     if (test->coverage.rate >= least) test->verdict = TruthFreeVerdict::kHolds;

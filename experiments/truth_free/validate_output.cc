@@ -160,8 +160,8 @@ std::string VerdictInWords(const TruthFreeTest& test) {
       if (test.units_needed > test.num_units)
         return fmt::format("undecided: {}; some {:.2g} in place of {} would decide it", range,
                            test.units_needed, test.num_units);
-      return fmt::format("undecided: {}; the same in simulation is {}", range,
-                         RangeText(test.in_simulation.value, test.in_simulation.interval));
+      return fmt::format("undecided: {}; within {:g} of one it would be by the approximation", range,
+                         kApproximation);
     case TruthFreeVerdict::kNoData:
       return VerdictName(test.verdict);
     default:
