@@ -57,5 +57,45 @@ TEST(FindModes, OfNoCandidateThereAreNone) {
   EXPECT_TRUE(FindModes(f.matches, f.prior, {}, 6).empty());
 }
 
+// From the truth the optimum is the fit's, found once however often it is begun there; its scale is what is
+// known, or what is estimated.
+TEST(ModesFrom, ReachesEachOptimumOnce) {
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    const FittedMode f = FitScene(200, 0.5, 0.3, trial);
+    const std::vector<Mode> modes = ModesFrom(f.matches, f.prior, {f.pose_true, f.mode.pose, f.pose_true});
+    ASSERT_EQ(modes.size(), 1u) << trial;
+    EXPECT_TRUE(IsSameMode(modes[0], f.mode, 0.1));
+    EXPECT_NEAR(modes[0].mixture.scale / f.mode.mixture.scale, 1.0, 0.02);
+    const std::vector<Mode> known = ModesFrom(f.matches, {f.prior.uniform_density, false}, {f.pose_true});
+    ASSERT_EQ(known.size(), 1u);
+    EXPECT_EQ(known[0].mixture.scale, NoiseLaw().scale_of_gaussian);
+  }
+}
+
+// Two bodies, the assumed noise that of the way between their motions: from the assumed scale a fit ends in a
+// compromise, from the scale that suits the first matches at one of the two. Both are optima, of one motion
+// within the width of the wider, and told apart by their scales. Where the noise is known there is but one.
+TEST(ModesFrom, BeginsAtTheScaleThatSuitsToo) {
+  int num_both = 0;
+  for (std::uint32_t trial = 0; trial < 12; ++trial) {
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2756});
+    RandomProblem random = MakeRandomProblem(rng, {.num_matches = 240});
+    const RelativePose second{RotationFromVector(0.006 * RandomDirection(rng)) * random.pose_true.R,
+                              (random.pose_true.t + 0.1 * RandomDirection(rng)).normalized()};
+    for (size_t i = 0; i < 240; i += 3) {
+      random.problem.matches[i] =
+          ProjectToBoth(random.points_in_cam1[i], second, random.problem.camera1, random.problem.camera2);
+    }
+    AddNoise(0.25, rng, &random.problem);
+    random.problem.sigma_px = 1.5;
+    const MatchBlocks matches(random.problem);
+    const MixturePrior prior = PriorOf(random.problem);
+    const std::vector<Mode> modes = ModesFrom(matches, prior, {random.pose_true});
+    num_both += modes.size() == 2 && modes[1].mixture.scale < 0.5 * modes[0].mixture.scale;
+    EXPECT_LE(ModesFrom(matches, {prior.uniform_density, false}, {random.pose_true}).size(), 1u);
+  }
+  EXPECT_GE(num_both, 4);
+}
+
 }  // namespace
 }  // namespace rcme

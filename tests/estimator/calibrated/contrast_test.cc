@@ -38,6 +38,26 @@ TEST(Contrast, OfAnExampleByHand) {
   EXPECT_NEAR(contrast.exclusive, of_a - of_b, 1e-9);
 }
 
+// Densities of a few backgrounds: the share of right matches of either mode by eight steps of expectation and
+// maximisation from one half, with half a match of prior on either side.
+TEST(Contrast, OfUnclearMatchesByHand) {
+  constexpr double q = 0.1;
+  const std::vector<double> d_a = {0.5, 0.2, 0.05, 0.02}, d_b = {0.1, 0.6, 0.3, 0.4};
+  const Explanation a = Explaining({.9, .9, .1, .1}, d_a), b = Explaining({.1, .1, .9, .9}, d_b);
+  const auto log_likelihood = [&](const std::vector<double>& densities) {
+    double share = 0.5;
+    for (int step = 0; step < 8; ++step) {
+      double right = 0.5;
+      for (const double d : densities) right += share * d / (share * d + (1.0 - share) * q);
+      share = right / 5.0;
+    }
+    double sum = 0.0;
+    for (const double d : densities) sum += std::log(share * d + (1.0 - share) * q);
+    return sum;
+  };
+  EXPECT_NEAR(CompareModes(a, b, q).exclusive, log_likelihood(d_a) - log_likelihood(d_b), 1e-12);
+}
+
 TEST(Contrast, TurnsOverWithTheModes) {
   RandomStream rng({.seed = 1, .purpose = 2740});
   std::vector<double> p_a, p_b, d_a, d_b;

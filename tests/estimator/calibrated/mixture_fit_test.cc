@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "estimator/kernels/mixture_sums.h"
@@ -94,6 +95,59 @@ TEST(MixtureFit, DoesNotConvergeWhereNothingDeterminesTheMotion) {
   Mode of_none = of_four;
   of_none.used = f.matches.Empty();
   EXPECT_FALSE(FitMode(f.matches, f.prior, 50, &of_none));
+}
+
+// The mixture that is found reproduces itself: the scale with two matches of the assumed sigma and five
+// degrees of freedom less, the share with half a match on either side, the density of wrong ones with five of
+// the prior. Few matches, so that each of these is seen.
+TEST(MixtureFit, IsWhereExpectationMaximisationStaysPut) {
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    FittedMode f = FitScene(40, kSigmaPx, kOutlierRatio, trial);
+    ASSERT_TRUE(f.has_converged);
+    for (int step = 0; step < 40; ++step)
+      FitMode(f.matches, f.prior, 1, &f.mode);  // beyond a negligible step
+    const MixtureParameters& m = f.mode.mixture;
+    const MixtureSums sums = SumMixture(f.matches, f.mode.used, f.mode.pose, m);
+    const double of_gaussian = m.noise.scale_of_gaussian;
+    const double variance =
+        (sums.sum_squares + 2.0 * of_gaussian * of_gaussian) / (sums.num_right - 5.0 + 2.0);
+    EXPECT_NEAR(m.scale, std::sqrt(variance), 2e-3 * m.scale);
+    EXPECT_NEAR(m.inlier_ratio, (sums.num_right + 0.5) / 41.0, 1e-3);
+    const double wrong = 40.0 - sums.num_right;
+    const double density = (sums.num_wrong_near + 5.0) / (60.0 * wrong + 5.0 / f.prior.uniform_density);
+    EXPECT_NEAR(m.outlier_density, density, 1e-2 * density);
+  }
+}
+
+// Five steps of the share and the density from one half, over all matches whichever are used.
+TEST(FitShares, IsFiveStepsByHand) {
+  FittedMode f = FitScene(60, kSigmaPx, kOutlierRatio, 1);
+  double share = 0.5, density = f.mode.mixture.outlier_density;
+  for (int step = 0; step < 5; ++step) {
+    MixtureParameters m = f.mode.mixture;
+    m.inlier_ratio = share;
+    m.outlier_density = density;
+    const MixtureSums sums = SumMixture(f.matches, f.matches.All(), f.mode.pose, m);
+    share = (sums.num_right + 0.5) / 61.0;
+    density = (sums.num_wrong_near + 5.0) / (60.0 * (60.0 - sums.num_right) + 5.0 / f.prior.uniform_density);
+  }
+  const double scale = f.mode.mixture.scale;
+  f.mode.used = f.matches.Empty();
+  FitShares(f.matches, f.prior, &f.mode);
+  EXPECT_NEAR(f.mode.mixture.inlier_ratio, share, 1e-12);
+  EXPECT_NEAR(f.mode.mixture.outlier_density, density, 1e-12);
+  EXPECT_EQ(f.mode.mixture.scale, scale);
+}
+
+// One step from ten standard deviations away is a long one: not yet an optimum.
+TEST(MixtureFit, IsNoOptimumAfterALongStep) {
+  const FittedMode f = FitScene(kNumMatches, kSigmaPx, 0.0, 1);
+  const Matrix5d root = f.mode.inverse_hessian.llt().matrixL();
+  for (const double away : {10.0, 1e-3}) {
+    Mode mode = f.mode;
+    mode.pose = Retract(f.mode.pose, away * root.col(0));
+    EXPECT_EQ(FitMode(f.matches, f.prior, 1, &mode), away < 1.0);
+  }
 }
 
 }  // namespace

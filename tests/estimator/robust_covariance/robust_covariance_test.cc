@@ -364,6 +364,80 @@ TEST(RobustCovariance, AsAnOptionChangesTheCovarianceAlone) {
   }
 }
 
+// The formula of the header from its parts, at the fit of the agreeing matches; `away` from it.
+Matrix5d CovarianceByHand(const MotionProblem& problem, const RelativePose& pose,
+                          const std::vector<int>& inliers, const RobustCovarianceOptions& options,
+                          const std::optional<Matrix5d>& own_cov, double* design_effect) {
+  const AgreeingFit fit = FitAgreeing(problem, pose, inliers);
+  const MatchScores scores = ScoreFitted(problem, fit.fitted, fit.cam2_from_cam1);
+  const auto n = static_cast<double>(scores.residuals.size());
+  double squares = 0.0;
+  for (const double r : scores.residuals) squares += r * r;
+  const Matrix5d hc3 = ClusteredCovariance(scores, Separate(scores.residuals.size()));
+  const Matrix5d of_equal = squares / (n - 5.0) * scores.information.inverse();
+  const ResidualVariances parts = FitResidualVariances(scores, KeyPointGroups(scores.matches, 1.0));
+  const double own_share = parts.own / parts.Sum();
+  const Matrix5d C = own_share * (own_cov ? *own_cov : Matrix5d(0.5 * (hc3 + of_equal))) + parts.shared;
+  const auto of_blocks = [&](int per_side) {
+    return ClusteredCovariance(scores, BlockGroups(problem.camera1, scores.matches, per_side));
+  };
+  const double effect = (C.inverse() * of_blocks(8)).trace() / 5.0;
+  *design_effect = effect > 1.25 ? effect : 1.0;
+  Matrix5d covariance = options.factor * *design_effect * C;
+  const Vector5d away = LocalCoordinates(pose, fit.cam2_from_cam1);
+  if (!own_cov) covariance += away * away.transpose();
+  if (options.adds_jackknife) covariance += of_blocks(4);
+  return covariance;
+}
+
+// Each part left out, doubled or taken of other blocks would show; sets with and without a design effect and
+// with shared parts are among them.
+TEST(RobustCovariance, IsThatOfTheHeader) {
+  const auto far = WithSettings(MakeCorrelatedNoise(), {{"noise_correlation_length_px", "80"}});
+  int num_with_effect = 0, num_without = 0;
+  for (std::uint32_t trial = 0; trial < 16; ++trial) {
+    const std::unique_ptr<NoiseModel> gaussian = MakeGaussianNoise(0.5);
+    const NoiseModel& noise = trial % 2 == 0 ? *gaussian : *far;
+    const Scene scene = TwoCameraScene(120, trial);
+    RandomStream noise_rng({.seed = 1, .trial = trial, .purpose = 91}),
+        outlier_rng({.seed = 1, .trial = trial, .purpose = 92});
+    const Observation observed = Observe(scene, noise, OutlierModel(0.0), noise_rng, outlier_rng);
+    const MotionProblem problem{observed.matches, scene.camera1, scene.camera2, noise.sigma_px()};
+    const std::vector<int> all = Separate(120);
+    for (const bool has_own : {false, true}) {
+      std::optional<Matrix5d> own_cov;
+      if (has_own) own_cov = 1e-6 * Matrix5d::Identity();
+      for (const bool adds_jackknife : {false, true}) {
+        const RobustCovarianceOptions options{1.5, adds_jackknife, {}};
+        double effect = 0.0;
+        const Matrix5d expected =
+            CovarianceByHand(problem, scene.cam2_from_cam1_true, all, options, own_cov, &effect);
+        const std::optional<Matrix5d> found =
+            RobustCovariance(problem, scene.cam2_from_cam1_true, all, options, own_cov);
+        ASSERT_TRUE(found.has_value());
+        EXPECT_LT((*found - expected).norm(), 1e-8 * expected.norm()) << trial << has_own << adds_jackknife;
+        (effect > 1.0 ? num_with_effect : num_without) += 1;
+      }
+    }
+  }
+  EXPECT_GE(num_with_effect, 4);
+  EXPECT_GE(num_without, 4);
+}
+
+// Noise of its own residuals, matches cut at one in a thousand: of 20 sets of 400 right matches all but about
+// that stay. A noise level a third too small would cut one in forty and more.
+TEST(FitAgreeing, KeepsNearlyAllRightMatches) {
+  double num_fitted = 0.0;
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    RelativePose pose_true;
+    MotionProblem problem = TwoCameraProblem(400, 0.5, 0.0, trial, &pose_true);
+    problem.sigma_px = 2.0;  // what is assumed does not matter
+    num_fitted += static_cast<double>(FitAgreeing(problem, pose_true, Separate(400)).fitted.size());
+  }
+  EXPECT_GT(num_fitted / 8000.0, 0.99);
+  EXPECT_LT(num_fitted / 8000.0, 1.0);
+}
+
 TEST(RobustCovariance, OfFiveInliersIsNone) {
   const MotionProblem problem = TwoCameraProblem(20, 0.5, 0.0, 1);
   EXPECT_FALSE(RobustCovariance(problem, {}, std::vector<int>{0, 1, 2, 3, 4}, {}).has_value());

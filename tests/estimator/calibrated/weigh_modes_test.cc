@@ -1,0 +1,122 @@
+// Modes made by hand, so that every weight is known in closed form.
+#include "estimator/calibrated/weigh_modes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "estimator/calibrated/mode_weights.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kDensity = 1e-2;               // of a wrong match
+constexpr MotionBounds kBounds = {0.05, 0.25};  // rad
+const MixturePrior kPrior = {kDensity, true};
+
+// A motion that turns by so much, with the information exp(log_det / 5) along every direction in units of its
+// noise; ten matches of 19 times the density of a wrong one, which are evidence of 10 log 10 nats.
+ExplainedMode ModeAt(double turn_rad, double log_det = 0.0, int num_explained = 100, double scale = 1.0) {
+  ExplainedMode made;
+  made.mode.pose = {RotationFromVector({0.0, 0.0, turn_rad}), Eigen::Vector3d::UnitZ()};
+  made.mode.hessian = std::exp(log_det / 5.0) / (scale * scale) * Matrix5d::Identity();
+  made.mode.mixture.scale = scale;
+  made.mode.mixture.inlier_ratio = 0.5;
+  made.mode.mixture.outlier_density = kDensity;
+  made.explanation.left_out_density.assign(10, 19.0 * kDensity);
+  made.explanation.probability.assign(10, 0.9);
+  made.explanation.num_explained = num_explained;
+  return made;
+}
+const double kNone = std::exp(-(10.0 * std::log(10.0) - kSearchNats));  // odds of no motion against that
+
+TEST(WeighModes, OneModeIsWeighedAgainstNone) {
+  const ModeWeights weights = WeighModes({ModeAt(0.0)}, kBounds, kPrior, {});
+  EXPECT_EQ(weights.answer, 0u);
+  EXPECT_NEAR(weights.of_no_motion, kNone / (1.0 + kNone), 1e-12);
+  EXPECT_NEAR(weights.of_modes[0], 1.0 / (1.0 + kNone), 1e-12);
+  EXPECT_FALSE(weights.is_rival[0]);
+  EXPECT_FALSE(weights.is_second_motion[0]);
+}
+
+TEST(WeighModes, TheGreaterOfTwoDensitiesOfWrongMatchesCounts) {
+  ExplainedMode mode = ModeAt(0.0);
+  EXPECT_NEAR(WeighModes({mode}, kBounds, {1e-4, true}, {}).of_no_motion, kNone / (1.0 + kNone), 1e-12);
+  mode.mode.mixture.outlier_density = 1e-4;
+  EXPECT_NEAR(WeighModes({mode}, kBounds, kPrior, {}).of_no_motion, kNone / (1.0 + kNone), 1e-12);
+}
+
+// Evidence against any motion, of 22 nats, counts as two.
+TEST(WeighModes, NoMotionIsNeverMoreThanSevenTimesAsLikely) {
+  ExplainedMode mode = ModeAt(0.0);
+  mode.explanation.left_out_density.assign(10, kDensity);
+  const ModeWeights weights = WeighModes({mode}, kBounds, kPrior, {});
+  EXPECT_NEAR(weights.of_no_motion / weights.of_modes[0], std::exp(2.0), 1e-9);
+}
+
+// The same motion found three times weighs as much as found once.
+TEST(WeighModes, ModesWithinTheBoundsAreOne) {
+  const ModeWeights weights = WeighModes({ModeAt(0.0), ModeAt(0.01), ModeAt(0.04)}, kBounds, kPrior, {});
+  EXPECT_NEAR(weights.of_no_motion, kNone / (1.0 + kNone), 1e-12);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_FALSE(weights.is_rival[i]);
+    EXPECT_NEAR(weights.of_modes[i], 1.0 / 3.0 / (1.0 + kNone), 1e-12);
+  }
+}
+
+// Log-odds of 3/4 (log det) n / (n + 50), n the mean of what both explain, the noise of each mode aside; the
+// odds of rivals add up to the root of their powers.
+TEST(WeighModes, RivalsAddUpToTheirNorm) {
+  const std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2, 1.0, 60, 2.0),
+                                            ModeAt(0.4, 2.0, 40, 0.5)};
+  const ModeWeights weights = WeighModes(modes, kBounds, kPrior, {});
+  EXPECT_EQ(weights.answer, 0u);
+  const double first = std::exp(-0.75 * 1.0 * 80.0 / 130.0), second = std::exp(-0.75 * 2.0 * 70.0 / 120.0);
+  const double norm = std::pow(std::pow(first, 2.5) + std::pow(second, 2.5), 0.4);
+  const double total = 1.0 + norm + kNone;
+  EXPECT_NEAR(weights.of_modes[0], 1.0 / total, 1e-12);
+  EXPECT_NEAR(weights.of_modes[1], norm * first / (first + second) / total, 1e-12);
+  EXPECT_NEAR(weights.of_modes[2], norm * second / (first + second) / total, 1e-12);
+  EXPECT_NEAR(weights.of_no_motion, kNone / total, 1e-12);
+  EXPECT_EQ(weights.is_rival, (std::vector<bool>{false, true, true}));
+}
+
+TEST(WeighModes, TheAnswerIsTheModeThatNoOtherBeats) {
+  const ModeWeights weights = WeighModes(
+      {ModeAt(0.0, 3.0), ModeAt(0.2, 2.0), ModeAt(0.4, 0.0), ModeAt(0.6, 1.0)}, kBounds, kPrior, {});
+  EXPECT_EQ(weights.answer, 2u);
+  EXPECT_GT(weights.of_modes[2], weights.of_modes[3]);
+  EXPECT_GT(weights.of_modes[3], weights.of_modes[1]);
+  EXPECT_GT(weights.of_modes[1], weights.of_modes[0]);
+}
+
+// Two motions of their own, 20 matches against 15: the prior odds of the options times (15 / 20)^3.
+TEST(WeighModes, ASecondMotionHasThePriorOfTheOptions) {
+  ExplainedMode first = ModeAt(0.0), second = ModeAt(0.2);
+  for (ExplainedMode* mode : {&first, &second}) {
+    mode->explanation.left_out_density.assign(35, 1e-6);
+    mode->explanation.probability.assign(35, 0.1);
+  }
+  for (size_t i = 0; i < 35; ++i) {
+    ExplainedMode& of = i < 20 ? first : second;
+    of.explanation.left_out_density[i] = 1e3;
+    of.explanation.probability[i] = 0.9;
+  }
+  for (const double odds : {0.6, 0.1}) {
+    CalibratedOptions options;
+    options.second_motion_odds = odds;
+    for (const bool is_turned : {false, true}) {
+      const ModeWeights weights = is_turned ? WeighModes({second, first}, kBounds, kPrior, options)
+                                            : WeighModes({first, second}, kBounds, kPrior, options);
+      const size_t other = 1 - weights.answer;
+      EXPECT_EQ(weights.answer, is_turned ? 1u : 0u);
+      EXPECT_TRUE(weights.is_second_motion[other]);
+      EXPECT_FALSE(weights.is_second_motion[weights.answer]);
+      EXPECT_NEAR(weights.of_modes[other] / weights.of_modes[weights.answer], odds * std::pow(0.75, 3.0),
+                  1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rcme
