@@ -50,6 +50,7 @@ EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
   SetOwnOptions(&spec, options);
   std::vector<EstimatorSpec> chosen = {std::move(spec)};
   if (choice.allow_process) AllowAndSay(&chosen);
+  RequireAllowedCommands(chosen);  // now, not after the pairs have been read
   return chosen.front();
 }
 
