@@ -3,7 +3,7 @@
 // experiments/results/audit_power):
 //   rcme_audit_power faults [SEEDS, default 50] > faults.csv
 //   rcme_audit_power sigma [SEEDS, default 20; half as many where cases are simulated] > sigma.csv
-//   rcme_audit_power edges [SEEDS, default 400] > edges.csv
+//   rcme_audit_power edges [SEEDS, default 200] > edges.csv
 // `faults`: each claim about an estimator's answers, of doubles that are sound or have one fault
 // (tests/test_support/answer_doubles.h); quick budget. `sigma`: standard deviations wrong by 1 to 20 %, quick
 // and full; drawn: the statistic is drawn from its law, run: it comes from simulated cases. `edges`: a target
@@ -221,7 +221,7 @@ void PrintSigma(double confidence, int num_seeds) {
 int main(int argc, char** argv) {
   const std::string table = argc > 1 ? argv[1] : "";
   const std::string_view seeds = argc > 2            ? argv[2]
-                                 : table == "edges"  ? "400"
+                                 : table == "edges"  ? "200"
                                  : table == "faults" ? "50"
                                                      : "20";
   int num_seeds = 0;
