@@ -178,8 +178,9 @@ std::string DescribeWhyNone(const std::vector<PairRow>& rows, const std::vector<
   for (const PairRow& row : rows) ++counts[row.reason];
   std::vector<std::string> reasons;
   for (const auto& [reason, count] : counts) reasons.push_back(fmt::format("{} {}", count, reason));
-  if (reasons.empty()) reasons.emplace_back("none could be made");
-  std::string text = fmt::format("no pair was kept: of {} {}", rows.size(), fmt::join(reasons, ", "));
+  std::string text =
+      rows.empty() ? "no pair was kept: none could be made"
+                   : fmt::format("no pair was kept: of {} pairs {}", rows.size(), fmt::join(reasons, ", "));
   if (!damaged.empty())
     text += fmt::format("; {} images were skipped, the first: {}", damaged.size(), damaged[0].message);
   return text;

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -63,16 +62,16 @@ TEST(PairsProgram, EndsWithTwoAndTheReasonsWhereNoPairIsKept) {
                                            "kitti", "--least-matches", "100000"};
   std::vector<std::string> command = strict;
   command.insert(command.end(), {"--out", folder.Path("strict")});
-  EXPECT_TRUE(
-      IsRefused(RunRcme(command), {"no pair was kept: of 2 2 too_few_matches", "INDEX.csv lists them"}));
+  EXPECT_TRUE(IsRefused(RunRcme(command),
+                        {"no pair was kept: of 2 pairs 2 too_few_matches", "INDEX.csv lists them"}));
   EXPECT_TRUE(fs::exists(folder.Path("strict") + "/INDEX.csv"));
   for (const char* image : {"000000", "000001", "000002"})
-    std::ofstream(dataset + "/sequences/04/image_0/" + image + ".png") << "no image";
+    fs::resize_file(dataset + "/sequences/04/image_0/" + image + ".png", 5000);
   command = strict;
   command.insert(command.end(), {"--out", folder.Path("damaged")});
-  EXPECT_TRUE(IsRefused(RunRcme(command),
-                        {"no pair was kept: of 0 none could be made; 3 images were skipped, the first: ",
-                         "000000.png: is not a PNG"}));
+  EXPECT_TRUE(
+      IsRefused(RunRcme(command), {"no pair was kept: none could be made; 3 images were skipped, the first: ",
+                                   "000000.png: the image is damaged: it ends early"}));
 }
 
 // Half of K: a warning that says so, once for all pairs.
@@ -84,7 +83,7 @@ TEST(PairsProgram, WarnsWhereKIsNotOfTheImages) {
                                       "--K", "130", "131", "78.9", "60.5"});
   EXPECT_EQ(half.exit_code, 0) << half.err;
   EXPECT_NE(
-      half.err.find("warning: images: K: the principal point is the centre of an image of 160 x 120 px"),
+      half.err.find("warning: images: K: the principal point is the centre of an image of 161 x 121 px"),
       std::string::npos)
       << half.err;
   const ProgramResult estimated = RunRcme({"estimate", out, "--json"});
