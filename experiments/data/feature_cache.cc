@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -84,6 +86,19 @@ std::optional<ImageFeatures> UnpackFeatures(const std::string& bytes) {
   return image;
 }
 
+bool AreFeatures(const ImageFeatures& image, Detector detector) {
+  const Features& features = image.features;
+  const size_t num_bytes = features.key_points.size() * CountDescriptorBytes(detector);
+  if (image.width < 1 || image.height < 1 || features.descriptors.size() != num_bytes) return false;
+  if (!features.key_points.empty() && features.is_binary != (detector != Detector::kSift)) return false;
+  constexpr float kMarginPx = 1.0f;  // beyond the image: SIFT's shift
+  return std::ranges::all_of(features.key_points, [&](const KeyPoint& point) {
+    return point.x_px >= -kMarginPx && point.x_px <= static_cast<float>(image.width) + kMarginPx &&
+           point.y_px >= -kMarginPx && point.y_px <= static_cast<float>(image.height) + kMarginPx &&
+           point.size_px > 0.0f && std::isfinite(point.size_px);
+  });
+}
+
 FeatureCache::FeatureCache(std::string folder) : folder_(std::move(folder)) {
   if (!folder_.empty()) MakeResultFolder(folder_);
 }
@@ -94,8 +109,9 @@ ImageFeatures FeatureCache::Get(const std::string& path, const DetectorOptions& 
   if (!folder_.empty()) {
     kept = (std::filesystem::path(folder_) / NameOf(image_bytes, options)).string();
     std::ifstream file(kept, std::ios::binary);
-    if (std::optional<ImageFeatures> image =
-            UnpackFeatures({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()})) {
+    const std::optional<ImageFeatures> image =
+        UnpackFeatures({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+    if (image && AreFeatures(*image, options.detector)) {
       ++num_found_;
       return *image;
     }

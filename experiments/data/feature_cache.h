@@ -35,4 +35,7 @@ class FeatureCache {
 std::string PackFeatures(const ImageFeatures& image);
 std::optional<ImageFeatures> UnpackFeatures(const std::string& bytes);
 
+// Whether the detector can have found these: a file that is whole may have been made to harm.
+bool AreFeatures(const ImageFeatures& image, Detector detector);
+
 }  // namespace rcme

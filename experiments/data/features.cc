@@ -89,6 +89,18 @@ const std::vector<std::pair<std::string, Detector>>& DetectorNames() {
   return names;
 }
 
+size_t CountDescriptorBytes(Detector detector) {
+  switch (detector) {
+    case Detector::kSift:
+      return 128 * sizeof(float);
+    case Detector::kOrb:
+      return 32;
+    case Detector::kAkaze:
+      break;
+  }
+  return 61;  // 486 bits
+}
+
 Features DetectFeatures(const GreyImage& image, const DetectorOptions& options) {
   const cv::Mat pixels(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.grey.data()));
   std::vector<cv::KeyPoint> key_points;

@@ -41,6 +41,9 @@ struct Features {
   int scale = 1;                          // of the image in which they were found (GreyImage)
 };
 
+// How many bytes describe a key point.
+size_t CountDescriptorBytes(Detector detector);
+
 // The same for the same image and options. OpenCV 4.6 places what SIFT finds a quarter of a pixel to the
 // right and below (it doubles the image about pixel borders and halves about pixel centres; later versions
 // have an option), which is taken back: a quarter of a pixel in the principal point. Places and sizes are

@@ -4,6 +4,7 @@
   scripts/results                      everything but what takes long; with --long everything
   scripts/results failure_vs_parallax  one result; a folder's name stands for all its results (scripts/results atlas)
   scripts/results --check tuning       makes it in build/results and compares with what is committed; changes nothing
+  scripts/results --check --at-most 0.1  the same for what took at most so many CPU minutes
   scripts/results --blocks             only the tables of the pages, from the committed tables
   scripts/results --digests            stores the hashes of a few trials of each result, for the test results.digests
 
@@ -38,6 +39,9 @@ def parse(arguments):
     parser.add_argument("names", nargs="*", metavar="NAME", help="results or folders; default: all that are not long")
     parser.add_argument("--list", action="store_true", help="list the results and stop")
     parser.add_argument("--long", action="store_true", help="without names: also the long ones")
+    parser.add_argument("--at-most", type=float, metavar="MINUTES",
+                        help="of these only what took at most so many CPU minutes, as --list says; what needs something that "
+                             "is not there is left out")
     parser.add_argument("--check", action="store_true",
                         help="compare with what is committed instead of replacing it (exit code 1: something differs); "
                              "with --blocks or --digests: only compare these")
@@ -51,11 +55,15 @@ def parse(arguments):
     return parser.parse_args(arguments)
 
 
+def minutes_of(recipe, entries):
+    """What it took when it was made last, else what its entry says."""
+    return entries.get(recipe.name, {}).get("cpu_minutes", recipe.cpu_minutes)
+
+
 def show_list(recipes):
     entries = made_by()
     for recipe in recipes.values():
-        minutes = entries.get(recipe.name, {}).get("cpu_minutes", recipe.cpu_minutes)
-        cost = f"{minutes:g} CPU min" + (", long" if recipe.is_long() else "")
+        cost = f"{minutes_of(recipe, entries):g} CPU min" + (", long" if recipe.is_long() else "")
         print(f"{recipe.name:36}{recipe.folder:14}{cost:20}{version_words(entries.get(recipe.name))}")
 
 
@@ -116,7 +124,7 @@ def do_results(recipes, options):
         missing = recipe.missing(options.programs)
         if missing:
             say(f"{recipe.name}: skipped: there is no {', '.join(missing)}")
-            status = 2
+            status = status if options.at_most else 2
             continue
         out = options.scratch / recipe.name
         if not options.resume:
@@ -145,6 +153,9 @@ def main(arguments):
     if options.blocks:
         return do_blocks(options.check)
     picked = chosen(recipes, options.names, options.long or options.digests)
+    if options.at_most:
+        entries = made_by()
+        picked = [recipe for recipe in picked if minutes_of(recipe, entries) <= options.at_most]
     return do_digests(picked, options) if options.digests else do_results(picked, options)
 
 

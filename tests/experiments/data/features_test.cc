@@ -188,5 +188,47 @@ TEST(FeatureCache, FindsAnImageByItsContentAndMakesWhatIsDamagedAgain) {
   EXPECT_TRUE(ThrowsInputError([&] { cache.Get(folder.Write("c.png", "x"), {}); }, {"c.png: is not a PNG"}));
 }
 
+// A file may be whole and yet hold what no detector finds: rows of another length would end the matcher, a
+// size that is no number would become a noise level.
+TEST(FeatureCache, WhatTheDetectorCannotHaveFoundIsFoundAgain) {
+  const ImageFeatures sound{
+      100, 80, {{{10.0f, 20.0f, 4.0f}, {99.0f, 79.0f, 8.0f}}, std::vector<std::uint8_t>(64), true}};
+  EXPECT_TRUE(AreFeatures(sound, Detector::kOrb));
+  EXPECT_FALSE(AreFeatures(sound, Detector::kAkaze));
+  EXPECT_FALSE(AreFeatures(sound, Detector::kSift));
+  const auto are_after = [&](const auto& change) {
+    ImageFeatures changed = sound;
+    change(&changed);
+    return AreFeatures(changed, Detector::kOrb);
+  };
+  const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
+  EXPECT_FALSE(are_after([](ImageFeatures* image) { image->features.descriptors.push_back(0); }));
+  EXPECT_FALSE(are_after([](ImageFeatures* image) { image->features.key_points.pop_back(); }));
+  EXPECT_FALSE(are_after([](ImageFeatures* image) { image->features.is_binary = false; }));
+  EXPECT_FALSE(are_after([](ImageFeatures* image) { image->width = 0; }));
+  EXPECT_FALSE(are_after([](ImageFeatures* image) { image->height = -80; }));
+  for (const float wrong : {nan, infinity, 200.0f, -2.0f}) {
+    EXPECT_FALSE(are_after([&](ImageFeatures* image) { image->features.key_points[1].x_px = wrong; }))
+        << wrong;
+    EXPECT_FALSE(are_after([&](ImageFeatures* image) { image->features.key_points[1].y_px = wrong; }))
+        << wrong;
+  }
+  for (const float wrong : {nan, infinity, 0.0f, -4.0f})
+    EXPECT_FALSE(are_after([&](ImageFeatures* image) { image->features.key_points[1].size_px = wrong; }))
+        << wrong;
+
+  const TempFolder folder;
+  const std::string path = folder.Path("a.png"), cached = folder.Path("cache");
+  WriteImage(path, TestCamera().camera, Rendered(3).grey);
+  FeatureCache cache(cached);
+  ImageFeatures image = cache.Get(path, {Detector::kOrb});
+  const std::string first = PackFeatures(image);
+  const std::string kept = std::filesystem::directory_iterator(cached)->path().string();
+  image.features.descriptors.pop_back();
+  std::ofstream(kept, std::ios::binary) << PackFeatures(image);
+  EXPECT_EQ(PackFeatures(cache.Get(path, {Detector::kOrb})), first);
+  EXPECT_EQ(cache.num_found(), 0);
+}
+
 }  // namespace
 }  // namespace rcme
