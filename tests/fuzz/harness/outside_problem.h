@@ -20,12 +20,17 @@ inline const MotionProblem& OutsideProblem() {
 }
 inline RandomStream OutsideStream() { return RandomStream({.seed = 2}); }
 
-// The input with the problem's id in the place of each "PROBLEM", which no mutation would find.
-inline std::string WithProblemId(std::string text) {
+inline const std::string& OutsideProblemId() {
   static const std::string id = [] {
     RandomStream rng = OutsideStream();
     return ProblemId(OutsideProblem(), SeedForOutside(rng));
   }();
+  return id;
+}
+
+// The input with the problem's id in the place of each "PROBLEM", which no mutation would find.
+inline std::string WithProblemId(std::string text) {
+  const std::string& id = OutsideProblemId();
   constexpr std::string_view kPlaceholder = "PROBLEM";
   for (size_t at = text.find(kPlaceholder); at != std::string::npos;
        at = text.find(kPlaceholder, at + id.size()))

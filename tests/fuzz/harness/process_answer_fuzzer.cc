@@ -6,6 +6,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size) {
   using namespace rcme;
   const AnswerLine line = AnswerFromJson(WithProblemId(AsText(data, size)));
   const MotionProblem& problem = OutsideProblem();
-  Judged(CallOutside(problem, [&] { return Readable(line); }), problem.matches.size());
+  Judged(CallOutside(problem, [&] { return ReadableAnswerTo(OutsideProblemId(), line); }),
+         problem.matches.size());
   return 0;
 }
