@@ -203,6 +203,7 @@ auto Stoppable(Work work) {
     return work();
   } catch (const Stopped& stopped) {
     const bool is_interrupt = StopExitCode() == 128 + SIGINT;
+    stop_signal = 0;  // the next call is not stopped by it
     PyErr_SetString(is_interrupt ? PyExc_KeyboardInterrupt : PyExc_SystemExit, stopped.what());
     throw py::error_already_set();
   }

@@ -43,14 +43,13 @@ class ProcessEstimators : public testing::Test {
     std::ofstream(script_) << R"sh(
 ask() { IFS= read -r line || exit 0; id=${line#*\"id\":\"}; id=${id%%\"*}; }
 answer() { printf '{"id":"%s","R":[1,0,0,0,1,0,0,0,1],"t":[1,0,0]}\n' "$id"; }
-cd ')sh" << folder_.path()
-                           << "' || exit\n"
+cd ')sh" << folder_.path() << "' || exit\n"
                            << script << "\n";
     UseCommand("exec sh " + script_, timeout_s);
   }
   std::vector<std::string> RunArguments(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"run",   study_, "--add-estimator", estimator_,
-                                          "--out", out_,   "--threads",       "2"};
+    std::vector<std::string> arguments = {
+        "run", study_, "--allow-process", "--add-estimator", estimator_, "--out", out_, "--threads", "2"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -95,11 +94,13 @@ TEST_F(ProcessEstimators, NoCommandWorksWithOneThatCannotStart) {
   const std::string matches = folder_.Path("problems/matches");
   ASSERT_EQ(RunRcme({"export", study_, "--trials", "1", "--out", folder_.Path("problems")}).exit_code, 0);
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"estimate", matches, "--estimator-file", estimator_},
-        {"run", study_, "--add-estimator", estimator_, "--out", folder_.Path("counts"), "--keep", "counts"},
-        {"audit", study_, "--add-estimator", estimator_, "--out", folder_.Path("audit")},
-        {"rare", study_, "--add-estimator", estimator_, "--out", folder_.Path("rare")},
-        {"model-choice", study_, "--add-estimator", estimator_, "--out", folder_.Path("choice")}}) {
+       {std::vector<std::string>{"estimate", matches, "--allow-process", "--estimator-file", estimator_},
+        {"run", study_, "--allow-process", "--add-estimator", estimator_, "--out", folder_.Path("counts"),
+         "--keep", "counts"},
+        {"audit", study_, "--allow-process", "--add-estimator", estimator_, "--out", folder_.Path("audit")},
+        {"rare", study_, "--allow-process", "--add-estimator", estimator_, "--out", folder_.Path("rare")},
+        {"model-choice", study_, "--allow-process", "--add-estimator", estimator_, "--out",
+         folder_.Path("choice")}}) {
     const ProgramResult result = RunRcme(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments.front();
     EXPECT_THAT(result.err, HasSubstr("'exit 127' cannot be used")) << arguments.front();
@@ -120,7 +121,8 @@ TEST_F(ProcessEstimators, OneThatRefusesEverythingIsAWarning) {
 // Whatever the process has started, in whatever session.
 TEST_F(ProcessEstimators, NothingOutlivesAProgramThatIsKilled) {
   UseScript(
-      "export RCME_CASE=\"$PWD\"; ask; answer; trap '' TERM HUP INT\n"
+      "export RCME_CASE=\"$PWD\"; if mkdir probed; then ask; answer; exit; fi; ask; answer; trap '' TERM HUP "
+      "INT\n"
       "setsid sh -c 'trap \"\" TERM HUP; sleep 300; :' & (setsid sleep 300 &) ; touch hangs; ask; sleep 300; "
       ":",
       1000.0);

@@ -24,6 +24,7 @@ std::string TextOf(const RunDescription& run) {
                   run.seed, run.trials, run.repeats_per_scene, run.failure.max_rotation_error_deg,
                   run.failure.max_direction_error_deg, run.factors, run.study_yaml, run.identity,
                   run.stopping_rule, run.until_options, run.origin.program, run.origin.instruction_set);
+  text += fmt::format("{}\n", run.retried_trials);
   for (const DescribedCondition& condition : run.conditions)
     text += fmt::format("{} {}\n", condition.levels, condition.num_trials);
   for (const DescribedEstimator& estimator : run.estimators)
@@ -52,6 +53,7 @@ TEST_F(Description, ComesBackAsItWasWritten) {
   EXPECT_GT(run.estimators[1].options.size(), 5u);
   run.origin = {"rcme 1", "AVX2"};
   run.until_options = "--until ci=0.1";
+  run.retried_trials = 17;
   NewTrials(path_, run).Finish(run);
   EXPECT_EQ(TextOf(ResultStore::OpenForReading(path_).Description()), TextOf(run));
   EXPECT_TRUE(ThrowsInputError([&] { NewTrials(path_, run); }, {path_, "exists already"}));
