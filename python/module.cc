@@ -14,6 +14,7 @@
 #include "experiments/analysis/forecast_output.h"
 #include "experiments/analysis/summarize_counts.h"
 #include "experiments/analysis/summary_output.h"
+#include "experiments/base/file_output.h"
 #include "experiments/base/program_name.h"
 #include "experiments/base/shared_files.h"
 #include "experiments/base/stop_request.h"
@@ -366,6 +367,7 @@ PYBIND11_MODULE(_rcme, module) {
   module.def("reliability_json", &ReliabilityJson);
   module.def("audit_json", &AuditJson);
   module.def("tune", &TuneStudy);
+  module.def("write_file", &WriteFileWhole);
   module.def("estimators", &Estimators);
 }
 

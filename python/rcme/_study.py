@@ -127,8 +127,7 @@ def tune(study: Study, *, out: Optional[str] = None, threads: int = 0, seed: Opt
     with alone("tune"):
         answer = _rcme.tune(source, num_threads)
     if path is not None and answer["file"]:
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(answer["file"])
+        _rcme.write_file(path, answer["file"])
     return {**json.loads(answer["json"]), "why": answer["why"] or None}
 
 

@@ -102,6 +102,30 @@ TEST_F(ChangedResultFile, TheMessageNamesTheColumn) {
       refuses("DELETE FROM problems WHERE trial = 5", {"condition 0, trial 6", "others are in its place"}));
 }
 
+// A fixed number of trials gives exact intervals, a stopping rule anytime-valid ones; damage elsewhere
+// changes neither.
+TEST_F(ChangedResultFile, TheKindOfIntervalSurvivesDamageElsewhere) {
+  const auto saved_rule = [&](const std::string& sql) {
+    EXPECT_TRUE(Change(sql)) << sql;
+    return Salvage(path_).description().stopping_rule;
+  };
+  const std::vector<std::string> elsewhere = {
+      "UPDATE run SET value = 'x' WHERE key = 'description'",
+      "UPDATE run SET value = 'x' WHERE key = 'program'", "UPDATE levels SET level = 'x' WHERE condition = 1",
+      "DELETE FROM options", "DELETE FROM run WHERE key = 'checksum'"};
+  for (const std::string& sql : elsewhere) EXPECT_EQ(saved_rule(sql), "") << sql;
+  for (const char* sql : {"UPDATE run SET value = 'a reason' WHERE key = 'stopping_rule'",
+                          "DELETE FROM run WHERE key = 'stopping_rule_checksum'"})
+    EXPECT_TRUE(saved_rule(sql).starts_with("not known")) << sql;
+  const std::string fixed = *bytes_;
+  Write(fixed);
+  ResultStore::OpenForRun(path_, *plan_).NoteStoppingRule("narrow enough");
+  *bytes_ = ReadBytes(path_);
+  for (const std::string& sql : elsewhere) EXPECT_EQ(saved_rule(sql), "narrow enough") << sql;
+  EXPECT_TRUE(saved_rule("DELETE FROM run WHERE key = 'stopping_rule'").starts_with("not known"));
+  *bytes_ = fixed;
+}
+
 TEST_F(ChangedResultFile, RowsLostDoubledSwappedAndForeign) {
   const std::string trial = " WHERE condition = 1 AND trial = 3";
   const auto copy = [&](const std::string& table, const std::string& key, const std::string& other) {

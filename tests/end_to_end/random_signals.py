@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+"""Random signals over every command that writes files: is there ever half a file under a final name?
+
+    tests/end_to_end/random_signals.py PATH_OF_RCME [--signals 300] [--seed 1] [--of run merge ...]
+
+SIGKILL, SIGTERM or SIGINT comes at a random moment, half of them in the last fifth of the time a call takes, when files are
+written. After it every file that is there has the bytes that a call left in peace gives, or those it had before; a result
+file of `rcme run` and `import`, which grows under its name, is sound to `rcme check`, or has not begun. At the end of a command's share it is
+called once more: then everything is there and nothing temporary is left."""
+
+import argparse
+import json
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+STUDY = {
+    "name": "signals", "seed": 9, "trials": 30,
+    "data": {"scene": "uniform_volume", "num_matches": 60, "sigma_px": 0.5},
+    "factors": {"outlier_ratio": [0.1, 0.4]},
+    "estimators": [{"name": "standard", "options": {"num_iterations": 20}},
+                   {"name": "rcme", "options": {"num_iterations": 20, "reading": "rank_aware"}}],
+    "tune": {"estimator": "rcme", "target": "failure", "at_most": 0.3, "max_refusal": 0.9, "explore": 25, "calibrate": 47,
+             "verify": 33, "options": {"mu": [1, 2, 3, 6]}},
+}
+SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT]
+TEMPORARY = re.compile(r"\.rcme-[^/]*\.part$|-journal$|\.journal$")
+OLD = b"what was there before\n"
+
+
+class Inputs:
+    """What the commands read, made once."""
+
+    def __init__(self, rcme, folder):
+        self.rcme, self.folder = rcme, folder
+        self.study, self.run_file = folder / "study.yaml", folder / "run.sqlite"
+        self.study.write_text(json.dumps(STUDY))
+        self.call("run", self.study, "--out", self.run_file, "--threads", "1")
+        self.parts = [folder / f"part_{number}.sqlite" for number in (1, 2)]
+        for number, part in enumerate(self.parts, 1):
+            self.call("run", self.study, "--shard", f"{number}/2", "--out", part, "--threads", "1")
+        self.pieces = [folder / f"piece_{number}.json" for number in (1, 2)]
+        for number, part in enumerate(self.pieces, 1):
+            self.call("map", "--trials", "3", "--shard", f"{number}/2", "--out", part, "--threads", "1")
+        self.damaged = folder / "damaged.sqlite"
+        self.call("run", self.study, "--out", self.damaged, "--threads", "1", "--trials", "1500")
+        bytes_ = bytearray(self.damaged.read_bytes())
+        bytes_[-100] ^= 1
+        self.damaged.write_bytes(bytes_)
+        self.summary = folder / "summary.csv"
+        self.call("summarize", self.run_file, "--format", "csv", "--out", self.summary)
+        self.exported = folder / "exported"
+        self.call("export", self.study, "--trials", "6", "--out", self.exported)
+        self.answers = folder / "answers.jsonl"
+        ids = [json.loads(line)["id"] for line in (self.exported / "problems.jsonl").read_text().splitlines()]
+        self.answers.write_text("".join(json.dumps({"id": one, "status": "too_uncertain"}) + "\n" for one in ids))
+        self.pairs = folder / "pairs"
+        shutil.copytree(self.exported / "matches", self.pairs)
+
+    def call(self, *arguments):
+        subprocess.run([self.rcme, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+
+
+class Command:
+    """A command with an output in a folder of its own."""
+
+    def __init__(self, name, arguments, grows=False, codes=(0,), may_differ=False, is_new=False):
+        self.name, self.arguments, self.codes = name, arguments, codes
+        self.grows = grows  # a result file, sound at every moment
+        self.may_differ = may_differ  # times are in it: other bytes from call to call, but as many lines
+        self.is_new = is_new  # it replaces nothing
+
+
+def commands(inputs):
+    study, run, base = inputs.study, inputs.run_file, ["--threads", "1"]
+    tuning = ["tune", study, *base]
+    return [
+        Command("run", lambda out: ["run", study, "--out", out / "run.sqlite", *base], grows=True),
+        Command("run_counts", lambda out: ["run", study, "--keep", "counts", "--out", out / "run.sqlite", *base], grows=True),
+        Command("import", lambda out: ["import", inputs.answers, "--study", inputs.exported / "study.yaml", "--label", "mine",
+                                       "--out", out / "run.sqlite", *base], grows=True),
+        Command("save_good", lambda out: ["check", inputs.damaged, "--save-good", out / "saved.sqlite"], is_new=True),
+        Command("merge", lambda out: ["merge", *inputs.parts, "--out", out / "merged.sqlite"], is_new=True),
+        Command("merge_pieces", lambda out: ["merge", *inputs.pieces, "--partial", "--out", out / "merged.json"]),
+        Command("summarize", lambda out: ["summarize", run, "--format", "csv", "--out", out / "summary.csv"]),
+        Command("summarize_raw", lambda out: ["summarize", run, "--raw", "csv", "--out", out / "raw.csv"]),
+        Command("compare", lambda out: ["compare", run, "--format", "json", "--out", out / "comparison.json"]),
+        Command("reliability", lambda out: ["reliability", run, "--out", out / "reliability.txt"], codes=(0, 2)),
+        Command("report", lambda out: ["report", run, "--out", out / "report.html"]),
+        Command("plot", lambda out: ["plot", "failure_rate", inputs.summary, "--x", "outlier_ratio", "--out", out / "figure"]),
+        Command("show", lambda out: ["show", run, "--condition", "0", "--trial", "1", "--out", out / "trial", "--json",
+                                     out / "trial.json"]),
+        Command("audit", lambda out: ["audit", "--only", "sample_test.power", *base, "--out", out]),
+        Command("audit_shard", lambda out: ["audit", "--only", "sample_test.power", *base, "--shard", "1/2", "--out",
+                                            out / "part.json"], may_differ=True, is_new=True),
+        Command("tune", lambda out: [*tuning, "--out", out / "tuned.yaml", "--figures", out / "figures"]),
+        Command("tune_shard", lambda out: [*tuning, "--shard", "1/2", "--out", out / "part.json"], codes=(75,),
+                may_differ=True, is_new=True),
+        Command("transfer", lambda out: ["transfer", study, *base, "--out", out]),
+        Command("map", lambda out: ["map", "--trials", "2", *base, "--out", out]),
+        Command("map_shard", lambda out: ["map", "--trials", "2", *base, "--shard", "1/2", "--out", out / "part.json"],
+                may_differ=True, is_new=True),
+        Command("rare", lambda out: ["rare", study, "--set", "outlier_ratio=0.4", "--replicates", "4", "--particles", "20", "--moves", "2",
+                                     *base, "--out", out], may_differ=True),
+        Command("budget", lambda out: ["budget", study, "--time-ms", "0.2", "--calls", "1", "--out", out / "study.yaml"],
+                may_differ=True),
+        Command("model_choice", lambda out: ["model-choice", "model_choice", "--trials", "2", *base, "--out", out]),
+        Command("paper_table", lambda out: ["paper-table", run, "--out", out], codes=(0, 2)),
+        Command("export", lambda out: ["export", study, "--trials", "20", "--out", out]),
+        Command("pairs", lambda out: ["pairs", inputs.pairs, "--layout", "matches", "--gate", "off", "--out", out], is_new=True),
+        Command("twin", lambda out: ["twin", inputs.pairs, "--twins", "1", "--out", out], codes=(0, 2)),
+        Command("validate", lambda out: ["validate", inputs.pairs, "--twins", "1", "--out", out], codes=(0, 1, 2)),
+        Command("man", lambda out: ["man", "--out", out]),
+    ]
+
+
+def files_in(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
+            if path.is_file() and not TEMPORARY.search(path.name)}
+
+
+class Victim:
+    """One command, called in peace first, then killed again and again in another folder."""
+
+    def __init__(self, inputs, command):
+        self.rcme, self.command = inputs.rcme, command
+        self.whole, self.cut = (inputs.folder / f"{command.name}_{which}" for which in ("whole", "cut"))
+        begin = time.monotonic()
+        ended = self.call(self.whole)
+        self.duration = time.monotonic() - begin
+        assert ended.returncode in command.codes, f"{command.name}: {ended.returncode}: {ended.stderr}"
+        self.expected = files_in(self.whole)
+        self.num_cut = self.num_ended = 0
+        self.begin_again()
+
+    def start(self, out):
+        out.mkdir(exist_ok=True)
+        return subprocess.Popen([self.rcme, *map(str, self.command.arguments(out))], stdout=subprocess.DEVNULL,
+                                stderr=subprocess.PIPE, text=True)
+
+    def call(self, out):
+        process = self.start(out)
+        _, err = process.communicate()
+        return subprocess.CompletedProcess([], process.returncode, err, err)
+
+    def begin_again(self):
+        shutil.rmtree(self.cut, ignore_errors=True)
+        self.cut.mkdir()
+        if self.command.grows or self.command.is_new:
+            return
+        for name in self.expected:  # to be replaced
+            (self.cut / name).parent.mkdir(parents=True, exist_ok=True)
+            (self.cut / name).write_bytes(OLD)
+
+    def halves(self):
+        """What is under a final name, neither whole nor as it was before."""
+        found = files_in(self.cut)
+        if self.command.grows:
+            return [name for name in found if not self.is_sound(self.cut / name)]
+        return [name for name, bytes_ in found.items() if bytes_ != OLD and not self.is_whole(name, bytes_)]
+
+    def is_whole(self, name, bytes_):
+        expected = self.expected.get(name)
+        if expected is None:
+            return False
+        if not self.command.may_differ:
+            return bytes_ == expected
+        lines = bytes_.split(b"\n")
+        if lines[0].startswith(b'{"format": "rcme part'):  # a part grows from one whole file to the next
+            return lines[-1] == b"" and json.loads(lines[0])["num_pieces"] == len(lines) - 2
+        return len(lines) == len(expected.split(b"\n")) and lines[-1] == expected.split(b"\n")[-1]
+
+    def is_sound(self, path):
+        checked = subprocess.run([self.rcme, "check", str(path)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                 check=False)
+        return ": sound: " in checked.stdout or "is not an rcme result file" in checked.stdout
+
+    def send(self, chance):
+        """One signal; the halves that it left."""
+        moment = self.duration * (chance.uniform(0.8, 1.1) if chance.random() < 0.5 else chance.random())
+        process = self.start(self.cut)
+        time.sleep(moment)
+        sent = chance.choice(SIGNALS)
+        process.send_signal(sent)
+        process.communicate()
+        was_cut = process.returncode not in self.command.codes
+        self.num_cut, self.num_ended = self.num_cut + was_cut, self.num_ended + (not was_cut)
+        halves = [f"{self.command.name}: {sent.name} after {moment:.3f} s: {name}" for name in self.halves()]
+        if not was_cut or halves or not self.command.grows:
+            leftover = [path for path in self.cut.rglob("*") if path.is_file() and TEMPORARY.search(path.name)]
+            self.begin_again()
+            for path in leftover:  # so that the last call has something to clean up
+                if path.name.endswith(".part"):
+                    path.parent.mkdir(parents=True, exist_ok=True)
+                    path.write_bytes(b"half of it")
+        return halves
+
+    def finish(self):
+        """What is wrong after one more call that is left in peace."""
+        ended = self.call(self.cut)
+        wrong = [] if ended.returncode in self.command.codes else [f"ends with {ended.returncode}: {ended.stderr}"]
+        left = [path.name for path in self.cut.rglob("*") if path.name.endswith(".part")]
+        wrong += [f"{name} was left behind" for name in left]
+        missing = set(self.expected) - set(files_in(self.cut))
+        wrong += [f"{name} is missing" for name in sorted(missing)] + [f"{name} is half" for name in self.halves()]
+        return [f"{self.command.name}: after a last call: {what}" for what in wrong]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("rcme")
+    parser.add_argument("--signals", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--of", nargs="+")
+    arguments = parser.parse_args()
+    chance, halves, wrong = random.Random(arguments.seed), [], []
+    with tempfile.TemporaryDirectory(prefix="rcme_signals_") as name:
+        inputs = Inputs(str(pathlib.Path(arguments.rcme).resolve()), pathlib.Path(name))
+        victims = [Victim(inputs, command) for command in commands(inputs)
+                   if not arguments.of or command.name in arguments.of]
+        for number in range(arguments.signals):
+            halves += victims[number % len(victims)].send(chance)
+        for victim in victims:
+            wrong += victim.finish()
+    print("| command | signals that cut it | that came after its end |\n|---|---|---|")
+    for victim in victims:
+        print(f"| {victim.command.name} | {victim.num_cut} | {victim.num_ended} |")
+    print("\n".join(halves + wrong))
+    print(f"{arguments.signals} signals: {len(halves)} half files; {len(wrong)} things wrong after a last call")
+    sys.exit(bool(halves or wrong))
+
+
+if __name__ == "__main__":
+    main()
