@@ -177,6 +177,21 @@ TEST_F(MatchFileTest, ATemplateMayStateItsNoiseLevel) {
   }
 }
 
+// The time between the images is kept, and nothing is made up where the file has none.
+TEST_F(MatchFileTest, TheTimeBetweenTheImagesMayBeStated) {
+  EXPECT_TRUE(std::isnan(Read(FullText()).seconds_between));
+  const MatchFile file = Read("# seconds_between: 0.25\n" + FullText());
+  EXPECT_EQ(file.seconds_between, 0.25);
+  const std::string path = folder_.path() + "/seconds.csv";
+  WriteMatchFile(file, path);
+  EXPECT_EQ(ReadMatchFile(path).seconds_between, 0.25);
+  for (const char* wrong : {"0", "-1", "nan", "1 2", "x"}) {
+    std::string text = "# seconds_between: ";
+    text.append(wrong).append("\n");
+    EXPECT_TRUE(Refuses(text + FullText(), {"seconds_between"})) << wrong;
+  }
+}
+
 TEST_F(MatchFileTest, TheTruthMayStateItsOwnErrorAndTheImagesTheirNames) {
   EXPECT_FALSE(Read(FullText()).truth_sd.has_value());
   EXPECT_TRUE(std::isnan(Read(FullText()).baseline));

@@ -164,6 +164,15 @@ TEST(Calibrate, AsksPhotographsForNoReadout) {
   EXPECT_FALSE(has_readout(CalibrateSet(set)));
 }
 
+// Intrinsics that differ by rounding are of one camera, others not.
+TEST(Calibrate, PoolsPairsOfOneCamera) {
+  PairSet set = MakePairs();
+  set.pairs[4].problem.camera2.fx *= 1.0 + 1e-6;
+  EXPECT_EQ(CalibrateSet(set).num_pairs, 20);
+  set.pairs[4].problem.camera2.fx *= 1.001;
+  EXPECT_EQ(CalibrateSet(set).num_pairs, 19);
+}
+
 TEST(ReadoutScales, AreMedianTimesOverOwn) {
   PairSet set = MakePairs();
   std::vector<PairAnswers> answers;
