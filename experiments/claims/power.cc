@@ -192,6 +192,8 @@ double HoldsAtNominal(const Claim& claim, Budget budget, double confidence) {
 
 std::string FoundInWords(const TargetPower& power) {
   if (!std::isnan(power.found_sigma.lower)) {
+    if (std::isinf(power.found_sigma.upper))
+      return fmt::format("sigma off by {:.1f} %", 100.0 * power.found_sigma.lower);
     return fmt::format("sigma off by {:.1f} or {:+.1f} %", 100.0 * power.found_sigma.lower,
                        100.0 * power.found_sigma.upper);
   }
