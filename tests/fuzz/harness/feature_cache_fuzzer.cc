@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -35,8 +36,8 @@ ImageFeatures TakeFeatures(std::string_view input, Detector detector) {
     image.features.key_points.push_back({take_number(), take_number(), take_number()});
   const auto num_bytes = static_cast<std::ptrdiff_t>(num_points * CountDescriptorBytes(detector)) + excess;
   image.features.descriptors.resize(static_cast<size_t>(std::max<std::ptrdiff_t>(0, num_bytes)));
-  std::memcpy(image.features.descriptors.data(), input.data(),
-              std::min(input.size(), image.features.descriptors.size()));
+  std::copy_n(input.begin(), std::min(input.size(), image.features.descriptors.size()),
+              image.features.descriptors.begin());
   return image;
 }
 
