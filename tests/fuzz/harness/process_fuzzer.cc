@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size) {
   static const std::unique_ptr<MotionEstimator> estimator = [] {
     AddOutsideEstimators();
     return MakeEstimator(
-        "process", {{"command", "read -r line; cat '" + folder.Path("said") + "'"}, {"timeout_s", "20"}});
+        "process", {{"command", "read -r line; cat '" + folder.Path("said") + "'"}, {"timeout_s", "100"}});
   }();
   folder.Write("said", WithProblemId({reinterpret_cast<const char*>(data), size}));
   if (AskAndJudge(*estimator).status == MotionStatus::kTimedOut) std::abort();  // the process has ended

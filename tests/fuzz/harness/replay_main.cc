@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size);
 namespace rcme {
 namespace {
 
-constexpr unsigned kMaxSecondsPerInput = 20;
+constexpr unsigned kMaxSecondsPerInput = 120;  // a reader in a process of its own has 60
 
 std::string* crash_file;   // where the input below goes
 const std::string* input;  // the one that is read
