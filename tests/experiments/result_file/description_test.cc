@@ -88,7 +88,7 @@ TEST_F(Description, NamesWithControlCharactersAreRefused) {
     RunDescription run = Describe(MakePlan(SmallStudy()));
     change(&run);
     std::filesystem::remove(path_);
-    ResultStore::Create(path_, run);
+    NewTrials(path_, run).Finish(run);
     return ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, {path_, "control characters"});
   };
   for (const std::string text : {"a\x1B[2Jb", "a\nb", "a\tb",
