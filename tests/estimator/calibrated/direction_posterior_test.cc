@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimator/geometry/sampson.h"
 #include "stats/intervals.h"
 #include "tests/test_support/random_problem.h"
 
@@ -104,6 +105,58 @@ TEST(PosteriorOfDirection, IsAsOftenRightAsStated) {
     EXPECT_GE(stated, rate.lower) << parallax_px << " px: right " << num_right;
     EXPECT_LE(stated, rate.upper) << parallax_px << " px: right " << num_right;
   }
+}
+
+// A fifth of the explained matches exceeds it: rank floor(0.8 n) of n.
+TEST(UsualDepthInNoise, IsExceededByAFifthOfTheExplained) {
+  Explanation explanation;
+  EXPECT_EQ(UsualDepthInNoise(explanation), 0.0);
+  for (int i = 0; i < 10; ++i) {
+    explanation.probability.push_back(0.9);
+    explanation.terms.depth.push_back(i);
+    explanation.probability.push_back(0.4);
+    explanation.terms.depth.push_back(1000.0);
+  }
+  EXPECT_EQ(UsualDepthInNoise(explanation), 8.0);
+}
+
+// The noise is that of Gaussian noise which the law's scale stands for: either law, at the scale that it
+// finds in the same noise, gives the same. (Residuals of zero, so that either weighs all matches fully.)
+TEST(PosteriorOfDirection, HasTheNoiseWhateverTheLaw) {
+  ParallaxCase c = MakeParallax(11, 80, 0.8);
+  c.mode.explanation.terms.residual.assign(c.mode.explanation.terms.residual.size(), 0.0);
+  const auto mass = [&](const NoiseLaw& law) {
+    c.mode.mode.mixture.noise = law;
+    c.mode.mode.mixture.scale = law.scale_of_gaussian;
+    return PosteriorOfDirection(c.random.problem, c.mode, c.random.pose_true.t, 30.0 * kRadPerDeg)
+        .mass_within;
+  };
+  ASSERT_GT(mass(NoiseLaw()), 0.01);
+  ASSERT_LT(mass(NoiseLaw()), 0.99);
+  EXPECT_NEAR(mass(NoiseLaw()), mass(kStudent15), 1e-9);
+}
+
+// Of matches that the mode is said to explain, one in eight is displaced by 40 px across its epipolar line:
+// none of these is used at the best direction, and nearly all of the others are.
+TEST(PosteriorOfDirection, LeavesOutWhatIsWrongThere) {
+  ParallaxCase c = MakeParallax(7, 80, 4.0);
+  MotionProblem& problem = c.random.problem;
+  const Eigen::Matrix3d F =
+      FundamentalFromEssential(EssentialFromPose(c.random.pose_true), problem.camera1, problem.camera2);
+  for (size_t i = 0; i < 80; i += 8) {
+    const Eigen::Vector4d gradient = EvaluateConstraint(F, problem.matches[i]).gradient;
+    problem.matches[i].x2_px += 40.0 * gradient.tail<2>().normalized();
+  }
+  c.mode.explanation.terms.residual.assign(c.mode.explanation.terms.residual.size(), 0.0);
+  const DirectionPosterior posterior =
+      PosteriorOfDirection(problem, c.mode, c.random.pose_true.t, 15.0 * kRadPerDeg);
+  int num_wrong_used = 0, num_right_used = 0;
+  for (size_t i = 0; i < 80; ++i) {
+    const bool is_used = posterior.best.used[i / kBlockSize] >> (i % kBlockSize) & 1;
+    (i % 8 == 0 ? num_wrong_used : num_right_used) += is_used;
+  }
+  EXPECT_EQ(num_wrong_used, 0);
+  EXPECT_GE(num_right_used, 65);
 }
 
 }  // namespace

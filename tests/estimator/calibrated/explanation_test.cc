@@ -80,5 +80,20 @@ TEST(Explanation, OfAMatchThatTheModeDoesNotUseIsAPrediction) {
   EXPECT_EQ(without.leverage[11], with.leverage[11]);
 }
 
+// A match counts as explained from one half on: where the background is such that match 0 is right with a
+// probability of 0.7, or of 0.4.
+TEST(Explanation, CountsMatchesThatAreMoreLikelyRight) {
+  FittedMode f = FitScene(20, 0.5, 0.0, 3);
+  const double w = f.mode.mixture.inlier_ratio;
+  const std::vector<double> density = Explain(f.matches, f.mode).inlier_density;
+  for (const double probability : {0.7, 0.4}) {
+    f.mode.mixture.outlier_density = w * density[0] * (1.0 - probability) / probability / (1.0 - w);
+    const Explanation e = Explain(f.matches, f.mode);
+    EXPECT_NEAR(e.probability[0], probability, 1e-9);
+    EXPECT_EQ(e.num_explained, std::ranges::count_if(e.probability, [](double p) { return p > 0.5; }));
+    EXPECT_EQ(e.num_explained > 0, std::ranges::max(e.probability) > 0.5);
+  }
+}
+
 }  // namespace
 }  // namespace rcme

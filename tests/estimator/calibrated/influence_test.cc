@@ -76,5 +76,26 @@ TEST(WrongByInfluence, FindsAWrongMatchOnItsEpipolarLine) {
   EXPECT_LE(num_false, num_right / 200);
 }
 
+// Of 40 explained matches with leverages of 0.01 to 0.4 one in twenty exceeds 0.38: the 39th in rising order
+// counts, and each match by its own share of it.
+TEST(WrongByInfluence, IsRelativeToTheTwentieth) {
+  Mode mode;
+  mode.mixture.inlier_ratio = 0.8;
+  mode.mixture.outlier_density = 1e-2;
+  Explanation e;
+  for (int i = 0; i < 45; ++i) {
+    const bool is_explained = i < 40;
+    e.probability.push_back(is_explained ? 0.9 : 0.1);
+    e.leverage.push_back(is_explained ? 0.01 * (40 - i) : 0.9);
+    e.left_out_density.push_back(0.3);
+  }
+  const std::vector<double> wrong = WrongByInfluence(mode, e);
+  const double by_residual = 0.2 * 1e-2 / (0.8 * 0.3 + 0.2 * 1e-2);
+  for (size_t i = 0; i < 45; ++i) {
+    const double expected = i < 40 ? ProbabilityWrong(by_residual, e.leverage[i], 0.39) : 0.0;
+    EXPECT_NEAR(wrong[i], expected, 1e-12) << i;
+  }
+}
+
 }  // namespace
 }  // namespace rcme

@@ -59,5 +59,25 @@ TEST(SettleDirection, MovesAWrongAnswerOrDoubtsIt) {
   EXPECT_LE(num_sure_and_wrong, 2);
 }
 
+// What is stated is never less than before: an answer is moved only where the mass about it grows.
+TEST(SettleDirection, MovesToMoreMassAlone) {
+  int num_moved = 0, num_stayed = 0;
+  for (std::uint32_t trial = 0; trial < 40; ++trial) {
+    FarCase far = MakeFar(trial, 400.0, true);
+    const RelativePose before = far.answer.mode.pose;
+    const double mass_before =
+        PosteriorOfDirection(far.random.problem, far.answer, before.t, kBound).mass_within;
+    const auto mass =
+        SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer);
+    if (!mass) continue;
+    const bool has_moved = far.answer.mode.pose.t != before.t;
+    EXPECT_EQ(has_moved, *mass > mass_before) << trial;
+    EXPECT_GE(*mass, mass_before) << trial;
+    (has_moved ? num_moved : num_stayed) += 1;
+  }
+  EXPECT_GE(num_moved, 3);
+  EXPECT_GE(num_stayed, 3);
+}
+
 }  // namespace
 }  // namespace rcme
