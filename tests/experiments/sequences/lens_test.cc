@@ -60,6 +60,15 @@ TEST(Lens, UndistortsWhatItDistorts) {
       {"file: fx 1, fy 0"}));
 }
 
+// A ray beyond ten focal lengths from the axis, 84.3 deg, is none of a pinhole camera: theta = 1.46 has
+// 9, 1.5 has 14.
+TEST(Lens, UndistortsUpToTenFocalLengths) {
+  const Lens fisheye = MakeLens({100, 100, 0, 0, 400, 400}, LensModel::kFisheye, {0, 0, 0, 0}, "");
+  ASSERT_TRUE(Undistort(fisheye, {146.0, 0.0}).has_value());
+  EXPECT_NEAR(Undistort(fisheye, {146.0, 0.0})->x(), 100.0 * std::tan(1.46), 1e-3);
+  EXPECT_FALSE(Undistort(fisheye, {150.0, 0.0}).has_value());
+}
+
 TEST(Trajectory, IsTakenBetweenItsPosesAndNowhereElse) {
   Trajectory trajectory;
   const CameraPose a{RotationFromVector({0, 0, 0.1}), {0, 0, 0}},

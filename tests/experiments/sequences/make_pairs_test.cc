@@ -131,6 +131,18 @@ TEST_F(MakePairs, ADamagedImageIsSkippedCountedAndNamed) {
   }
 }
 
+// Every third image, and pairs of these alone.
+TEST_F(MakePairs, TakesEveryNthImage) {
+  PairsOptions options;
+  options.every = 3;
+  options.gate.criterion.reset();
+  const std::vector<PairRow> rows =
+      MakePairsInto(folder_.Path("out"), ReadKitti(OptionsOf(Folder())), options);
+  ASSERT_EQ(rows.size(), (kNumRenderedFrames + 2u) / 3u - 1u);
+  EXPECT_EQ(rows[0].image1, "image_0/000000.png");
+  EXPECT_EQ(rows[0].image2, "image_0/000003.png");
+}
+
 TEST_F(MakePairs, MatchFilesAreJudgedAgain) {
   const std::string first = folder_.Path("first"), again = folder_.Path("again");
   PairsOptions options;

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <bit>
 #include <deque>
 #include <map>
 
+#include "estimator/robust_covariance/clustered_covariance.h"
 #include "experiments/truth_free/loops.h"
 #include "tests/test_support/fit_of.h"
 #include "tests/test_support/numeric_jacobian.h"
@@ -211,6 +214,97 @@ TEST(NormalizedClosure, HasOneVarianceWhereKeyPointsAreShared) {
 // One focal length 4 % too long in all pairs: what halves of a pair share, a ring of four images shows.
 TEST(NormalizedClosure, FindsAnErrorThatAllPairsShare) {
   EXPECT_GT(MeanClosure(4, RotationClosure, 0.04), 1.0 + 8.0 * 0.067);
+}
+
+// What the loop itself closes to is no error, and a third of it leaves two thirds: the form is quadratic.
+TEST(NormalizedClosure, IsAboutWhatIsExpected) {
+  const Network network = MakeNetwork(4, 0.04, 1);
+  const LoopError closes_to = RotationClosure(network.loop);
+  const auto about = [&](double share) {
+    return *NormalizedClosure(network.loop, RotationClosure, LoopError(share * closes_to));
+  };
+  ASSERT_GT(about(0.0), 0.1);
+  EXPECT_NEAR(about(1.0), 0.0, 1e-12);
+  EXPECT_NEAR(about(1.0 / 3.0), 4.0 / 9.0 * about(0.0), 1e-9 * about(0.0));
+}
+
+// Sigma = L_0 (L_i^-1 V_c L_i^-T) L_0' of the header written out, of three pairs of 12 matches each, where a
+// match has a leverage of 5 / 12: G_k by differences of the rotations alone, the moves G A^-1 J' r / (1 - h).
+TEST(NormalizedClosure, IsThatOfTheHeader) {
+  Network network = MakeNetwork(3, 0.0, 4);
+  for (size_t i = 0; i < 3; ++i) {
+    network.pairs[i].problem.matches.resize(12);
+    network.answers[i].inliers.resize(12);
+  }
+  Eigen::Matrix3d sigma0 = Eigen::Matrix3d::Zero(), of_single = sigma0, of_shared = sigma0;
+  std::vector<Eigen::Vector3d> sums(12, Eigen::Vector3d::Zero());  // every point is seen by all three pairs
+  for (size_t k = 0; k < 3; ++k) {
+    const RelativePose pose = network.answers[k].cam2_from_cam1;
+    Eigen::Matrix<double, 3, 5> G;
+    for (Eigen::Index j = 0; j < 5; ++j) {
+      const auto closure_at = [&](double by) {
+        network.answers[k].cam2_from_cam1 = Retract(pose, by * Vector5d::Unit(j));
+        return Eigen::Vector3d(RotationClosure(network.loop));
+      };
+      G.col(j) = (closure_at(1e-5) - closure_at(-1e-5)) / 2e-5;
+    }
+    network.answers[k].cam2_from_cam1 = pose;
+    sigma0 += G * network.answers[k].pose_cov * G.transpose();
+    const MatchScores scores = ScoreFitted(network.pairs[k].problem, network.answers[k].inliers, pose);
+    const Matrix5d inverse = scores.information.inverse();
+    for (size_t i = 0; i < 12; ++i) {
+      const double kept = std::max(1.0 - scores.rows[i].dot(inverse * scores.rows[i]), 0.05);
+      const Eigen::Vector3d move = G * inverse * scores.rows[i] * (scores.residuals[i] / kept);
+      of_single += move * move.transpose();
+      sums[i] += move;
+    }
+  }
+  for (const Eigen::Vector3d& sum : sums) of_shared += sum * sum.transpose();
+  const Eigen::Matrix3d L0 = sigma0.llt().matrixL(), Li = of_single.llt().matrixL();
+  const Eigen::Matrix3d sigma = L0 * (Li.inverse() * of_shared * Li.inverse().transpose()) * L0.transpose();
+  const Eigen::Vector3d c = RotationClosure(network.loop);
+  const double expected = c.dot(sigma.inverse() * c);
+  EXPECT_NEAR(*NormalizedClosure(network.loop, RotationClosure, LoopError(Eigen::Vector3d::Zero())), expected,
+              1e-4 * expected);
+}
+
+// Answers to the pairs of a network whose twins are the pairs again: these close to what is their truth.
+std::vector<PairAnswers> AnswersOf(const Network& network) {
+  std::vector<PairAnswers> answers;
+  for (size_t i = 0; i < network.pairs.size(); ++i) {
+    const Answered answered{network.pairs[i], network.answers[i]};
+    answers.push_back({answered, {answered, answered}});
+  }
+  return answers;
+}
+std::vector<Loop> LoopsOf(const Network& network) {
+  Loop loop;
+  for (size_t i = 0; i < network.loop.size(); ++i) loop.push_back({i, network.loop[i].is_forward});
+  return {loop};
+}
+
+TEST(ClosuresOf, AreOfTwinsAboutTheirOwnTruth) {
+  const Network network = MakeNetwork(3, 0.0, 2);
+  for (const LoopErrorOf error_of : {RotationClosure, DirectionClosure}) {
+    const std::vector<UnitValues> closures = ClosuresOf(AnswersOf(network), LoopsOf(network), error_of);
+    ASSERT_EQ(closures.size(), 1u);
+    const LoopError none = LoopError::Zero(error_of(network.loop).size());
+    ASSERT_EQ(closures[0].observed.size(), 1u);
+    EXPECT_EQ(closures[0].observed[0], *NormalizedClosure(network.loop, error_of, none));
+    ASSERT_EQ(closures[0].null.size(), 2u);
+    for (const double closure : closures[0].null) EXPECT_NEAR(closure, 0.0, 1e-12);
+  }
+}
+
+TEST(ClosuresOf, AreOfLoopsThatAreAnswered) {
+  const Network three = MakeNetwork(3, 0.0, 2), four = MakeNetwork(4, 0.0, 2);
+  EXPECT_EQ(ClosuresOf(AnswersOf(four), LoopsOf(four), RotationClosure).size(), 1u);
+  EXPECT_EQ(ClosuresOf(AnswersOf(four), LoopsOf(four), DirectionClosure).size(), 0u);
+  std::vector<PairAnswers> answers = AnswersOf(three);
+  answers[1].twins[0].estimate.status = MotionStatus::kNoCandidate;
+  EXPECT_EQ(ClosuresOf(answers, LoopsOf(three), RotationClosure)[0].null.size(), 1u);
+  answers[1].whole.estimate.status = MotionStatus::kNoCandidate;
+  EXPECT_EQ(ClosuresOf(answers, LoopsOf(three), RotationClosure).size(), 0u);
 }
 
 }  // namespace

@@ -156,6 +156,64 @@ TEST(Redraw, SaysWhatIsWrong) {
   EXPECT_TRUE(ThrowsInputError([&] { Redraw::Label(&unknown); }, {"exact states no true motion"}));
 }
 
+// What is said of the noise, or the median distance over that of a normal number, of matches alike.
+TEST(NoiseOf, IsTheMedianOfTheResiduals) {
+  RelativePose pose;
+  MotionProblem problem = TwoCameraProblem(5, 1e-9, 0.0, 1, &pose);
+  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  MotionEstimate estimate;
+  estimate.cam2_from_cam1 = pose;
+  const double off_px[] = {0.1, -0.2, 0.6, 0.4, -0.5};
+  problem.noise_scale = {1.0, 1.0, 2.0, 0.5, 1.0};  // 0.1, 0.2, 0.3, 0.8, 0.5
+  for (size_t i = 0; i < 5; ++i) {
+    Correspondence& match = problem.matches[i];
+    const Eigen::Vector4d u = EvaluateConstraint(F, match).gradient.normalized();
+    match.x1_px += off_px[i] * u.head<2>();
+    match.x2_px += off_px[i] * u.tail<2>();
+    estimate.inliers.push_back(static_cast<int>(i));
+  }
+  EXPECT_NEAR(NoiseOf(problem, estimate), 0.3 / 0.6744897501960817, 0.005);
+  estimate.sigma_estimated_px = 0.25;
+  EXPECT_EQ(NoiseOf(problem, estimate), 0.25);
+}
+
+// To second order of the distance: of one pixel a few millionths are left, and the way there is the shortest.
+TEST(Snapped, IsTheNearestExactMatch) {
+  RelativePose pose;
+  MotionProblem problem = TwoCameraProblem(30, 0.7, 0.0, 1, &pose);
+  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  for (const Correspondence& match : problem.matches) {
+    const Correspondence snapped = Snapped(F, match);
+    EXPECT_LT(std::sqrt(SquaredSampsonDistance(F, snapped)), 1e-5);
+    const double moved_px =
+        std::hypot((snapped.x1_px - match.x1_px).norm(), (snapped.x2_px - match.x2_px).norm());
+    EXPECT_NEAR(moved_px, std::sqrt(SquaredSampsonDistance(F, match)), 0.02);
+  }
+}
+
+// Matches that are said to be noisier get as much more noise: of 300 each of scale 1/2 and 3 the mean square
+// of the distance, over that of the noise, is 1 (z-test at 1e-4).
+TEST(TwinOf, DrawsNoiseOfTheMatchsScale) {
+  RelativePose pose;
+  NamedPair pair{"pair", "", "", TwoCameraProblem(600, 0.5, 0.0, 1, &pose)};
+  MotionEstimate estimate;
+  estimate.status = MotionStatus::kOk;
+  estimate.cam2_from_cam1 = pose;
+  estimate.sigma_estimated_px = 0.2;
+  for (int i = 0; i < 600; ++i) {
+    pair.problem.noise_scale.push_back(i < 300 ? 0.5 : 3.0);
+    estimate.inliers.push_back(i);
+  }
+  const NamedPair twin = TwinOf(pair, estimate, 1, 1);
+  const Eigen::Matrix3d F = FundamentalOf(pair.problem, pose);
+  double sums[2] = {0.0, 0.0};
+  for (size_t i = 0; i < 600; ++i) {
+    const double sd_px = 0.2 * pair.problem.noise_scale[i];
+    sums[i / 300] += SquaredSampsonDistance(F, twin.problem.matches[i]) / (sd_px * sd_px) / 300.0;
+  }
+  for (const double mean : sums) EXPECT_NEAR(mean, 1.0, 3.89 * std::sqrt(2.0 / 300.0));
+}
+
 // Pairs of a simulated study as a source of twins.
 TwinSource SourceOf(const Settings& more, int num_pairs, const MotionEstimator& estimator) {
   Settings data = {{"scene", "image_clusters"}, {"num_matches", "300"},  {"outlier_ratio", "0.25"},

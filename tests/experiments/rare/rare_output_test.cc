@@ -1,0 +1,94 @@
+// Rates by hand as text, CSV and JSON.
+#include "experiments/rare/rare_output.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/test_support/small_study.h"
+
+namespace rcme {
+namespace {
+
+// Two replicates over the levels 0.5 and 1: rates beyond them of 0.2 and 0.1, and of 0.4 and 0.04.
+RareCell CellByHand() {
+  RareCell cell;
+  cell.condition = 1;
+  cell.estimator = 1;
+  cell.pilot.levels.levels = {0.5};
+  cell.replicates.resize(2);
+  cell.replicates[0].estimate = 0.1;
+  cell.replicates[0].shares = {0.2, 0.5};
+  cell.replicates[0].acceptance = {0.25, 0.5};
+  cell.replicates[1].estimate = 0.04;
+  cell.replicates[1].shares = {0.4, 0.1};
+  cell.replicates[1].acceptance = {0.75, 0.5};
+  cell.rate.estimate = 0.07;
+  cell.rate.standard_error = 0.03;
+  cell.rate.interval = {0.02, 0.2};
+  cell.rate.num_values = 700;
+  cell.rate.relative_spread = 0.6;
+  return cell;
+}
+
+TEST(RowOf, KeepsWhatACellSays) {
+  RareCell cell = CellByHand();
+  cell.rate.doubts = {SplittingDoubt::kMovesStuck};
+  const RareRow row = RowOf(cell);
+  EXPECT_EQ(row.condition, 1u);
+  EXPECT_EQ(row.estimator, 1u);
+  EXPECT_EQ(row.estimate, 0.07);
+  EXPECT_EQ(row.standard_error, 0.03);
+  EXPECT_EQ(row.interval.lower, 0.02);
+  EXPECT_EQ(row.num_calls, 700);
+  EXPECT_EQ(row.relative_spread, 0.6);
+  EXPECT_EQ(row.doubts, std::vector<std::string>{Name(SplittingDoubt::kMovesStuck)});
+}
+
+// Fewer than three failures of equal weight are doubted, three are not.
+TEST(RowOf, OfStrataDoubtsFewFailures) {
+  StratifiedCell cell;
+  cell.num_run = 40;
+  cell.rate.estimate = 0.01;
+  cell.rate.cautious_upper = 0.3;
+  cell.rate.num_effective_events = 2.9;
+  EXPECT_EQ(RowOf(cell).doubts, std::vector<std::string>{"few_failures"});
+  cell.rate.num_effective_events = 3.0;
+  EXPECT_TRUE(RowOf(cell).doubts.empty());
+  EXPECT_EQ(RowOf(cell).num_calls, 40);
+  EXPECT_EQ(RowOf(cell).unseen_up_to, 0.3);
+  EXPECT_TRUE(std::isnan(RowOf(cell).relative_spread));
+}
+
+TEST(RareAsJson, HasTheRatesBeyondEachLevel) {
+  const auto json = nlohmann::json::parse(RareAsJson(MakePlan(SmallStudy()), RareEffort(), {CellByHand()}));
+  const auto& cell = json.at("cells").at(0);
+  EXPECT_EQ(cell.at("value"), 0.07);
+  EXPECT_EQ(cell.at("is_trusted"), true);
+  EXPECT_EQ(cell.at("replicates"), (std::vector<double>{0.1, 0.04}));
+  const auto& levels = cell.at("error_levels");
+  ASSERT_EQ(levels.size(), 2u);
+  EXPECT_EQ(levels[0].at("error_over_bound"), 0.5);
+  EXPECT_NEAR(levels[0].at("rate_beyond").get<double>(), 0.3, 1e-12);
+  EXPECT_NEAR(levels[0].at("acceptance").get<double>(), 0.5, 1e-12);
+  EXPECT_EQ(levels[1].at("error_over_bound"), 1.0);
+  EXPECT_NEAR(levels[1].at("rate_beyond").get<double>(), 0.07, 1e-12);
+  EXPECT_NEAR(levels[1].at("standard_error").get<double>(), 0.03, 1e-12);  // |0.1 - 0.04| / 2
+}
+
+TEST(RareAsCsv, SaysWhatIsTrusted) {
+  RareRow trusted = RowOf(CellByHand()), doubted = trusted;
+  doubted.doubts = {"no_levels", "moves_stuck"};
+  const std::string csv = RareAsCsv(MakePlan(SmallStudy()), {trusted, doubted});
+  EXPECT_THAT(csv, testing::HasSubstr(",failure,rate,0.07,0.02,0.2,0.03,700,1,,"));
+  EXPECT_THAT(csv, testing::HasSubstr(",failure,rate,0.07,0.02,0.2,0.03,700,0,no_levels moves_stuck,"));
+}
+
+// Calls times p e^2 / (1 - p), e the relative error: 700 * 0.07 * (3 / 7)^2 / 0.93.
+TEST(RareRow, BruteForceByHand) {
+  EXPECT_NEAR(RowOf(CellByHand()).BruteForceShare(), 700.0 * 0.07 * 9.0 / 49.0 / 0.93, 1e-12);
+}
+
+}  // namespace
+}  // namespace rcme

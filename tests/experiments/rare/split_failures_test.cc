@@ -1,0 +1,67 @@
+#include "experiments/rare/split_failures.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "experiments/study/study_file.h"
+
+namespace rcme {
+namespace {
+
+// Two conditions of which each fails now and then, quick to run.
+StudyPlan TwoConditions() {
+  return MakePlan(
+      ParseStudy("name: two\nseed: 5\ntrials: 10\n"
+                 "data: {scene: uniform_volume, num_matches: 20, sigma_px: 0.5, severity: skipped}\n"
+                 "factors: {outlier_ratio: [0.1, 0.1001]}\n"
+                 "failure: {max_rotation_error_deg: 0.5, max_direction_error_deg: 2.5}\n"
+                 "estimators:\n"
+                 "  - {name: standard, options: {solver: five_point, num_iterations: 10}}\n",
+                 "two.yaml"));
+}
+const RareEffort kEffort{{.num_particles = 20, .num_moves = 1, .kept_share = 0.2}, 4};
+
+std::vector<RareCell> SplitBy(std::uint64_t seed, int num_threads) {
+  Progress progress("replicates", 10);
+  return SplitFailures(TwoConditions(), seed, kEffort, num_threads, &progress);
+}
+
+// What a replicate went through.
+std::vector<double> PathOf(const SplittingReplicate& replicate) {
+  std::vector<double> path = replicate.shares;
+  path.insert(path.end(), replicate.acceptance.begin(), replicate.acceptance.end());
+  path.push_back(static_cast<double>(replicate.num_ancestors));
+  return path;
+}
+
+// Each replicate has a stream of its own, each condition too, and each seed; threads change nothing.
+TEST(SplitFailures, HasStreamsOfItsOwnForEachReplicate) {
+  const std::vector<RareCell> cells = SplitBy(1, 1), again = SplitBy(1, 2), other = SplitBy(2, 1);
+  ASSERT_EQ(cells.size(), 2u);
+  std::set<std::vector<double>> paths;
+  for (size_t c = 0; c < 2; ++c) {
+    ASSERT_EQ(cells[c].condition, c);
+    ASSERT_EQ(cells[c].replicates.size(), 4u);
+    for (size_t r = 0; r < 4; ++r) {
+      EXPECT_EQ(PathOf(cells[c].replicates[r]), PathOf(again[c].replicates[r]));
+      paths.insert(PathOf(cells[c].replicates[r]));
+    }
+    EXPECT_EQ(cells[c].rate.estimate, again[c].rate.estimate);
+  }
+  EXPECT_GE(paths.size(), 6u);  // of eight, whose shares may agree by chance
+  EXPECT_NE(cells[0].pilot.levels.levels, cells[1].pilot.levels.levels);
+  EXPECT_NE(PathOf(cells[0].replicates[0]), PathOf(other[0].replicates[0]));
+}
+
+// The mean of the replicates is the rate.
+TEST(SplitFailures, IsTheMeanOfItsReplicates) {
+  for (const RareCell& cell : SplitBy(1, 1)) {
+    double sum = 0.0;
+    for (const SplittingReplicate& replicate : cell.replicates) sum += replicate.estimate;
+    EXPECT_NEAR(cell.rate.estimate, sum / 4.0, 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace rcme

@@ -1,0 +1,69 @@
+#include "experiments/rare/stratified_failures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/study/study_file.h"
+#include "tests/test_support/expect_input_error.h"
+
+namespace rcme {
+namespace {
+
+StudyPlan EasyAndHard(const std::string& more = "") {
+  return MakePlan(
+      ParseStudy("name: easy_and_hard\nseed: 5\ntrials: 10\n" + more +
+                     "data: {scene: uniform_volume, num_matches: 12, sigma_px: 0.5, severity: skipped}\n"
+                     "failure: {max_rotation_error_deg: 0.5, max_direction_error_deg: 5}\n"
+                     "estimators:\n"
+                     "  - {name: standard, options: {solver: five_point, num_iterations: 5}}\n",
+                 "easy_and_hard.yaml"));
+}
+
+// The share that was asked for is run, within what 1,000 trials of the pilot and the trials themselves leave
+// open: 4,000 trials, standard errors 0.01 and 0.005.
+TEST(StratifyFailures, RunsTheShareThatWasAskedFor) {
+  for (const double share : {0.1, 0.3}) {
+    Progress progress("trials", 4000);
+    const StratifiedCell cell =
+        StratifyFailures(EasyAndHard(), {.num_trials = 4000, .run_share = share}, 2, &progress)[0];
+    EXPECT_NEAR(static_cast<double>(cell.num_run) / 4000.0, share, 0.045);
+  }
+}
+
+// The easiest trials are run once in 64, none less often; where hardly any is run all strata are used.
+TEST(StratifyFailures, GoesToTheEasiestStratum) {
+  Progress progress("trials", 4000);
+  const StratifiedCell cell =
+      StratifyFailures(EasyAndHard(), {.num_trials = 4000, .run_share = 0.02}, 2, &progress)[0];
+  std::int64_t num_trials = 0;
+  for (const StratumCount& count : cell.strata) num_trials += count.num_trials;
+  EXPECT_EQ(num_trials, 4000);
+  EXPECT_GT(cell.strata[6].num_trials, 1000);
+  EXPECT_NEAR(static_cast<double>(cell.strata[6].num_run),
+              static_cast<double>(cell.strata[6].num_trials) / 64.0,
+              4.0 * std::sqrt(static_cast<double>(cell.strata[6].num_trials) / 64.0));
+}
+
+TEST(StratifyFailures, RefusesRepeatedScenes) {
+  Progress progress("trials", 10);
+  EXPECT_TRUE(ThrowsInputError(
+      [&] { StratifyFailures(EasyAndHard("repeats_per_scene: 2\n"), {.num_trials = 10}, 1, &progress); },
+      {"repeats_per_scene"}));
+}
+
+// Tails of one axis beyond the bound, of the greatest eigenvalue: 2 deg against 4 deg, where the axes of the
+// ellipse are turned.
+TEST(FailureChanceOfBound, TakesTheGreatestEigenvalue) {
+  const double rad = std::acos(-1.0) / 180.0;
+  Matrix5d bound = Matrix5d::Zero();
+  bound.topLeftCorner<3, 3>() = 1e-8 * Eigen::Matrix3d::Identity();
+  Eigen::Matrix2d turn;
+  turn << std::cos(0.5), -std::sin(0.5), std::sin(0.5), std::cos(0.5);
+  bound.bottomRightCorner<2, 2>() =
+      turn * Eigen::Vector2d(0.01 * rad * rad, 4.0 * rad * rad).asDiagonal() * turn.transpose();
+  EXPECT_NEAR(FailureChanceOfBound(bound, {3.0, 4.0}), 0.0455003, 1e-7);
+}
+
+}  // namespace
+}  // namespace rcme
