@@ -5,7 +5,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
 
+#include "estimator/calibrated/influence.h"
 #include "stats/distributions.h"
 #include "tests/test_support/calibrated_mode.h"
 #include "tests/test_support/coverage_count.h"
@@ -141,6 +144,51 @@ TEST(IntrinsicsCovariance, OfOneCameraIsOfACommonError) {
   options.calibration.focal_sd = kFocal;
   const Matrix5d expected = moved * moved.transpose();
   EXPECT_LT((IntrinsicsOf(f, options) - expected).norm(), 0.2 * expected.norm());
+}
+
+// The formula of the header match by match, of 12 matches, where leverages are great and all axes rest on
+// few.
+TEST(SandwichCovariance, IsThatOfTheHeader) {
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    const FittedMode f = FitScene(12, 0.5, 0.0, trial);
+    const Explanation e = Explain(f.matches, f.mode);
+    const MixtureParameters& m = f.mode.mixture;
+    const Matrix5d inverse = InverseOfObserved(f.matches, f.mode);
+    const std::vector<double> wrong = WrongByInfluence(f.mode, e);
+    Matrix5d S = Matrix5d::Zero(), geometry = S, doubt = S;
+    double squares = 0.0, right = 0.0;
+    for (size_t i = 0; i < 12; ++i) {
+      Vector5d J;
+      for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = e.terms.derivative[k][i];
+      const double u = e.terms.residual[i] / m.scale, v = 6.0 / (5.0 + u * u), p = e.probability[i];
+      const double psi = p * v * u / m.scale, h = e.leverage[i];
+      S += std::pow(psi / std::max(1.0 - h, 0.05), 2) * J * J.transpose();
+      geometry += p * J * J.transpose();
+      const double kept = std::max(1.0 - h, 0.01);
+      doubt += 0.5 * wrong[i] * (psi * psi / (kept * kept) + p * v / (m.scale * m.scale) / kept) * J *
+               J.transpose();
+      squares += psi * psi;
+      right += p;
+    }
+    const double freedom = std::max(right - 5.0, 1.0);
+    // The greater of S and of equal residuals along every direction: in coordinates in which the latter is
+    // one.
+    const Matrix5d L = Matrix5d(squares / freedom * geometry).llt().matrixL();
+    const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(L.inverse() * S * L.inverse().transpose());
+    const Matrix5d root = L * eigen.eigenvectors();
+    const Matrix5d middle = root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose() + doubt;
+    const Matrix5d covariance = inverse * middle * inverse;
+    const Matrix5d axes = Eigen::SelfAdjointEigenSolver<Matrix5d>(covariance).eigenvectors();
+    const Vector5d effective = EffectiveMatches(f.mode, e, inverse * axes);
+    Vector5d factor;
+    for (int k = 0; k < 5; ++k) {
+      const double n = std::max(effective(k) < 30.0 ? std::min(effective(k), freedom) : freedom, 3.0);
+      factor(k) = std::sqrt(n / (n - 2.0));
+    }
+    const Matrix5d widen = axes * factor.asDiagonal() * axes.transpose();
+    const Matrix5d expected = widen * covariance * widen;
+    EXPECT_LT((SandwichCovariance(f.mode, e, inverse) - expected).norm(), 1e-6 * expected.norm()) << trial;
+  }
 }
 
 }  // namespace
