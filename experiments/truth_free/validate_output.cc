@@ -37,29 +37,28 @@ const char* CauseName(FaultCause cause) {
   return "";
 }
 
-// What a fault is of, as the end of a sentence.
+// What a fault is of, as the end of a sentence; empty: nothing is said of it.
 std::string CauseInWords(FaultCause cause, bool is_small) {
   switch (cause) {
     case FaultCause::kData:
-      return "the data: in simulation it is not";
+      return "; the data: in simulation it is not";
     case FaultCause::kEstimator:
-      return fmt::format("the estimator's own covariance is too {}, in simulation too",
+      return fmt::format("; the estimator's own covariance is too {}, in simulation too",
                          is_small ? "small" : "large");
     case FaultCause::kBoth:
-      return "in simulation too, and more so here";
+      return "; in simulation too, and more so here";
     case FaultCause::kNone:
       break;
   }
   return "";
 }
 
-// "covariances: too small: the data: in simulation it is not (spatial_halves)".
+// "covariances: too small; the data: in simulation it is not (spatial_halves)".
 std::string CovariancesInWords(const CovarianceVerdict& of) {
-  std::string text = std::string("covariances: ") + VerdictName(of.verdict);
+  const std::string text = std::string("covariances: ") + VerdictName(of.verdict);
   if (of.verdict == TruthFreeVerdict::kNoData) return text;
-  if (of.cause != FaultCause::kNone)
-    text += "; " + CauseInWords(of.cause, of.verdict == TruthFreeVerdict::kTooSmall);
-  return text + fmt::format(" ({})", fmt::join(of.tests, ", "));
+  return fmt::format("{}{} ({})", text, CauseInWords(of.cause, of.verdict == TruthFreeVerdict::kTooSmall),
+                     fmt::join(of.tests, ", "));
 }
 
 std::string CorrelationName(const DistanceCorrelation& c) {
@@ -149,10 +148,10 @@ std::string VerdictInWords(const TruthFreeTest& test) {
   const std::string range = RangeText(ratio.value, ratio.interval);
   switch (test.verdict) {
     case TruthFreeVerdict::kTooSmall:
-      return fmt::format("too small by {} in variance; {}", range, CauseInWords(test.cause, true));
+      return fmt::format("too small by {} in variance{}", range, CauseInWords(test.cause, true));
     case TruthFreeVerdict::kTooLarge:
       return fmt::format(
-          "too large by {} in variance; {}",
+          "too large by {} in variance{}",
           RangeText(1.0 / ratio.value, {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower}),
           CauseInWords(test.cause, false));
     case TruthFreeVerdict::kUndecided:

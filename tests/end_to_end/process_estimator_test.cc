@@ -98,9 +98,7 @@ TEST_F(ProcessEstimators, NoCommandWorksWithOneThatCannotStart) {
         {"run", study_, "--allow-process", "--add-estimator", estimator_, "--out", folder_.Path("counts"),
          "--keep", "counts"},
         {"audit", study_, "--allow-process", "--add-estimator", estimator_, "--out", folder_.Path("audit")},
-        {"rare", study_, "--allow-process", "--add-estimator", estimator_, "--out", folder_.Path("rare")},
-        {"model-choice", study_, "--allow-process", "--add-estimator", estimator_, "--out",
-         folder_.Path("choice")}}) {
+        {"rare", study_, "--allow-process", "--add-estimator", estimator_, "--out", folder_.Path("rare")}}) {
     const ProgramResult result = RunRcme(arguments);
     EXPECT_EQ(result.exit_code, 2) << arguments.front();
     EXPECT_THAT(result.err, HasSubstr("'exit 127' cannot be used")) << arguments.front();

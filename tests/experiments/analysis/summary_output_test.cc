@@ -68,10 +68,10 @@ TEST_F(SummaryOutputTest, Csv) {
 
 TEST_F(SummaryOutputTest, CsvQuotesWhatNeedsIt) {
   study_.name = "a, \"b\"";
-  study_.estimators[0].label = "line\nbreak";
+  study_.estimators[0].label = "=1+1";
   Write("quoted", {});
   const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
-  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"line\nbreak\",success,rate,,0,1,,0,exact,,\n"),
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"'=1+1\",success,rate,,0,1,,0,exact,,\n"),
             std::string::npos)
       << csv;
 }
@@ -131,7 +131,7 @@ TEST_F(SummaryOutputTest, LatexHasARowPerConditionAndEstimatorAndIntervals) {
 }
 
 TEST_F(SummaryOutputTest, LatexEscapesEveryNameAndTakesLabels) {
-  study_.name = "50 %\nof_all";
+  study_.name = "50 % of_all";
   study_.estimators[0].label = "[a]_b&c\\d~$";
   Write("named", HandMadeRecords());
   const Summary summary = SummaryOf("named");
