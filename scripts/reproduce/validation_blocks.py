@@ -46,8 +46,8 @@ def share_with_interval(hits, n):
 
 def caught(spec):
     """In how many sets each test gave the verdict that something is wrong, with an exact 95 % interval in %, a row per table
-    (tables: NAME as WORDS; ...)."""
-    wrong = {"too small", "correlated", "wrong"}
+    (tables: NAME as WORDS; ...; also: further verdicts that count)."""
+    wrong = {"too small", "correlated", "wrong", *words_of(spec.get("also"))}
     body, tests = [], spec.parts("tests")
     for name, words in spec.parts("tables"):
         rows = read_table(name)
