@@ -19,7 +19,7 @@
 namespace rcme {
 namespace {
 
-using Json = nlohmann::json;
+using Packed = nlohmann::json;
 
 constexpr size_t kReaderMemoryBytes = size_t{512} << 20;  // beyond what the program has
 constexpr int kProcessorSeconds = 10;
@@ -29,33 +29,33 @@ constexpr double kReaderSeconds = 60.0;
 constexpr double kMaxNumbersPerByte = 12.5, kNumbersAlwaysAllowed = 1e6;
 
 // Numbers as bytes, and back.
-Json PackNumbers(const std::vector<double>& numbers) {
-  Json::binary_t bytes;
+Packed PackNumbers(const std::vector<double>& numbers) {
+  Packed::binary_t bytes;
   bytes.resize(numbers.size() * sizeof(double));
   if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
   return bytes;
 }
 // Of a key of the answer; `count`: so many, where that is known. Throws std::exception: the answer is none.
-std::vector<double> UnpackNumbers(const Json& answer, const char* key, size_t count = 0) {
-  const Json::binary_t& bytes = answer.at(key).get_binary();
+std::vector<double> UnpackNumbers(const Packed& answer, const char* key, size_t count = 0) {
+  const Packed::binary_t& bytes = answer.at(key).get_binary();
   std::vector<double> numbers(count > 0 ? count : bytes.size() / sizeof(double));
   if (numbers.size() * sizeof(double) != bytes.size()) throw std::length_error(key);
   if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(double));
   return numbers;
 }
 
-Json PackCamera(const StoredCamera& camera) {
-  return {{"model", Json::binary({camera.model.begin(), camera.model.end()})},
+Packed PackCamera(const StoredCamera& camera) {
+  return {{"model", Packed::binary({camera.model.begin(), camera.model.end()})},
           {"size", PackNumbers({camera.width, camera.height})},
           {"params", PackNumbers(camera.params)}};
 }
-StoredCamera UnpackCamera(const Json& packed) {
-  const Json::binary_t& model = packed.at("model").get_binary();
+StoredCamera UnpackCamera(const Packed& packed) {
+  const Packed::binary_t& model = packed.at("model").get_binary();
   const std::vector<double> size = UnpackNumbers(packed, "size", 2);
   return {{model.begin(), model.end()}, size[0], size[1], UnpackNumbers(packed, "params")};
 }
 
-Json PackPair(const StoredPair& pair) {
+Packed PackPair(const StoredPair& pair) {
   return {{"x1", PackNumbers(pair.x1)},
           {"x2", PackNumbers(pair.x2)},
           {"R", PackNumbers(pair.R)},
@@ -63,7 +63,7 @@ Json PackPair(const StoredPair& pair) {
           {"camera1", PackCamera(pair.camera1)},
           {"camera2", PackCamera(pair.camera2)}};
 }
-StoredPair UnpackPair(const Json& packed) {
+StoredPair UnpackPair(const Packed& packed) {
   return {UnpackNumbers(packed, "x1"),        UnpackNumbers(packed, "x2"),
           UnpackNumbers(packed, "R", 9),      UnpackNumbers(packed, "t", 3),
           UnpackCamera(packed.at("camera1")), UnpackCamera(packed.at("camera2"))};
@@ -72,10 +72,10 @@ StoredPair UnpackPair(const Json& packed) {
 // What `read` packs of the file, in a process of its own, is taken by `take` here. A file that crashes its
 // reader, takes too much memory or does not end is an InputError that begins with `place`.
 void ReadApart(const std::string& path, const std::string& place,
-               const std::function<Json(const PosebenchFile&)>& read,
-               const std::function<void(const Json&)>& take) {
+               const std::function<Packed(const PosebenchFile&)>& read,
+               const std::function<void(const Packed&)>& take) {
   const auto work = [&](const Announce&) -> std::string {
-    Json answer;
+    Packed answer;
     try {
       LimitProcess(kReaderMemoryBytes, kProcessorSeconds);
       const PosebenchFile file(path);
@@ -88,11 +88,11 @@ void ReadApart(const std::string& path, const std::string& place,
                                       kReaderMemoryBytes >> 20)}};
     }
     std::string bytes;
-    Json::to_cbor(answer, bytes);
+    Packed::to_cbor(answer, bytes);
     return bytes;
   };
   const IsolatedEnd end = RunIsolated(work, kReaderSeconds);
-  const Json answer = Json::from_cbor(end.result, true, false);
+  const Packed answer = Packed::from_cbor(end.result, true, false);
   if (answer.contains("error") && answer.at("error").is_string())
     throw InputError(answer.at("error").get<std::string>());
   try {
@@ -191,7 +191,7 @@ class PosebenchPairs : public ListedPairs {
     StoredPair stored;
     ReadApart(
         path_, place, [&](const PosebenchFile& file) { return PackPair(file.ReadGroup(name)); },
-        [&](const Json& answer) { stored = UnpackPair(answer); });
+        [&](const Packed& answer) { stored = UnpackPair(answer); });
     CountNumbers(stored, place);
     ListedPair listed;
     listed.file.scene = scene_;
@@ -204,15 +204,15 @@ class PosebenchPairs : public ListedPairs {
   // Names may be of any bytes.
   static std::vector<std::string> ReadNames(const std::string& path) {
     const auto list = [](const PosebenchFile& file) {
-      Json names = Json::array();
+      Packed names = Packed::array();
       for (const std::string& name : file.ListGroups())
-        names.push_back(Json::binary({name.begin(), name.end()}));
-      return Json{{"names", std::move(names)}};
+        names.push_back(Packed::binary({name.begin(), name.end()}));
+      return Packed{{"names", std::move(names)}};
     };
     std::vector<std::string> names;
-    ReadApart(path, path, list, [&](const Json& answer) {
-      for (const Json& name : answer.at("names")) {
-        const Json::binary_t& bytes = name.get_binary();
+    ReadApart(path, path, list, [&](const Packed& answer) {
+      for (const Packed& name : answer.at("names")) {
+        const Packed::binary_t& bytes = name.get_binary();
         names.emplace_back(bytes.begin(), bytes.end());
       }
     });
