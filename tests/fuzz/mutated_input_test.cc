@@ -163,11 +163,12 @@ TEST(MutatedInput, MatchFiles) {
                                           "# scene: \x1B\n"};
   const TempFolder folder;
   const auto read = [&](const std::string& input) { ReadMatchFile(folder.Write("m.csv", input)); };
+  // Few are read: most damage makes a K that cannot be that of the images.
   const Outcomes plain = ReadDamaged(corpus, words, 5000, read);
-  EXPECT_GT(plain.num_read, 100);
+  EXPECT_GT(plain.num_read, 50);
   EXPECT_GT(plain.num_refused, 1000);
   const auto read_packed = [&](const std::string& input) { read(Gzip(input)); };
-  EXPECT_GT(ReadDamaged(corpus, words, 1000, read_packed).num_read, 20);
+  EXPECT_GT(ReadDamaged(corpus, words, 1000, read_packed).num_read, 10);
   std::vector<std::string> packed;
   for (const std::string& input : corpus) packed.push_back(Gzip(input));
   EXPECT_GT(ReadDamaged(packed, words, 3000, read).num_refused, 1000);
