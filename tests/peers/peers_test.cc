@@ -193,7 +193,7 @@ TEST(PeerCalls, EndInAStatusWhateverComesIn) {
 // Images of all sizes and places: OpenCV sorts points into the cells of a grid.
 TEST(PeerCalls, EndInAStatusWhereverTheImageLies) {
   for (EstimatorVariant variant : PeerCombinations()) {
-    variant.options.emplace_back("max_iterations", "100");
+    variant.options.emplace_back("max_iterations", "30");
     for (const double scale : {1e-6, 0.01, 1.0, 1000.0}) {
       for (const double shift_px : {-9e5, -500.0, 0.0, 9e5}) {
         MotionProblem problem = TwoCameraProblem(30, 0.5, 0.3, 0);
