@@ -71,12 +71,15 @@ def caption_of(audit, family, claims, panels):
         parts.append("ring: the mu nearest to the default of its reading")
     if any(math.isnan(row.target.measured) for row in rows):
         parts.append("cross at a frame or 'no value': no finite value measured")
+    if unmeasured := [claim.id for claim in claims if not groups.rows_of(claim)]:
+        parts.append(f"nothing measured for {', '.join(unmeasured)}")
     return "; ".join(parts) + "."
 
 
 def draw_family(audit, family, claims):
     """The figure of one family."""
-    panels = [panel for claim in claims for panel in panels_of_claim(claim, audit.path)]
+    with_values = [claim for claim in claims if groups.rows_of(claim)]
+    panels = [panel for claim in with_values or claims for panel in panels_of_claim(claim, audit.path)]
     marked = [row.target for claim in claims if not is_roc(claim) for row in groups.rows_of(claim)]
     handles = look.legend_handles({target.verdict for target in marked}, any(target.is_claim for target in marked),
                                   any(not math.isnan(target.nominal) for target in marked))

@@ -1,7 +1,8 @@
 """The axis of measured values: linear, logarithmic or logit, its limits and its ticks.
 
 The limits hold every measured and nominal value and the end of the allowed range next to it. Intervals and the other end
-widen them only so far that one of them cannot flatten the rest; what leaves the panel is cut at its frame.
+widen them by a few widths of an interval at most, so that none can flatten the rest; what leaves the panel is cut at its
+frame.
 """
 
 import math
@@ -124,12 +125,17 @@ def spread_limits(name, targets):
     pairs = [placed(pair) for target in targets for pair in ((target.lower, target.upper), (target.low, target.high))]
     ends = [end for pair in pairs for end in pair]
     core = core or ends or placed((0.05, 0.95))
-    widths = [pair[1] - pair[0] for pair in pairs if len(pair) == 2 and pair[1] > pair[0]]
+    widths = widths_of(placed((target.lower, target.upper)) for target in targets) or widths_of(pairs)
     allowance = max(2 * (max(core) - min(core)), 3 * median(widths) if widths else 0) or abs(core[0]) / 10 or 1
     low = min([min(core)] + [max(end, min(core) - allowance) for end in ends])
     high = max([max(core)] + [min(end, max(core) + allowance) for end in ends])
     margin = 0.07 * (high - low) or 0.5 * allowance
     return low - margin, high + margin
+
+
+def widths_of(pairs):
+    """Of those with two ends that differ."""
+    return [pair[1] - pair[0] for pair in pairs if len(pair) == 2 and pair[1] > pair[0]]
 
 
 def nearest_bound(target):

@@ -151,7 +151,20 @@ class Forests(unittest.TestCase):
         self.assertIn("\u2013", texts_of(figure))
         self.assertIn("3.2 [1.1, \u221e)", texts_of(figure))
         self.assertIn("no value", [text.get_text() for axes in figure.axes for text in axes.texts])
-        self.assertEqual(texts_of(figure).count("no evidence in the file"), 2)
+
+    def test_a_claim_without_a_value_is_named_below_and_takes_no_panel(self):
+        empty, full = claim("mle.none", []), claim("mle.bias", [evidence([target("bias", "mean", 1, 1, 0.9, 1.1)])])
+        figure = draw(file_with(empty, full))
+        self.assertNotIn("no evidence in the file", texts_of(figure))
+        self.assertTrue(caption_of(figure).endswith("nothing measured for mle.none."), caption_of(figure))
+        self.assertEqual(texts_of(draw(file_with(empty))).count("no evidence in the file"), 1)
+
+    def test_an_open_side_of_the_allowed_range_does_not_flatten_the_values(self):
+        rows = [evidence([target("difference", "mean", value, 0, -1, 0, half=0.001)], outlier_ratio=ratio)
+                for ratio, value in ((0.2, -0.001), (0.8, 0.002))]
+        low, high = draw(file_with(claim("mle.x", rows, figure_x="outlier_ratio"))).axes[0].get_ylim()
+        self.assertLess(high - low, 0.02)
+        self.assertTrue(low < -0.002 and high > 0.003, (low, high))
 
 
 class Roc(unittest.TestCase):
