@@ -143,8 +143,8 @@ RenderedPose PoseOnWalk(double u) {
 }
 
 RelativePose TrueMotion(const RenderedPose& pose1, const RenderedPose& pose2) {
-  const Eigen::Matrix3d R2_inverse = pose2.R_world_from_cam.transpose();
-  return {R2_inverse * pose1.R_world_from_cam, (R2_inverse * (pose1.center - pose2.center)).normalized()};
+  const Eigen::Matrix3d& R2 = pose2.R_world_from_cam;
+  return {R2.transpose() * pose1.R_world_from_cam, (R2.transpose() * (pose1.center - pose2.center)).normalized()};
 }
 
 std::vector<std::uint8_t> RenderHall(const RenderedCamera& camera, const RenderedPose& pose) {
