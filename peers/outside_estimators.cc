@@ -222,7 +222,7 @@ class AnswersModel : public EstimatorModel {
 
 std::string DigestOfAnswers(const std::string& path) { return ReadAnswers(path)->digest; }
 
-void RequireProcessStarts(const std::string& command, double timeout_s) {
+void RequireCommandAnswers(const std::string& command, double timeout_s) {
   constexpr double kLongStart_s = 10.0;  // who has not ended by then has started
   constexpr int kNumTries = 2;
   std::string end;

@@ -18,7 +18,7 @@ void AddOutsideEstimators();
 // Starts the command of an estimator `process` and asks it a small problem. Throws InputError if the process
 // ends, or closes its output, before it has answered anything: a command that is not found, a library that is
 // missing. Any answer will do, and none within 10 s too.
-void RequireProcessStarts(const std::string& command, double timeout_s);
+void RequireCommandAnswers(const std::string& command, double timeout_s);
 
 // What the option `digest` of `answers` takes for a file. Throws InputError for one that holds no answers.
 std::string DigestOfAnswers(const std::string& path);

@@ -106,7 +106,7 @@ RunReport CountStudy(const StudyPlan& plan, int num_threads, const std::string& 
     const std::vector<TrialsOfCondition> missing = counts.Missing(&num_trials);
     const std::int64_t num_to_run = NumTrials(missing), num_before = num_trials - num_to_run;
     if (num_to_run > 0) {
-      RequireProcessesStart(plan.study.estimators);
+      CheckProcessEstimators(plan.study.estimators);
       NoteOrigin(file.get());
     }
     RefusalWatch refusals;

@@ -43,7 +43,7 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
   }
   const StudyPlan plan = LoadPlanOfCases(arguments.study, arguments.changes, PlanEstimators::kMade);
   const bool is_run = !arguments.only_plan && arguments.shards.parts.empty();
-  if (is_run) RequireProcessesStart(plan.study.estimators);
+  if (is_run) CheckProcessEstimators(plan.study.estimators);
   options->seed = plan.study.seed;
   options->study = plan.study.name;
   options->study_identity = plan.identity;

@@ -55,7 +55,7 @@ void RunBudget(const BudgetArguments& arguments) {
   CheckCanBeWritten(arguments.out);
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   const StudyPlan plan = PlanOf(study, arguments.study);
-  RequireProcessesStart(plan.study.estimators);
+  CheckProcessEstimators(plan.study.estimators);
   const std::vector<TimedProblem> problems = TimedProblems(plan, 0, arguments.calls),
                                   fresh = TimedProblems(plan, arguments.calls, arguments.calls);
   std::vector<std::vector<std::string>> rows = {{"estimator", "effort", "ms a call, fresh trials", ""}};

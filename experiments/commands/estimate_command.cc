@@ -84,7 +84,7 @@ class Answerer {
         given_(CamerasOf(arguments.intrinsics)),
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
-    RequireProcessesStart({spec_});
+    CheckProcessEstimators({spec_});
   }
 
   const EstimatorSpec& spec() const { return spec_; }

@@ -50,7 +50,7 @@ void RunRare(const RareArguments& arguments) {
   const StopOnSignals stop;
   const bool is_splitting = arguments.method == "splitting";
   const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
-  RequireProcessesStart(plan.study.estimators);
+  CheckProcessEstimators(plan.study.estimators);
   MakeResultFolder(arguments.out);
   const RareTexts texts = is_splitting ? Split(plan, arguments) : Stratify(plan, arguments);
   const std::filesystem::path folder(arguments.out);

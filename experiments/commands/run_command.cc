@@ -66,7 +66,7 @@ std::vector<std::string> NamesOfMissingAnswers() {
 
 // Takes nothing out where an estimator cannot be asked again.
 void RemoveForRetry(const StudyPlan& plan, const RunArguments& arguments, ResultStore* store) {
-  RequireProcessesStart(plan.study.estimators);
+  CheckProcessEstimators(plan.study.estimators);
   const std::map<std::string, MotionStatus> missing = MissingAnswers();
   std::vector<MotionStatus> statuses;
   for (const std::string& name : arguments.retry) statuses.push_back(missing.at(name));

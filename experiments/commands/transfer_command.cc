@@ -35,7 +35,7 @@ void RunTransfer(const TransferArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
   const StudyPlan plan = TuningPlanOf(arguments);
-  if (arguments.shards.parts.empty()) RequireProcessesStart(plan.study.estimators);
+  if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   if (!arguments.shards.shard.empty()) {
     FamiliesOf(plan, arguments.by);  // or no merge will do

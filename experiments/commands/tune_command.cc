@@ -108,7 +108,7 @@ void RunTune(const TuneArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
   const StudyPlan plan = TuningPlanOf(arguments);
-  if (arguments.shards.parts.empty()) RequireProcessesStart(plan.study.estimators);
+  if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   if (arguments.repeat > 0) {
     fmt::print("{}", RepetitionsAsTable(plan, settings,

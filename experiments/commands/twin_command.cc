@@ -81,7 +81,7 @@ void RunTwin(const TwinArguments& arguments) {
   const StopOnSignals stop;
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
-  RequireProcessesStart({spec});
+  CheckProcessEstimators({spec});
   auto scenes = LoadMatchFolder({arguments.pairs, arguments.sigma_px, {}});
   const ImageNames images = ImageNamesIn(arguments.pairs);
   std::string names;

@@ -66,7 +66,7 @@ std::vector<PairSet> ReadAllSets(const ValidateArguments& arguments) {
 // The chosen estimator, with what is planted in its covariances.
 AdvisedEstimator ChooseAdvised(const EstimatorChoice& choice, const PlantedFaults& planted) {
   const EstimatorSpec spec = ChosenEstimator(choice);
-  RequireProcessesStart({spec});
+  CheckProcessEstimators({spec});
   AdvisedEstimator advised;
   advised.make = [spec, factor = planted.covariance](const Settings& options) {
     EstimatorSpec changed = spec;

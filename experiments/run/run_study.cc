@@ -98,7 +98,7 @@ RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store, c
   const TrialsToRun trials = FindTrialsToRun(plan, shard, store);
   const std::int64_t num_to_run = NumTrials(trials.missing), num_before = trials.num_trials - num_to_run;
   if (num_to_run > 0) {
-    RequireProcessesStart(plan.study.estimators);
+    CheckProcessEstimators(plan.study.estimators);
     const std::string warning = store->NoteOrigin(ThisProgram());
     if (!warning.empty()) PrintMessage("warning: {}\n", warning);
   }

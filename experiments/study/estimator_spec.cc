@@ -38,7 +38,7 @@ std::string EffortInWords(const EstimatorSpec& spec) {
   return effort->has_own_rule ? "own rule, " + limit : limit;
 }
 
-void RequireProcessesStart(const std::vector<EstimatorSpec>& specs) {
+void CheckProcessEstimators(const std::vector<EstimatorSpec>& specs) {
   RequireAllowedCommands(specs);
   for (const EstimatorSpec& spec : specs) {
     if (spec.name != "process") continue;
@@ -46,7 +46,7 @@ void RequireProcessesStart(const std::vector<EstimatorSpec>& specs) {
     const std::vector<Parameter> parameters = model->Parameters();
     double timeout_s = 0.0;
     ParseReal(FindParameter(parameters, "timeout_s").Value(), &timeout_s);
-    RequireProcessStarts(FindParameter(parameters, "command").Value(), timeout_s);
+    RequireCommandAnswers(FindParameter(parameters, "command").Value(), timeout_s);
   }
 }
 

@@ -36,9 +36,9 @@ Settings AnswersOptions(const std::string& path);
 std::string EffortInWords(const EstimatorSpec& spec);
 
 // Throws InputError where the command of an estimator that is a process is not allowed (command_permission.h)
-// or cannot be used (RequireProcessStarts of peers/peer_registry.h). To be called before work that is asked of
+// or cannot be used (RequireCommandAnswers of peers/peer_registry.h). To be called before work that is asked of
 // these estimators begins.
-void RequireProcessesStart(const std::vector<EstimatorSpec>& specs);
+void CheckProcessEstimators(const std::vector<EstimatorSpec>& specs);
 
 // The estimator, configured or made. Throw InputError as ConfigureEstimator does; Make also for a command
 // that nobody has allowed.

@@ -18,8 +18,7 @@ inline constexpr int kMostSteps = 10;
 // interval's half. Nothing is named where
 //   - that takes more than kMostSteps or leaves what is physically possible;
 //   - the residuals that are left go with a fault that is never named (FindOtherFault): a further kind of
-//   fault
-//     looks like one of those that are;
+//     fault looks like one of those that are;
 //   - the faults that are named, corrected alone, leave something: `p_corrected` < 0.05. What is left decides
 //     then whether further ones are taken with them, the most certain first.
 // Pure in the seed and the pairs' names.

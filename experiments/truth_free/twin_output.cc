@@ -79,7 +79,8 @@ std::string ReportAsText(const TwinReport& report) {
         row.insert(row.end(), {"-", "-", ""});
         continue;
       }
-      row[1] = fmt::format("{}", c->n);
+      const std::string n = fmt::format("{}", c->n);
+      if (row[1] != n) row[1] += row[1].empty() ? n : "/" + n;
       const std::string kind = c->is_fitted ? "fitted" : "predicted";
       row.insert(row.end(), {NumberText(*c, c->predicted),
                              fmt::format("{} [{}, {}]", NumberText(*c, c->observed),
@@ -109,7 +110,7 @@ std::string TwinsAsText(const std::vector<TwinReport>& reports) {
       "semi-real: the key points of the pairs, put where the estimated geometry has them, with noise drawn "
       "anew and "
       "wrong\nmatches dealt out again; simulated: a scene of the simulator fitted to the numbers above. "
-      "Observed "
+      "n: pairs compared (semi-real/simulated where they differ). Observed "
       "intervals hold for all\nquantities of a scene together and respect images that pairs share. "
       "fitted: the twins were made to agree in it, which is\nno evidence; predicted: they were not. "
       "Quantities:\n";

@@ -90,7 +90,7 @@ def do_blocks(is_check):
 
 def do_digests(recipes, options):
     """The hashes of a few trials of each result, stored or compared."""
-    differs, count, old = False, 0, digests.stored()
+    differs, count, old, known = False, 0, digests.stored(), {}
     for recipe in recipes:
         missing = recipe.missing(options.programs)
         if not recipe.digest:
@@ -99,7 +99,7 @@ def do_digests(recipes, options):
             print(f"{recipe.name}: not replayed: there is no {', '.join(missing)}")
             continue
         try:
-            new = digests.digests_of(recipe, options.scratch / "digests", options.programs)
+            new = digests.digests_of(recipe, options.scratch / "digests", options.programs, known)
         except ResultError as error:
             print(f"{recipe.name}: not given any more: {error}")
             differs = True

@@ -49,13 +49,18 @@ SHORTER = [
     (r"^rcme audit --budget full (--shard|--merge)", r"rcme audit --only sample_test.size.joint \1"),
     (r"^rcme audit --out", "rcme audit --only sampson.determinant --out"),
     (r"^rcme audit (\S+yaml) (.*?)(--only estimator )?--out", r"rcme audit \1 \2--only inlier.true_pose.rank_aware --set outlier_ratio=0 --out"),
-    (r"^rcme map (.*)$", r"rcme map \1 --trials 20"),
+    (r"^rcme map (.*)$", r"rcme map \1 --trials 4"),
+    (r"^rcme transfer (\S*transfer_mu.yaml)", r"rcme transfer \1 --set scene=uniform_volume --set num_matches=60"),
     (r"^rcme (tune|transfer) (.*)$", r"rcme \1 \2 --tune explore=10 --tune calibrate=40 --tune verify=5 --tune at_most=0.9"),
-    (r"^rcme rare (.*)$", r"rcme rare \1 --particles 20 --replicates 4 --moves 1"),
-    (r"^rcme model-choice (.*)$", r"rcme model-choice \1 --trials 1"),
+    (r"^rcme rare (.*)$", r"rcme rare \1 --set sigma_px=0.65 --particles 20 --replicates 4 --moves 1"),
+    (r"^rcme model-choice (.*)$", r"rcme model-choice \1 --trials 1 --set outlier_ratio=0.2"),
     (r"^rcme budget (.*)$", r"rcme budget \1 --calls 1 --set outlier_ratio=0.3"),
     (r"^rcme (validate|twin) (.*)$", r"rcme \1 \2 --twins 1"),
 ]
+
+
+def is_elsewhere(command):
+    return any(re.match(pattern, command) for pattern in ELSEWHERE)
 
 
 def as_run(command):
@@ -68,7 +73,7 @@ def as_run(command):
 
 
 class Commands(unittest.TestCase):
-    def sandbox(self, with_datasets):
+    def sandbox(self, commands):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         folder = pathlib.Path(scratch.name)
@@ -76,15 +81,16 @@ class Commands(unittest.TestCase):
             (folder / name).symlink_to(ROOT / name)
         (folder / "bin").mkdir()
         (folder / "bin/rcme").symlink_to(pathlib.Path(os.environ["RCME"]).resolve())
-        make_fixtures(folder, folder / "bin/rcme", with_datasets)
+        make_fixtures(folder, folder / "bin/rcme", commands)
         return folder
 
     def run_page(self, page):
         shown = pages.contents((ROOT / page).read_text())
-        commands = [one for one in shown if isinstance(one, pages.Command)]
-        if all(any(re.match(pattern, one.text) for pattern in ELSEWHERE) for one in commands):
+        commands = [command for one in shown if isinstance(one, pages.Command) and not is_elsewhere(one.text)
+                    for command in as_run(one.text)]
+        if not commands:
             return
-        folder = self.sandbox(any("rcme pairs" in one.text for one in commands))
+        folder = self.sandbox(commands)
         environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "GLOG_minloglevel": "3"}
         output = ""
         for one in shown:
@@ -92,7 +98,7 @@ class Commands(unittest.TestCase):
                 (folder / one.name).write_text(one.text)
             elif isinstance(one, pages.ShownOutput):
                 self.check_output(f"{page}:{one.line}", one.words, output)
-            elif not any(re.match(pattern, one.text) for pattern in ELSEWHERE):
+            elif not is_elsewhere(one.text):
                 for command in as_run(one.text):
                     output = self.run_one(f"{page}:{one.line}", command, folder, environment)
 

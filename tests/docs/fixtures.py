@@ -2,6 +2,7 @@
 
 import gzip
 import pathlib
+import re
 import shutil
 import sqlite3
 import subprocess
@@ -21,18 +22,6 @@ def make_pairs(folder, program):
     (folder / "matches.csv.gz").write_bytes(gzip.compress(files[0].read_bytes()))
 
 
-def make_images(folder):
-    """Two views of a textured plane: blobs of many sizes, the second shifted and stretched a little."""
-    rows, columns = np.mgrid[0:480, 0:640].astype(float)
-    for name, stretch, shift in (("left", 1.0, 0.0), ("right", 1.03, 12.0)):
-        rng = np.random.default_rng(1)
-        image = np.zeros((480, 640))
-        for _ in range(250):
-            x, y, size, height = rng.uniform(0, 640), rng.uniform(0, 480), rng.uniform(3, 25), rng.normal()
-            image += height * np.exp(-((columns - stretch * x - shift) ** 2 + (rows - stretch * y) ** 2) / (2 * size**2))
-        matplotlib.image.imsave(folder / f"{name}.png", image, cmap="gray", vmin=-2, vmax=2)
-
-
 SIZE, K, POINTS = (640, 480), (535.4, 539.2, 320.1, 247.6), 2500
 CENTERS = [(0.0, 0.0, 0.0), (0.22, 0.01, 0.03), (0.44, -0.02, 0.06)]
 
@@ -46,7 +35,8 @@ def blobs_in(center):
     return np.column_stack([x, y, size, height])
 
 
-def draw(path, blobs):
+def draw(path, blobs, most=3):
+    """Blobs of these places, sizes and heights; `most`: the brightest value that the image tells from others."""
     image = np.zeros(SIZE[::-1])
     for x, y, size, height in blobs:
         left, top = max(int(x - 4 * size), 0), max(int(y - 4 * size), 0)
@@ -55,7 +45,15 @@ def draw(path, blobs):
             rows, columns = np.mgrid[top:bottom, left:right].astype(float)
             image[top:bottom, left:right] += height * np.exp(-((columns - x) ** 2 + (rows - y) ** 2) / (2 * size**2))
     path.parent.mkdir(parents=True, exist_ok=True)
-    matplotlib.image.imsave(path, image, cmap="gray", vmin=-3, vmax=3)
+    matplotlib.image.imsave(path, image, cmap="gray", vmin=-most, vmax=most)
+
+
+def make_images(folder):
+    """Two views of a textured plane: blobs of many sizes, the second shifted and stretched a little."""
+    rng = np.random.default_rng(1)
+    blobs = np.array([[rng.uniform(0, 640), rng.uniform(0, 480), rng.uniform(3, 25), rng.normal()] for _ in range(250)])
+    for name, stretch, shift in (("left", 1.0, 0.0), ("right", 1.03, 12.0)):
+        draw(folder / f"{name}.png", blobs * [stretch, stretch, 1, 1] + [shift, 0, 0, 0], most=2)
 
 
 def make_datasets(folder):
@@ -102,9 +100,12 @@ def make_datasets(folder):
             database.execute("INSERT INTO matches VALUES (?, ?, 2, ?)", (2147483647 * first + second, POINTS, same))
 
 
-def make_fixtures(folder, program, with_datasets):
-    folder = pathlib.Path(folder)
-    make_pairs(folder, program)
-    make_images(folder)
-    if with_datasets:
+def make_fixtures(folder, program, commands):
+    """What these commands speak of; an image or a run of the program is not made for those that do not."""
+    folder, text = pathlib.Path(folder), "\n".join(commands)
+    if re.search(r"\bmatches\.csv\.gz\b|\bpairs\b", text):
+        make_pairs(folder, program)
+    if "left.png" in text:
+        make_images(folder)
+    if "rcme pairs" in text:
         make_datasets(folder)

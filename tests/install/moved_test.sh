@@ -28,10 +28,26 @@ refused() {
   [ "$status" = 2 ] && grep -qF "$words" err || { cat err >&2; fail "$*: ended with $status, not with 2 and '$words'"; }
 }
 
-# A debug build names its sources for the debugger alone.
-strip -o stripped "$rcme"
-if grep -qF -e "$root" -e "$scratch/first" stripped; then fail "the program holds a path of its source tree or first prefix"; fi
-if grep -rlF -e "$root" -e "$scratch/first" "$scratch/moved/lib" --include='*.cmake'; then fail "these hold such a path"; fi
+# No file that is installed holds the source folder, the build folder (by any of their names) or the first prefix. Planted
+# files show that the search can fail: a path amid other bytes, at the end of a file, in pieces in a program, and a short one.
+python=$("$root/scripts/find-python")
+find_paths() { "$python" -B "$root/tests/install/paths_in_files.py" "$@"; }
+find_paths "$scratch/moved" "$root" "$(cd "$root" && pwd -P)" "$build" "$(cd "$build" && pwd -P)" "$scratch/first" ||
+  fail "the files above hold a path of the source tree, the build or the first prefix"
+planted=$scratch/planted
+mkdir "$planted" "$planted/deep"
+if ! find_paths "$planted" /build/of/rcme /src; then fail "a path is found in a folder without files"; fi
+printf 'a\0\377-I/build/of/rcme/x\0' >"$planted/amid"
+printf 'share/rcme\n/build/of/rcme' >"$planted/deep/.end"
+printf '"/src"' >"$planted/short"
+printf '/build/of/rcm, /usr/src, /src-2' >"$planted/none"
+printf '/of/rcme\0\0/srv/bui\0' >pieces
+objcopy --add-section .planted=pieces /bin/true "$planted/pieces"
+find_paths "$planted" /build/of/rcme /src >found && fail "what was planted is not found"
+find_paths "$planted" /srv/bui/of/rcme >>found && fail "what was planted in pieces is not found"
+sed "s|^$planted/||" found >names
+printf '%s holds %s\n' amid /build/of/rcme deep/.end /build/of/rcme short /src pieces /srv/bui/of/rcme >wanted
+cmp wanted names || { cat found >&2; fail "not exactly what was planted is found"; }
 
 "$rcme" list studies | grep -q '^failure_vs_outliers '
 "$rcme" list estimator_files | grep -q '^rcme_tuned '

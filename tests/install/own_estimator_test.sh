@@ -12,7 +12,7 @@ trap 'rm -rf "$scratch"' EXIT
 "$cmake" --install "$build" --prefix "$scratch/first" >/dev/null
 mv "$scratch/first" "$scratch/prefix"
 "$cmake" -G Ninja -S "$root/examples/own_estimator" -B "$scratch/own" -DCMAKE_PREFIX_PATH="$scratch/prefix;$prefixes" \
-  -DCMAKE_BUILD_TYPE=Release >/dev/null
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" >/dev/null
 "$cmake" --build "$scratch/own"
 own=$scratch/own/own_rcme
 

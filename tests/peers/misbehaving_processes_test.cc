@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -71,6 +72,8 @@ const std::vector<Case>& Cases() {
       {"one_answer_and_the_end", "ask; answer; exit 4", {Status::kOk, Status::kNoAnswer}, "exit code 4"},
       {"closes_its_output", "ask; exec >&-; sleep 300", {Status::kNoAnswer}, "closed"},
       {"closes_its_input", "ask; answer; exec <&-; sleep 300", {Status::kOk, Status::kNoAnswer}, "closed"},
+      {"closes_its_input_unread", "sleep 0.2; exec <&-; sleep 300", {Status::kNoAnswer}, "closed"},
+      {"kills_its_group", "ask; kill -9 0", {Status::kNoAnswer}, "signal 9"},
       {"kills_its_supervisor", "ask; kill -9 $PPID; exec sleep 300", {Status::kNoAnswer}},
       // No answers.
       {"words", "ask; say hello; well", {Status::kUnreadableAnswer}, "hello"},
@@ -241,6 +244,28 @@ TEST(MisbehavingProcesses, ALineTooManyCostsOneAnswer) {
   }
 }
 
+// The line is written once the first answer is there, and the next problem is asked once the line is: it is
+// seen before the question, whose answer would be right.
+TEST(MisbehavingProcesses, ALineBetweenTwoProblemsIsSeenBeforeTheNextIsAsked) {
+  const TempFolder folder;
+  const std::string script = folder.Path("between.sh"), go = folder.Path("go"), said = folder.Path("said");
+  std::ofstream(script) << kWords << "ask; answer; while ! [ -e '" << go
+                        << "' ]; do sleep 0.01; done; say loading; mkdir '" << said << "'; well\n";
+  const auto process = MakeEstimator(ProcessEntryName(), {{"command", "sh " + script}, {"timeout_s", "60"}});
+  const auto ask = [&](std::uint64_t i) {
+    RandomStream rng({i, 0, 0, 0});
+    return process->Estimate(MakeProblem(i), rng);
+  };
+  EXPECT_EQ(ask(1).status, Status::kOk);
+  std::ofstream(go) << "go\n";
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!std::filesystem::exists(said) && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const MotionEstimate second = ask(2);
+  EXPECT_EQ(second.status, Status::kUnreadableAnswer) << second.message;
+  EXPECT_THAT(second.message, HasSubstr("was written before the process was asked"));
+}
+
 // The same problem twice, as a check of the contract asks: two questions, two ids.
 TEST(MisbehavingProcesses, AProblemAskedAgainHasAnotherId) {
   const TempFolder folder;
@@ -264,11 +289,11 @@ TEST(MisbehavingProcesses, AProblemAskedAgainHasAnotherId) {
   EXPECT_NE(given[3], given[0]);
 }
 
-// Half a second for what it has to put in order once its input has ended.
+// Half a second for what it has to put in order once its input has ended, of which this one takes a tenth.
 TEST(MisbehavingProcesses, OneThatBehavesEndsByItself) {
   const TempFolder folder;
   const std::string script = folder.Path("ends.sh"), ended = folder.Path("ended");
-  std::ofstream(script) << kWords << "trap 'echo yes > " << ended << "' EXIT; well\n";
+  std::ofstream(script) << kWords << "trap 'sleep 0.05; echo yes > " << ended << "' EXIT; well\n";
   {
     const auto process =
         MakeEstimator(ProcessEntryName(), {{"command", "exec sh " + script}, {"timeout_s", "60"}});

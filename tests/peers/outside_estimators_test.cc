@@ -1,10 +1,12 @@
 // The interface for estimators outside the program: their covariance, their lines of JSON, and processes that
 // answer, are late, crash or talk nonsense. The processes are scripts of the shell.
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <thread>
 
@@ -121,11 +123,15 @@ TEST(AnswerJson, WhatIsNoAnswerHasAFault) {
                                   std::string("3"),
                                   std::string(R"({"R": [1,0,0]})"),
                                   std::string(R"({"R": "x", "t": [1,0,0]})"),
+                                  std::string(R"({"R": [1,0,0,0,1,0,0,0,1]})"),
+                                  std::string(R"({"R": [1,0,0,0,1,0,0,0,1,0], "t": [1,0,0]})"),
+                                  std::string(R"({"R": [1,0,0,0,1,0,0,0,1], "t": [1,0,0,0]})"),
                                   std::string(R"({"status": "ok"})"),
                                   std::string(R"({"status": "fine"})"),
                                   std::string(R"({"status": 3})"),
                                   std::string(100'000, '['),
                                   line(R"(, "pose_cov": [1, 2])"),
+                                  line(fmt::format(R"(, "pose_cov": {})", std::vector<int>(37, 1))),
                                   line(R"(, "inliers": [0.5])"),
                                   line(R"(, "inliers": [-1])"),
                                   line(R"(, "inliers": 3)"),
@@ -137,6 +143,74 @@ TEST(AnswerJson, WhatIsNoAnswerHasAFault) {
                                   line(R"(, "id": 3)")}) {
     EXPECT_NE(AnswerFromJson(text).fault, "") << text.substr(0, 60);
   }
+}
+
+// Row by row, as a list and as a list of rows.
+TEST(AnswerJson, MatricesAreReadRowByRow) {
+  std::string pose_cov;
+  for (int row = 0; row < 6; ++row) {
+    for (int col = 0; col < 6; ++col)
+      pose_cov += fmt::format("{}{}", row + col == 0 ? "" : ",", 6 * row + col);
+  }
+  for (const char* R : {"[1,2,3,4,5,6,7,8,9]", "[[1,2,3],[4,5,6],[7,8,9]]"}) {
+    const AnswerLine line =
+        AnswerFromJson(fmt::format(R"({{"R": {}, "t": [10,11,12], "pose_cov": [{}]}})", R, pose_cov));
+    ASSERT_EQ(line.fault, "");
+    EXPECT_EQ(line.answer.R, (Eigen::Matrix3d() << 1, 2, 3, 4, 5, 6, 7, 8, 9).finished());
+    EXPECT_EQ(line.answer.t, Eigen::Vector3d(10, 11, 12));
+    EXPECT_EQ((*line.answer.pose_cov)(2, 5), 17.0);
+    EXPECT_EQ((*line.answer.pose_cov)(5, 2), 32.0);
+  }
+}
+
+// Three lists within the object pass, also under a key that nobody asks for; a fourth one does not.
+TEST(AnswerJson, ListsAreNestedUpToThreeDeep) {
+  const std::string pose = R"({"R": [1,0,0,0,1,0,0,0,1], "t": [1,0,0], "note": )";
+  EXPECT_EQ(AnswerFromJson(pose + "[[[1]]]}").fault, "");
+  EXPECT_THAT(AnswerFromJson(pose + "[[[[1]]]]}").fault, HasSubstr("lists within lists"));
+}
+
+MotionEstimate EstimateOf(const OutsideAnswer& answer) {
+  return CallOutside(ProblemOf(1), [&] { return answer; });
+}
+
+// Of inliers that are none of the 20 matches, or one of them twice, no covariance is made.
+TEST(CallOutside, InliersThatAreNotValidGiveNoCovariance) {
+  OutsideAnswer answer;
+  answer.t = Eigen::Vector3d::UnitX();
+  answer.inliers = {19, 1, 2, 3, 4, 5, 6, 7};
+  EXPECT_GT(EstimateOf(answer).pose_cov(0, 0), 0.0);
+  for (const int wrong : {20, 7, -1}) {
+    answer.inliers->front() = wrong;
+    MotionEstimate estimate;
+    ASSERT_NO_THROW(estimate = EstimateOf(answer)) << wrong;
+    EXPECT_EQ(estimate.pose_cov, MotionEstimate().pose_cov) << wrong;
+    EXPECT_THAT(estimate.inliers, testing::Contains(wrong));
+  }
+}
+
+// At most 1,000 bytes of it, and how many are left out between its ends; and as one line.
+TEST(CallOutside, MessagesAreShortAndPrintable) {
+  const std::string half(500, 'x'), shortened = fmt::format("{}[... 4000 bytes ...]{}", half, half);
+  OutsideAnswer answer;
+  answer.status = MotionStatus::kTooUncertain;
+  answer.message = std::string(5000, 'x');
+  EXPECT_EQ(EstimateOf(answer).message, shortened);
+  answer.message = "a\nb\033";
+  EXPECT_EQ(EstimateOf(answer).message, "a\\nb\\x1B");
+  const MotionEstimate none = CallOutside(ProblemOf(1), []() -> OutsideAnswer {
+    throw NoOutsideAnswer(MotionStatus::kNoAnswer, std::string(5000, 'x'));
+  });
+  EXPECT_EQ(none.status, MotionStatus::kNoAnswer);
+  EXPECT_EQ(none.message, shortened);
+}
+
+TEST(CallOutside, TheTimeElsewhereIsTheAnswers) {
+  OutsideAnswer answer;
+  answer.t = Eigen::Vector3d::UnitX();
+  EXPECT_TRUE(std::isnan(EstimateOf(answer).seconds_elsewhere));
+  answer.seconds = 0.25;
+  EXPECT_EQ(EstimateOf(answer).seconds_elsewhere, 0.25);
 }
 
 TEST(AnswerJson, AnAnswerBelongsToTheProblemOfItsId) {

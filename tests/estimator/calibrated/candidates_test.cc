@@ -97,5 +97,51 @@ TEST(ModesFrom, BeginsAtTheScaleThatSuitsToo) {
   EXPECT_GE(num_both, 4);
 }
 
+// 128 matches of a tenth of the assumed noise before 400 of eight times it, all of one motion. One optimum
+// explains all of them, another at a far lesser scale the precise ones alone.
+FittedMode FitTwoNoiseLevels(std::uint32_t trial) {
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2759});
+  RandomProblem random = MakeRandomProblem(rng, {.num_matches = 528});
+  for (size_t i = 0; i < 528; ++i) AddNoise(i < 128 ? 0.05 : 4.0, rng, &random.problem.matches[i]);
+  random.problem.sigma_px = 0.5;
+  return FitFromTruth(random.problem, random.pose_true);
+}
+
+// Of the scales tried, those of Gaussian noise at 1/4, 1/2, ..., 8 times the assumed sigma, the least suits
+// the first 128 matches: the second optimum is where the same 18 steps from there end. From a scale beside
+// it, such as 1/4 itself, they end elsewhere by 1e-4 of it.
+TEST(ModesFrom, BeginsAtAQuarterOfTheAssumedNoiseWhereThatSuits) {
+  int num_both = 0;
+  for (std::uint32_t trial = 0; trial < 6; ++trial) {
+    const FittedMode f = FitTwoNoiseLevels(trial);
+    const std::vector<Mode> modes = ModesFrom(f.matches, f.prior, {f.pose_true});
+    if (modes.size() != 2) continue;
+    ++num_both;
+    Mode from_quarter = StartMode(f.matches, f.prior, f.pose_true);
+    from_quarter.mixture = FirstGuess(f.prior, 0.25 * NoiseLaw().scale_of_gaussian, 0.5);
+    ASSERT_TRUE(FitMode(f.matches, f.prior, 18, &from_quarter));
+    EXPECT_LT(modes[1].mixture.scale, 0.5 * modes[0].mixture.scale);
+    EXPECT_NEAR(modes[1].mixture.scale, from_quarter.mixture.scale, 1e-9) << trial;
+  }
+  EXPECT_GE(num_both, 4);
+}
+
+// The lesser optimum lies within the width of the likelier one, that of all matches: of the two it returns
+// that one.
+TEST(FindModes, ReturnsOneModeOfAMotionAtTwoScales) {
+  int num_one = 0;
+  for (std::uint32_t trial = 0; trial < 6; ++trial) {
+    const FittedMode f = FitTwoNoiseLevels(trial);
+    const ScoredEssential candidate{EssentialFromPose(f.pose_true), 300.0};
+    const std::vector<Mode> modes = FindModes(f.matches, f.prior, {candidate}, 6);
+    ASSERT_FALSE(modes.empty());
+    if (modes.size() == 1)
+      ++num_one;
+    else
+      EXPECT_FALSE(IsSameMode(modes[0], modes[1])) << trial;
+  }
+  EXPECT_GE(num_one, 4);
+}
+
 }  // namespace
 }  // namespace rcme

@@ -20,6 +20,16 @@ struct ParallaxCase {
   RandomProblem random;
   ExplainedMode mode;
 };
+ExplainedMode ExplainAll(const MotionProblem& problem, const RelativePose& pose) {
+  const MatchBlocks matches(problem);
+  ExplainedMode explained;
+  explained.mode.pose = pose;
+  explained.mode.mixture.scale = explained.mode.mixture.noise.scale_of_gaussian;
+  explained.mode.used = matches.All();
+  explained.explanation = Explain(matches, explained.mode);
+  explained.explanation.probability.assign(problem.matches.size(), 1.0);
+  return explained;
+}
 ParallaxCase MakeParallax(std::uint32_t trial, int num_matches, double parallax_px) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2790});
   ParallaxCase c;
@@ -35,12 +45,7 @@ ParallaxCase MakeParallax(std::uint32_t trial, int num_matches, double parallax_
   }
   AddNoise(kSigmaPx, rng, &problem);
   problem.sigma_px = kSigmaPx;
-  const MatchBlocks matches(problem);
-  c.mode.mode.pose = c.random.pose_true;
-  c.mode.mode.mixture.scale = c.mode.mode.mixture.noise.scale_of_gaussian;
-  c.mode.mode.used = matches.All();
-  c.mode.explanation = Explain(matches, c.mode.mode);
-  c.mode.explanation.probability.assign(c.mode.explanation.probability.size(), 1.0);
+  c.mode = ExplainAll(problem, c.random.pose_true);
   return c;
 }
 
@@ -157,6 +162,43 @@ TEST(PosteriorOfDirection, LeavesOutWhatIsWrongThere) {
   }
   EXPECT_EQ(num_wrong_used, 0);
   EXPECT_GE(num_right_used, 65);
+}
+
+// The matches that are looked at stand for all that the mode explains: 60 of 120 say what the 120 say of
+// which each is there twice, and more than 60 of 60.
+TEST(PosteriorOfDirection, StandsForAllThatTheModeExplains) {
+  double sum_apart = 0.0;
+  for (std::uint32_t trial = 0; trial < 4; ++trial) {
+    const ParallaxCase c = MakeParallax(20 + trial, 60, 0.6);
+    const auto mass = [&](const MotionProblem& problem, ExplainedMode mode, int num_explained) {
+      mode.explanation.num_explained = num_explained;
+      return PosteriorOfDirection(problem, mode, c.random.pose_true.t, 30.0 * kRadPerDeg).mass_within;
+    };
+    MotionProblem twice = c.random.problem;
+    for (const Correspondence& match : c.random.problem.matches) twice.matches.push_back(match);
+    const double of_part = mass(c.random.problem, c.mode, 120);
+    EXPECT_NEAR(of_part, mass(twice, ExplainAll(twice, c.random.pose_true), 120), 1e-9) << trial;
+    sum_apart += std::abs(of_part - mass(c.random.problem, c.mode, 60));
+  }
+  EXPECT_GT(sum_apart, 1e-3);
+}
+
+// The rotation is integrated out: from a mode that is turned about the optical axis by 12 mrad, which moves
+// matches at the edge of the image by 4 px, six standard deviations of a displacement, the posterior is
+// nearly the same, and no match is wrong.
+TEST(PosteriorOfDirection, MakesUpForTheModesRotation) {
+  for (std::uint32_t trial = 0; trial < 6; ++trial) {
+    ParallaxCase c = MakeParallax(40 + trial, 80, 4.0);
+    const auto posterior = [&] {
+      return PosteriorOfDirection(c.random.problem, c.mode, c.random.pose_true.t, 15.0 * kRadPerDeg);
+    };
+    const DirectionPosterior exact = posterior();
+    c.mode.mode.pose.R = RotationFromVector({0.0, 0.0, 0.012}) * c.random.pose_true.R;
+    const DirectionPosterior turned = posterior();
+    EXPECT_NEAR(turned.mass_within, exact.mass_within, 0.1) << trial;
+    EXPECT_LT(RotationAngleBetween(turned.best.pose.R, exact.best.pose.R), 5e-3) << trial;
+    EXPECT_GE(CountIn(turned.best.used), 74) << trial;
+  }
 }
 
 }  // namespace

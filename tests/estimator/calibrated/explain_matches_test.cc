@@ -76,19 +76,25 @@ TEST(ExplainMatches, LooksAtModesOfHalfTheMatches) {
   }
 }
 
+// Points 40 to 80 baselines deep, and match 13 on its epipolar line, of a point at `depth`.
+RandomProblem WithNearMatch(int num_matches, double depth, std::uint32_t trial) {
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2821});
+  RandomProblem random =
+      MakeRandomProblem(rng, {.num_matches = num_matches, .min_depth = 40.0, .max_depth = 80.0});
+  AddNoise(0.5, rng, &random.problem);
+  const Eigen::Vector3d ray = random.points_in_cam1[13] / random.points_in_cam1[13].z();
+  random.problem.matches[13] =
+      ProjectToBoth(depth * ray, random.pose_true, random.problem.camera1, random.problem.camera2);
+  return random;
+}
+
 // One match on its epipolar line, of a point ten times nearer than all others: of many matches it is left out
 // by its influence, of fewer than thirty none is, for there a large influence is nothing unusual.
 TEST(ExplainMatches, LeavesOutByInfluenceAmongManyMatchesAlone) {
   for (const int num_matches : {100, 24}) {
     int num_left_out = 0;
     for (std::uint32_t trial = 0; trial < 40; ++trial) {
-      RandomStream rng({.seed = 1, .trial = trial, .purpose = 2821});
-      RandomProblem random =
-          MakeRandomProblem(rng, {.num_matches = num_matches, .min_depth = 40.0, .max_depth = 80.0});
-      AddNoise(0.5, rng, &random.problem);
-      const Eigen::Vector3d ray = random.points_in_cam1[13] / random.points_in_cam1[13].z();
-      random.problem.matches[13] =
-          ProjectToBoth(4.0 * ray, random.pose_true, random.problem.camera1, random.problem.camera2);
+      const RandomProblem random = WithNearMatch(num_matches, 4.0, trial);
       const MatchBlocks matches(random.problem);
       const MixturePrior prior = PriorOf(random.problem);
       Mode mode = StartMode(matches, prior, random.pose_true);
@@ -116,6 +122,68 @@ TEST(ExplainMatches, KeepsModesOfMoreThanFiveMatches) {
   mode.inverse_hessian = 1e-12 * Matrix5d::Identity();
   ASSERT_LE(Explain(matches, mode).num_explained, 5);
   EXPECT_TRUE(ExplainMatches(problem, matches, prior, CalibratedOptions(), {mode}).empty());
+}
+
+// Says of the mode that it owes its direction to match 13, whose leverage becomes 0.9; that of matches with a
+// twentieth of its parallax becomes a few thousandths.
+void OweToNearMatch(const MatchBlocks& matches, Mode* mode) {
+  mode->inverse_hessian.setZero();
+  mode->inverse_hessian.bottomRightCorner<2, 2>() = 1e-12 * Eigen::Matrix2d::Identity();
+  mode->inverse_hessian *= 0.9 / Explain(matches, *mode).leverage[13];
+}
+
+// The influence of such a match shows that it is wrong, and the others determine the motion: from thirty
+// explained matches on it is left out, of 24 it never is.
+TEST(ExplainMatches, LeavesOutByInfluenceFromThirtyMatchesOn) {
+  for (const int num_matches : {40, 24}) {
+    int num_left_out = 0;
+    for (std::uint32_t trial = 0; trial < 20; ++trial) {
+      const RandomProblem random = WithNearMatch(num_matches, 2.0, 100 + trial);
+      FittedMode f = FitFromTruth(random.problem, random.pose_true);
+      if (!f.has_converged) continue;
+      OweToNearMatch(f.matches, &f.mode);
+      const std::vector<ExplainedMode> modes =
+          ExplainMatches(f.problem, f.matches, f.prior, CalibratedOptions(), {f.mode});
+      ASSERT_FALSE(modes.empty());
+      num_left_out += !(modes.front().mode.used[1] >> 5 & 1);
+    }
+    if (num_matches == 40)
+      EXPECT_GE(num_left_out, 12);
+    else
+      EXPECT_EQ(num_left_out, 0);
+  }
+}
+
+// A wide mode of 200 matches that uses the near one and 20 of a second body. Without the near one its fit
+// goes to that body, whose motion explains fewer than half as many: the mode stays as it was.
+TEST(ExplainMatches, LeavesNothingOutWhereHalfTheMatchesWouldGo) {
+  int num_kept = 0;
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    RandomProblem random = WithNearMatch(220, 2.0, 200 + trial);
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2822});
+    const RelativePose second{RotationFromVector(0.05 * RandomDirection(rng)) * random.pose_true.R,
+                              random.pose_true.t};
+    for (size_t i = 200; i < 220; ++i)
+      random.problem.matches[i] =
+          ProjectToBoth(random.points_in_cam1[i], second, random.problem.camera1, random.problem.camera2);
+    const MatchBlocks matches(random.problem);
+    const MixturePrior prior = PriorOf(random.problem);
+    Mode mode = StartMode(matches, prior, random.pose_true, 8.0), without = mode;
+    std::fill_n(without.used.begin(), 25, std::uint8_t{0});  // the first 200
+    mode.used = without.used;
+    mode.used[1] = 1u << 5;  // match 13
+    OweToNearMatch(matches, &mode);
+    const int num_explained = Explain(matches, mode).num_explained;
+    if (!FitMode(matches, prior, 8, &without) || 2 * Explain(matches, without).num_explained >= num_explained)
+      continue;
+    const std::vector<ExplainedMode> modes =
+        ExplainMatches(random.problem, matches, prior, CalibratedOptions(), {mode});
+    ASSERT_FALSE(modes.empty());
+    EXPECT_EQ(modes.front().mode.used, mode.used) << trial;
+    EXPECT_EQ(modes.front().mode.pose.R, mode.pose.R) << trial;
+    ++num_kept;
+  }
+  EXPECT_GE(num_kept, 4);
 }
 
 }  // namespace

@@ -95,5 +95,12 @@ TEST(Explanation, CountsMatchesThatAreMoreLikelyRight) {
   }
 }
 
+// A motion follows a match by no more than all of it, however uncertain it is said to be.
+TEST(Explanation, TheLeverageOfAUsedMatchIsAtMostOne) {
+  FittedMode f = FitScene(20, 0.5, 0.0, 1);
+  f.mode.inverse_hessian *= 1e3;
+  EXPECT_EQ(std::ranges::max(Explain(f.matches, f.mode).leverage), 1.0);
+}
+
 }  // namespace
 }  // namespace rcme

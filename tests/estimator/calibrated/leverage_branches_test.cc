@@ -73,5 +73,17 @@ TEST(LeverageBranches, AreNoneWhereNoMatchIsInfluential) {
   }
 }
 
+TEST(LeverageBranches, BeginAtALeverageOfAQuarter) {
+  const FittedMode f = FitScene(60, 0.5, 0.0, 1);
+  Explanation explanation = Explain(f.matches, f.mode);
+  explanation.leverage.assign(60, 0.24);
+  EXPECT_TRUE(LeverageBranches(f.matches, f.prior, f.mode, explanation).empty());
+  explanation.leverage[17] = 0.26;
+  const std::vector<Mode> branches = LeverageBranches(f.matches, f.prior, f.mode, explanation);
+  ASSERT_EQ(branches.size(), 1U);
+  EXPECT_FALSE(branches[0].used[2] >> 1 & 1);
+  EXPECT_EQ(CountIn(branches[0].used), 59);
+}
+
 }  // namespace
 }  // namespace rcme

@@ -83,5 +83,23 @@ TEST(MatchTerms, CheiralityIsFlatInFrontAndFallsBehind) {
   EXPECT_DOUBLE_EQ(CheiralityFactor(-4.0), 0.01);
 }
 
+// A camera that moves along x without turning, f = 100 px and sigma 1 px: the noise of the angle is sqrt(2) /
+// 100. Of the rays a = (0, 0, 1) and b = (p, e, 1) the normals of the epipolar planes are (0, 1, 0) and (0,
+// 1, -e) over sqrt(1 + e^2), and a x b = (-e, p, 0): z is the lesser of p / |b| and p / (|b| sqrt(1 + e^2))
+// over that noise.
+TEST(MatchTerms, DepthIsThatOfTheLessSureCamera) {
+  const Camera camera{100.0, 100.0, 0.0, 0.0, 640, 480};
+  const RelativePose pose{Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitX()};
+  constexpr double e = 0.5;
+  for (const double p : {0.1, -0.1}) {
+    const Correspondence match{{0.0, 0.0}, {100.0 * p, 100.0 * e}};
+    const MatchTerms terms = EvaluateMatch({{match}, camera, camera, 1.0}, pose, match);
+    const double of_a = p / std::sqrt(p * p + e * e + 1.0) * 100.0 / std::sqrt(2.0);
+    const double of_b = of_a / std::sqrt(1.0 + e * e);
+    EXPECT_NEAR(terms.depth, p > 0.0 ? of_b : of_a, 1e-9);
+    EXPECT_NEAR(terms.mean_depth, 0.5 * (of_a + of_b), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace rcme

@@ -100,5 +100,27 @@ TEST(SplitCompromise, LeavesNoModeAndModesOfTheAssumedNoiseAsTheyAre) {
   EXPECT_EQ(modes[0].pose.t, f.mode.pose.t);
 }
 
+// Beside 100 matches of one body 40 of another are a second motion, eight are not, even where two motions are
+// far more likely than the mode.
+TEST(SplitMode, NeedsADozenMatchesOfTheSecondMotion) {
+  for (const int num_second : {40, 8}) {
+    int num_split = 0;
+    for (std::uint32_t trial = 0; trial < 8; ++trial) {
+      RelativePose pose;
+      MotionProblem problem = TwoCameraProblem(100, 0.5, 0.0, trial, &pose);
+      const MotionProblem other = TwoCameraProblem(num_second, 0.5, 0.0, trial + 1000);
+      problem.matches.insert(problem.matches.end(), other.matches.begin(), other.matches.end());
+      FittedMode f = FitFromTruth(problem, pose);
+      f.mode.log_likelihood = -1e9;
+      RandomStream rng({.seed = 1, .trial = trial, .purpose = 2798});
+      num_split += SplitMode(f.problem, f.matches, f.prior, f.mode, rng).has_value();
+    }
+    if (num_second == 40)
+      EXPECT_GE(num_split, 5);
+    else
+      EXPECT_EQ(num_split, 0);
+  }
+}
+
 }  // namespace
 }  // namespace rcme

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <cmath>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "tests/test_support/random_problem.h"
@@ -109,6 +110,56 @@ TEST(FindPlane, FindsNoneInAVolumeOrAmongFewMatches) {
     EXPECT_FALSE(FindPlane(c.random.problem, c.random.pose_true, right, 0.6)) << trial;
     std::fill(right.begin() + 4, right.end(), 0.1);
     EXPECT_FALSE(FindPlane(c.random.problem, c.random.pose_true, right, 0.0)) << trial;
+  }
+}
+
+// Two in five matches lie on another plane, exactly, and are said to be a thousand times as noisy as the
+// others: weights of a millionth leave the plane where it is, where equal ones would move it by 0.016.
+TEST(FindPlane, WeighsMatchesByTheirNoise) {
+  PlaneCase c = MakePlane(1, 0.0, 0.0);
+  MotionProblem& problem = c.random.problem;
+  problem.noise_scale.assign(120, 1.0);
+  for (size_t i = 0; i < 48; ++i) {
+    const Eigen::Vector3d ray = problem.camera1.Ray(problem.matches[i].x1_px);
+    problem.matches[i] =
+        ProjectToBoth(ray / (0.8 * c.plane.dot(ray)), c.random.pose_true, problem.camera1, problem.camera2);
+    problem.noise_scale[i] = 1000.0;
+  }
+  const std::optional<Eigen::Vector3d> plane =
+      FindPlane(problem, c.random.pose_true, std::vector<double>(120, 0.99), 0.6);
+  ASSERT_TRUE(plane);
+  EXPECT_LT((*plane - c.plane).norm(), 1e-3);
+}
+
+// 80 matches of the plane z = 5 ahead and 40 at the edges of a wide image, x = 1.7 focal lengths from the
+// axis, off it by `off_sds` standard deviations of their inverse depth: the noise of the angle, sqrt(2) sigma
+// / f, over the parallax that moving sideways gives at unit depth, |a x t| / |a|^2 = sqrt(1 + y^2) / (1 + x^2
+// + y^2).
+MotionProblem WideImageOfPlane(double off_sds, const RelativePose& pose) {
+  const Camera camera{200.0, 200.0, 399.5, 299.5, 800, 600};
+  MotionProblem problem{{}, camera, camera, kSigmaPx};
+  for (int i = 0; i < 120; ++i) {
+    const bool is_wide = i >= 80;
+    const double x = is_wide ? (i % 2 == 0 ? 1.7 : -1.7) : 0.1 * (i % 9 - 4), y = 0.1 * (i / 4 % 9 - 4);
+    const double sd = std::sqrt(2.0) * kSigmaPx / 200.0 * (1.0 + x * x + y * y) / std::sqrt(1.0 + y * y);
+    const double inverse_depth = 0.2 + (is_wide ? (i / 2 % 2 == 0 ? off_sds : -off_sds) * sd : 0.0);
+    problem.matches.push_back(
+        ProjectToBoth(Eigen::Vector3d(x, y, 1.0) / inverse_depth, pose, camera, camera));
+  }
+  return problem;
+}
+
+// A match is near the plane within three standard deviations: with the wide ones all are, without them two
+// thirds.
+TEST(FindPlane, CountsWideMatchesByTheNoiseOfTheirDepth) {
+  const RelativePose pose{Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitX()};
+  const std::vector<double> right(120, 0.99);
+  for (const double off_sds : {2.0, 6.0}) {
+    const MotionProblem problem = WideImageOfPlane(off_sds, pose);
+    EXPECT_EQ(FindPlane(problem, pose, right, 0.8).has_value(), off_sds < 3.0);
+    const std::optional<Eigen::Vector3d> plane = FindPlane(problem, pose, right, 0.6);
+    ASSERT_TRUE(plane);
+    EXPECT_LT((*plane - Eigen::Vector3d(0.0, 0.0, 0.2)).norm(), 0.005);
   }
 }
 

@@ -92,6 +92,23 @@ TEST_F(DividedWork, AnyNumberOrderAndGroupingHoldEveryPieceOnce) {
   }
 }
 
+TEST_F(DividedWork, TheGroupsThatAreAskedForAreReadAlone) {
+  const MergedParts merged = MergeParts(Plan(), Parts(2));
+  int num_rows = 0;
+  ReadEach(Plan(), merged, 1, 2, [&](const PiecePlace& place, const std::string&) {
+    EXPECT_EQ(place.group, 1u);
+    ++num_rows;
+  });
+  EXPECT_EQ(num_rows, 2);
+}
+
+TEST(PiecePlan, EndsWithTheLastPieceOfEachGroup) {
+  EXPECT_TRUE(Plan().Has({0, 8}));
+  EXPECT_FALSE(Plan().Has({0, 9}));
+  EXPECT_TRUE(Plan().Has({2, 19}));
+  EXPECT_FALSE(Plan().Has({3, 0}));
+}
+
 TEST_F(DividedWork, AGroupIsDividedEvenlyToWithinOnePiece) {
   for (const std::uint32_t count : {1, 4, 7, 64}) {
     for (size_t group = 0; group < 3; ++group) {

@@ -58,7 +58,8 @@ TEST(ErrorOverBound, IsAtMostOneForAGoodAnswer) {
   record.rotation_error_deg = 0.0;
   record.direction_error_deg = 0.0;
   // 0 / 0 where no error is allowed, and there is none.
-  EXPECT_EQ(ErrorOverBound(record, {0.0, 0.0}) > 1.0, HasFailed(record, {0.0, 0.0}));
+  EXPECT_EQ(ErrorOverBound(record, {0.0, 0.0}), 1.0);
+  EXPECT_EQ(ErrorOverBound(record, {0.0, 15.0}), 1.0);
   record.rotation_error_deg = 1e-300;
   EXPECT_GT(ErrorOverBound(record, {0.0, 1.0}), 1.0);
   // A direction that is not known fails nobody.

@@ -2,22 +2,28 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <set>
+#include <thread>
 
 #include "experiments/study/study_file.h"
+#include "stats/splitting.h"
+#include "tests/test_support/error_terminal.h"
 
 namespace rcme {
 namespace {
 
-// Two conditions of which each fails now and then, quick to run.
-StudyPlan TwoConditions() {
+// Two conditions, quick to run, of which each fails now and then, unless other bounds are given.
+StudyPlan TwoConditions(
+    const std::string& bounds = "{max_rotation_error_deg: 0.5, max_direction_error_deg: 2.5}") {
   return MakePlan(
       ParseStudy("name: two\nseed: 5\ntrials: 10\n"
                  "data: {scene: uniform_volume, num_matches: 20, sigma_px: 0.5, severity: skipped}\n"
                  "factors: {outlier_ratio: [0.1, 0.1001]}\n"
-                 "failure: {max_rotation_error_deg: 0.5, max_direction_error_deg: 2.5}\n"
-                 "estimators:\n"
-                 "  - {name: standard, options: {solver: five_point, num_iterations: 10}}\n",
+                 "failure: " +
+                     bounds +
+                     "\nestimators:\n"
+                     "  - {name: standard, options: {solver: five_point, num_iterations: 10}}\n",
                  "two.yaml"));
 }
 const RareEffort kEffort{{.num_particles = 20, .num_moves = 1, .kept_share = 0.2}, 4};
@@ -61,6 +67,44 @@ TEST(SplitFailures, IsTheMeanOfItsReplicates) {
     for (const SplittingReplicate& replicate : cell.replicates) sum += replicate.estimate;
     EXPECT_NEAR(cell.rate.estimate, sum / 4.0, 1e-15);
   }
+}
+
+// The stream of a replicate is that of the seed, its condition and its number, from 1 on; the pilot's number
+// is 0.
+TEST(SplitFailures, DrawsFromTheStreamsOfItsConditions) {
+  const StudyPlan plan = TwoConditions();
+  const std::vector<RareCell> cells = SplitBy(1, 1);
+  ASSERT_EQ(cells.size(), 2u);
+  for (size_t c = 0; c < 2; ++c) {
+    const FailingMotion system(plan, plan.conditions[c], 0);
+    const auto stream_of = [&](std::uint32_t number) {
+      return RandomStream({1, plan.conditions[c].stream_key, number, kSplittingPurpose});
+    };
+    RandomStream of_pilot = stream_of(0);
+    const SplittingPilot pilot = FindLevels(system, kEffort.splitting, of_pilot);
+    EXPECT_EQ(pilot.levels.levels, cells[c].pilot.levels.levels);
+    for (size_t r = 0; r < cells[c].replicates.size(); ++r) {
+      RandomStream rng = stream_of(static_cast<std::uint32_t>(r) + 1);
+      EXPECT_EQ(PathOf(Split(system, kEffort.splitting, pilot.levels, rng)), PathOf(cells[c].replicates[r]));
+    }
+  }
+}
+
+// No motion is off by more than 180 deg, so that no levels lead to failure: the replicates that are not run
+// count as done. (A terminal shows progress from one second on.)
+TEST(SplitFailures, ProgressComesToItsEndWithoutLevels) {
+  ErrorTerminal terminal;
+  if (!terminal.is_there()) GTEST_SKIP() << "needs a pseudo terminal";
+  const StudyPlan plan = TwoConditions("{max_rotation_error_deg: 180, max_direction_error_deg: 180}");
+  std::vector<RareCell> cells;
+  {
+    Progress progress("replicates", 10);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    cells = SplitFailures(plan, 1, kEffort, 1, &progress);
+  }
+  const std::string shown = terminal.Read();
+  for (const RareCell& cell : cells) EXPECT_TRUE(cell.replicates.empty());
+  EXPECT_NE(shown.find("10 / 10 replicates (100 %)"), std::string::npos) << shown;
 }
 
 }  // namespace

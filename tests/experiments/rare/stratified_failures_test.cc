@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include "experiments/claims/cramer_rao.h"
+#include "experiments/claims/study_cases.h"
 #include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"
 
@@ -43,6 +47,47 @@ TEST(StratifyFailures, GoesToTheEasiestStratum) {
   EXPECT_NEAR(static_cast<double>(cell.strata[6].num_run),
               static_cast<double>(cell.strata[6].num_trials) / 64.0,
               4.0 * std::sqrt(static_cast<double>(cell.strata[6].num_trials) / 64.0));
+}
+
+// The chances of failure that the bounds of a condition's trials tell, the greatest first.
+std::vector<double> ChancesOf(const StudyPlan& plan, std::uint32_t num_trials) {
+  const CaseMaker make = StudyCases(plan, plan.conditions[0]);
+  std::vector<double> chances;
+  for (std::uint32_t trial = 0; trial < num_trials; ++trial) {
+    const std::optional<Matrix5d> bound = CramerRaoBound(make(NameOfTrial(plan, plan.conditions[0], trial)));
+    chances.push_back(bound ? FailureChanceOfBound(*bound, plan.study.failure) : 1.0);
+  }
+  std::ranges::sort(chances, std::greater<>());
+  return chances;
+}
+
+// Half as many are run where the chance of failure is a quarter (the root of it, as Neyman has it): strata
+// end at chances of which each is a quarter of the one before. Where one ends is known to lie between its
+// least chance and the greatest of the next.
+TEST(StratifyFailures, EndAtQuartersOfTheChance) {
+  constexpr std::uint32_t kTrials = 3000;
+  const StudyPlan plan = EasyAndHard();
+  Progress progress("trials", kTrials);
+  const StratifiedCell cell =
+      StratifyFailures(plan, {.num_trials = kTrials, .run_share = 0.1}, 2, &progress)[0];
+  const std::vector<double> chances = ChancesOf(plan, kTrials);
+  std::vector<Interval> ends;
+  size_t num_within = 0;
+  for (size_t k = 0; k + 1 < kNumStrata; ++k) {
+    num_within += static_cast<size_t>(cell.strata[k].num_trials);
+    if (num_within == 0) continue;
+    if (num_within == chances.size()) break;
+    ends.push_back({chances[num_within], chances[num_within - 1]});
+  }
+  ASSERT_GE(ends.size(), 2u);
+  double narrowest = 4.0;  // of the intervals of the ratio, their upper over their lower end
+  for (size_t k = 1; k < ends.size(); ++k) {
+    const double least = ends[k - 1].lower / ends[k].upper, greatest = ends[k - 1].upper / ends[k].lower;
+    EXPECT_LE(least, 4.0) << k;
+    EXPECT_GE(greatest, 4.0) << k;
+    narrowest = std::min(narrowest, greatest / least);
+  }
+  EXPECT_LT(narrowest, 1.4);  // a ratio of two, or of eight, would be seen
 }
 
 TEST(StratifyFailures, RefusesRepeatedScenes) {

@@ -1,4 +1,6 @@
 // EuRoC MAV, rendered.
+#include <sstream>
+
 #include "tests/test_support/dataset_checks.h"
 
 namespace rcme {
@@ -110,6 +112,25 @@ TEST_F(Euroc, WhatIsBrokenIsNamedByPath) {
   const std::string copy = Copy();
   fs::remove_all(copy + "/mav0/state_groundtruth_estimate0");
   EXPECT_NE(ReadEuroc(OptionsOf(copy))[0].note.find("no truth: "), std::string::npos);
+}
+
+// Every 16th row of the truth is 80 ms from the one before, every 24th 120 ms: longer than a pose is taken
+// in. The images are at 0, 50, ..., 250 ms, the rows from -3 to 302 ms.
+TEST_F(Euroc, TakesNoPosesInGapsOfATenthOfASecond) {
+  const std::string truth = "/mav0/state_groundtruth_estimate0/data.csv";
+  std::istringstream text(ReadBytes(Folder() + truth));
+  std::vector<std::string> rows;
+  for (std::string row; std::getline(text, row);) rows.push_back(row + "\n");
+  for (const size_t stride : {16, 24}) {
+    const std::string copy = Copy();
+    std::string thinned = rows[0];
+    for (size_t i = 1; i < rows.size(); i += stride) thinned += rows[i];
+    Overwrite(copy + truth, thinned + rows.back());
+    const std::vector<Frame> frames = ReadEuroc(OptionsOf(copy))[0].frames;
+    ASSERT_EQ(frames.size(), 1u * kNumRenderedFrames);
+    for (size_t i = 0; i < 5; ++i) EXPECT_EQ(frames[i].pose_true.has_value(), stride == 16) << i;
+    EXPECT_TRUE(frames[5].pose_true.has_value());  // 65 ms between the rows about 250 ms
+  }
 }
 
 }  // namespace

@@ -78,6 +78,38 @@ TEST(KeyFrameGate, AsksForMatchesAndParallax) {
   EXPECT_EQ(Verdicts(gate, WithoutBaseline, kTrials, 5)[kKeptPair], 20);
 }
 
+// Observations of a general scene, nearly exact. The first ones are of points behind both cameras: a point at
+// -X has the same place in image 1 as X, and in image 2 that of R X - b t, on the same epipolar line.
+MotionProblem SeenFromBothSides(int num_points, int num_behind) {
+  const Scene scene = TwoCameraScene(num_points, 0);
+  MotionProblem problem{ObserveTwoCameraScene(scene, 0.01, 0.0, 0).matches, scene.camera1, scene.camera2,
+                        0.01};
+  const RelativePose& motion = scene.cam2_from_cam1_true;
+  for (int i = 0; i < num_behind; ++i) {
+    const Eigen::Vector3d& point = scene.points_in_cam1[static_cast<size_t>(i)];
+    problem.matches[static_cast<size_t>(i)] = {
+        scene.camera1.Project(point), scene.camera2.Project(motion.R * point - scene.baseline_m * motion.t)};
+  }
+  return problem;
+}
+
+std::string ReasonOf(const MotionProblem& problem) {
+  KeyFrameGate gate;
+  gate.least_matches = 8;
+  gate.sigma_px = problem.sigma_px;
+  RandomStream rng({.seed = 1, .purpose = 95});
+  return JudgePair(problem, gate, rng).reason;
+}
+
+// Nine of ten inliers, and fifty, have to lie in front of both cameras.
+TEST(KeyFrameGate, AsksForPointsInFrontOfBothCameras) {
+  EXPECT_EQ(ReasonOf(SeenFromBothSides(200, 0)), kKeptPair);
+  EXPECT_EQ(ReasonOf(SeenFromBothSides(200, 10)), kKeptPair);
+  EXPECT_EQ(ReasonOf(SeenFromBothSides(200, 40)), "too_few_in_front");
+  EXPECT_EQ(ReasonOf(SeenFromBothSides(60, 0)), kKeptPair);
+  EXPECT_EQ(ReasonOf(SeenFromBothSides(45, 0)), "too_few_in_front");
+}
+
 // The 50th largest angle of a camera that moves sideways without turning: of points at the same depth Z,
 // atan(1 / Z) where they lie ahead; here by an independent count over the exact rays.
 TEST(KeyFrameGate, StatesTheFiftiethLargestAngle) {

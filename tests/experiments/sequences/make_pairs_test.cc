@@ -1,4 +1,6 @@
 // Which pairs are made of a rendered sequence, their files, their index, and work that was cut off.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <set>
 
@@ -141,6 +143,20 @@ TEST_F(MakePairs, TakesEveryNthImage) {
   ASSERT_EQ(rows.size(), (kNumRenderedFrames + 2u) / 3u - 1u);
   EXPECT_EQ(rows[0].image1, "image_0/000000.png");
   EXPECT_EQ(rows[0].image2, "image_0/000003.png");
+}
+
+// Where two images have too few matches nothing before them waits any longer: only neighbours are tried.
+TEST_F(MakePairs, BeginsAnewWhereMatchesAreTooFew) {
+  PairsOptions options;
+  options.neighbours = 3;
+  options.gate.least_matches = 1'000'000;
+  const std::vector<PairRow> rows =
+      MakePairsInto(folder_.Path("out"), ReadKitti(OptionsOf(Folder())), options);
+  ASSERT_EQ(rows.size(), kNumRenderedFrames - 1u);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].reason, kTooFewMatches);
+    EXPECT_EQ(rows[i].image2, fmt::format("image_0/{:06}.png", i + 1));
+  }
 }
 
 TEST_F(MakePairs, MatchFilesAreJudgedAgain) {
