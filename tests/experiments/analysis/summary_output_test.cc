@@ -33,7 +33,8 @@ TEST_F(SummaryOutputTest, ScoresInEveryFormat) {
   const std::string table = SummaryAsTable(summary);
   for (const std::string part : {"auc_5_deg", "maa_10_deg", "max_error_median_deg", "36.25 % ["})
     EXPECT_NE(table.find(part), std::string::npos) << part << table;
-  for (const auto& entry : nlohmann::json::parse(SummaryAsJson(summary))["rows"]) {
+  const auto json = nlohmann::json::parse(SummaryAsJson(summary));
+  for (const auto& entry : json["rows"]) {
     if (entry["quantity"] != "auc_20_deg" || entry["condition"] != 0) continue;
     EXPECT_EQ(entry["kind"], "score");
     EXPECT_NEAR(entry["value"], 0.3625, 1e-12);
