@@ -2,17 +2,19 @@
 add_library(rcme_warnings INTERFACE)
 target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
 
-# rcme_add_room(NAME SOURCES ... LINKS ... [PRIVATE_LINKS ...] [PRECOMPILED ...] [TOGETHER ...]): one library per room,
-# headers included from the repository root. Fused multiply-add is off everywhere: results must not depend on the compiler's
+# rcme_add_room(NAME LINKS ... [PRIVATE_LINKS ...] [APART ...] [PRECOMPILED ...] [TOGETHER ...]): one library per room, of all
+# sources in its folder but those of APART; headers included from the repository root. Fused multiply-add is off everywhere: results must not depend on the compiler's
 # choice.
 #
 # Most of a build goes into reading the same headers again. PRECOMPILED: headers of libraries that much of the room includes,
-# compiled once beside those of the language. TOGETHER: folders whose sources are compiled as one, so that names in their
-# anonymous namespaces differ. A source includes what it uses all the same: where CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as
+# compiled once beside those of the language. TOGETHER: folders whose sources are compiled several at a time, so that names in
+# their anonymous namespaces differ. A source includes what it uses all the same: where CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as
 # in the preset `dev`, each is compiled by itself.
 function(rcme_add_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS;PRIVATE_LINKS;PRECOMPILED;TOGETHER" ${ARGN})
-  add_library(rcme_${name} STATIC ${ROOM_SOURCES})
+  cmake_parse_arguments(ROOM "" "" "LINKS;PRIVATE_LINKS;APART;PRECOMPILED;TOGETHER" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cc)
+  list(REMOVE_ITEM sources ${ROOM_APART})
+  add_library(rcme_${name} STATIC ${sources})
   add_library(rcme::${name} ALIAS rcme_${name})
   set_target_properties(rcme_${name} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(rcme_${name} PUBLIC cxx_std_20)
@@ -30,7 +32,12 @@ function(rcme_add_room name)
   endif()
   foreach(folder ${ROOM_TOGETHER})
     file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cc)
-    set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${folder})
+    set(number 0)
+    foreach(source ${sources})
+      math(EXPR group "${number} / 9")
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}/${group})
+      math(EXPR number "${number} + 1")
+    endforeach()
   endforeach()
   if(ROOM_TOGETHER AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
     set_target_properties(rcme_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

@@ -13,11 +13,11 @@
 #include <new>
 #include <string_view>
 
-#include "experiments/base/message.h"
-#include "experiments/base/program_name.h"
-#include "experiments/base/scratch_folder.h"
-#include "experiments/base/shared_files.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/text/program_name.h"
+#include "experiments/core/files/scratch_folder.h"
+#include "experiments/core/files/shared_files.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/twin_commands.h"

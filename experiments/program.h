@@ -4,7 +4,7 @@ namespace rcme {
 
 // Where the installation that a program is built with keeps its studies, estimator files and plots:
 // find_package(rcme) says so. Empty in the program `rcme` itself, which has them beside it
-// (base/shared_files.h).
+// (core/files/shared_files.h).
 #ifdef RCME_INSTALLED_SHARE
 constexpr const char* kInstalledShare = RCME_INSTALLED_SHARE;
 #else

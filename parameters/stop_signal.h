@@ -1,5 +1,5 @@
 // The request of a signal (Ctrl-C) that the program stops, for every room that waits for something outside of
-// it. Handlers and exit codes are those of experiments/base/stop_request.h.
+// it. Handlers and exit codes are those of experiments/core/work/stop_request.h.
 #pragma once
 
 #include <atomic>

@@ -26,7 +26,7 @@ struct AreaUnderCurve {
   // covers far too little (0.85 for 0.95 at 20 positives and an area of 0.95). So half a cluster of
   // placements 0 and half a cluster of placements 1, of mean size, are added to either kind, as Agresti &
   // Coull do for a rate; the interval is Student's on the log odds of the area, with Satterthwaite's degrees
-  // of freedom. Measured coverage: experiments/RESULTS.md. [0, 1] with one cluster of a kind.
+  // of freedom. Measured coverage: results/README.md. [0, 1] with one cluster of a kind.
   Interval interval;
 };
 

@@ -16,7 +16,7 @@ namespace rcme {
 // with Laplace's approximation would have the coefficients 1, 1 (of `shared` itself) and 1/2. These are of a
 // logistic regression of failure on all rivals of an answer, over planes, nearly planar scenes, indoor and
 // outdoor scenes and few matches (seeds 7 to 13; what it gives on another seed:
-// experiments/results/calibrated). The densities are not quite those of the model, so that evidence is worth
+// results/calibrated). The densities are not quite those of the model, so that evidence is worth
 // less than its nats, and the widths of modes of few matches are themselves uncertain.
 double ModeLogOdds(const Contrast& a_against_b, double log_det_ratio, double num_explained);
 

@@ -2,7 +2,7 @@
 //
 // Assumes a.2: independent Gaussian noise of standard deviation sigma_px in each coordinate of each image.
 // Exact in the limit sigma -> 0; for a minimal sample at sigma = 0.5 px the covariance is already too small
-// (experiments/RESULTS.md).
+// (results/README.md).
 #pragma once
 
 #include <optional>

@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "experiments/base/columns.h"
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
-#include "experiments/base/progress.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
@@ -95,7 +95,7 @@ void AddBudgetCommand(CLI::App& app) {
       "`rcme summarize` names the effort of each.\n"
       "\n"
       "Examples:\n"
-      "  rcme budget experiments/studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml\n"
+      "  rcme budget studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml\n"
       "  rcme run peers_10ms.yaml --out run.sqlite");
   auto arguments = std::make_shared<BudgetArguments>();
   command

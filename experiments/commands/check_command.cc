@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/analysis/summarize_counts.h"
-#include "experiments/base/columns.h"
+#include "experiments/statistics/summarize_counts.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/result_file/new_trials.h"
-#include "experiments/result_file/salvage.h"
+#include "experiments/run/store/new_trials.h"
+#include "experiments/run/store/salvage.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

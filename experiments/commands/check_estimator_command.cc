@@ -7,7 +7,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/contract/estimator_contract.h"
+#include "experiments/audit/contract/estimator_contract.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/base/shared_files.h"
+#include "experiments/core/files/shared_files.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
 

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "experiments/analysis/comparison_output.h"
-#include "experiments/base/file_output.h"
+#include "experiments/statistics/comparison_output.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "parameters/input_error.h"

@@ -8,8 +8,8 @@
 
 #include <filesystem>
 
-#include "experiments/base/message.h"
-#include "experiments/base/shared_files.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/files/shared_files.h"
 #include "parameters/input_error.h"
 
 extern char** environ;

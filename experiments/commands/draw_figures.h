@@ -14,7 +14,7 @@ enum class ScriptEnd {
 // What a script prints on standard output: the names of what it wrote, or its help.
 enum class ScriptOutput { kShown, kDropped };
 
-// Runs the script plots/KIND.py (base/shared_files.h) with these arguments, with a Python that has what it
+// Runs the script plots/KIND.py (core/files/shared_files.h) with these arguments, with a Python that has what it
 // needs. Throws InputError where the scripts are not there.
 ScriptEnd RunPlotScript(const std::string& kind, const std::vector<std::string>& arguments,
                         ScriptOutput output);

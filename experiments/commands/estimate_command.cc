@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "estimator/ransac_estimator.h"
-#include "experiments/answer/estimate_output.h"
-#include "experiments/base/columns.h"
-#include "experiments/base/json_output.h"
-#include "experiments/base/message.h"
-#include "experiments/base/progress.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/real/answer/estimate_output.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/json_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/base/shared_files.h"
+#include "experiments/core/files/shared_files.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"

@@ -4,8 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
@@ -98,7 +98,7 @@ void AddExportCommand(CLI::App& app) {
       "FOLDER/study.yaml       the study as it was exported, for `rcme import`\n"
       "\n"
       "Example:\n"
-      "  rcme export experiments/studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
+      "  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
       "  python3 mine.py < problems/problems.jsonl > answers.jsonl\n"
       "  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite");
   auto arguments = std::make_shared<ExportArguments>();

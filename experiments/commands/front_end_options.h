@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "experiments/data/features.h"
+#include "experiments/real/images/features.h"
 
 namespace rcme {
 

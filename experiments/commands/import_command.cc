@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "experiments/base/message.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
@@ -82,7 +82,7 @@ void AddImportCommand(CLI::App& app) {
       "answer cannot be read unreadable_answer.\n"
       "\n"
       "Example:\n"
-      "  rcme export experiments/studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
+      "  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
       "  python3 mine.py < problems/problems.jsonl > answers.jsonl\n"
       "  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite\n"
       "  rcme compare run.sqlite --against mine");

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/analysis/summarize.h"
-#include "experiments/base/columns.h"
-#include "experiments/base/shared_files.h"
-#include "experiments/base/yaml_input.h"
-#include "experiments/claims/claim_table.h"
+#include "experiments/statistics/summarize.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/files/shared_files.h"
+#include "experiments/core/files/yaml_input.h"
+#include "experiments/audit/claims/claim_table.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/data/calibration_file.h"

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <memory>
 
-#include "experiments/base/file_output.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
 #include "parameters/input_error.h"

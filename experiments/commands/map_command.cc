@@ -5,18 +5,18 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/for_each_index.h"
-#include "experiments/base/message.h"
-#include "experiments/base/progress.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/for_each_index.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
-#include "experiments/validity/map_part.h"
-#include "experiments/validity/study_samples.h"
+#include "experiments/audit/validity/map_part.h"
+#include "experiments/audit/validity/study_samples.h"
 
 namespace rcme {
 namespace {

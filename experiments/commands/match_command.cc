@@ -2,13 +2,13 @@
 
 #include <memory>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/front_end_options.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/data/match_file.h"
-#include "experiments/data/match_images.h"
+#include "experiments/real/images/match_images.h"
 
 namespace rcme {
 
@@ -17,7 +17,7 @@ void AddMatchCommand(CLI::App& app) {
       app.add_subcommand("match", "Match two undistorted images into a file for `rcme estimate`");
   command->footer(
       "Every match carries the sigma that its key points' sizes stand for (sigma_px, "
-      "experiments/data/features.h):\n"
+      "experiments/real/images/features.h):\n"
       "how noisy it is beside the others. A K that does not fit the size of its image is a warning, or "
       "refused.");
   auto arguments = std::make_shared<MatchImagesOptions>();

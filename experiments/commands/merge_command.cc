@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <memory>
 
-#include "experiments/analysis/merge_counts.h"
-#include "experiments/analysis/summarize_counts.h"
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/statistics/merge_counts.h"
+#include "experiments/statistics/summarize_counts.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
-#include "experiments/pieces/divided_work.h"
-#include "experiments/result_file/merge_results.h"
-#include "experiments/study/shard.h"
+#include "experiments/core/work/divided_work.h"
+#include "experiments/run/store/merge_results.h"
+#include "experiments/core/work/shard.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -54,7 +54,7 @@ void CheckMissing(const MergeArguments& arguments) {
   throw EndWith{kTryAgain};
 }
 
-// Of another command than `rcme run` (pieces/part_file.h): which pieces its work has, that command alone
+// Of another command than `rcme run` (core/work/part_file.h): which pieces its work has, that command alone
 // knows.
 void JoinTheParts(const MergeArguments& arguments) {
   if (!arguments.is_partial) {

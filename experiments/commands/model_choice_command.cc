@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/model_choice/choice_output.h"
+#include "experiments/audit/model_choice/choice_output.h"
 
 namespace rcme {
 namespace {
@@ -55,8 +55,8 @@ void AddModelChoiceCommand(CLI::App& app) {
       "  borderline           between these, with parallax of 5 to 20 %, or fewer than eight right matches\n"
       "\n"
       "Examples:\n"
-      "  rcme model-choice experiments/studies/model_choice.yaml --out choice\n"
-      "  rcme model-choice experiments/studies/model_choice.yaml --by outlier_ratio --out choice\n"
+      "  rcme model-choice studies/model_choice.yaml --out choice\n"
+      "  rcme model-choice studies/model_choice.yaml --by outlier_ratio --out choice\n"
       "  rcme plot heat_map choice/model_choice.csv --x verdict --y truth --quantities share --out matrix "
       "\\\n"
       "      --where outlier_ratio=0.2");

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/base/message.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/front_end_options.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/sequences/layouts.h"
-#include "experiments/sequences/listed_pairs.h"
-#include "experiments/sequences/make_pairs.h"
+#include "experiments/real/sequences/layouts.h"
+#include "experiments/real/sequences/listed_pairs.h"
+#include "experiments/real/sequences/make_pairs.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -129,7 +129,7 @@ void RunPairs(PairsArguments arguments) {
     throw InputError(fmt::format("{} ({}/INDEX.csv lists them; --gate off keeps all pairs)",
                                  DescribeWhyNone(journal.rows(), journal.damaged()), out));
   PrintMessage(
-      "match files and INDEX.csv -> {}; next: rcme run experiments/studies/real_pairs.yaml --set folder={} "
+      "match files and INDEX.csv -> {}; next: rcme run studies/real_pairs.yaml --set folder={} "
       "--out "
       "run.sqlite\n",
       out, out);

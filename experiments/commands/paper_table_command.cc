@@ -4,10 +4,10 @@
 #include <map>
 #include <memory>
 
-#include "experiments/base/file_output.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/twin_commands.h"
-#include "experiments/paper_table/paper_table_output.h"
+#include "experiments/real/paper_table/paper_table_output.h"
 
 namespace rcme {
 namespace {
@@ -42,7 +42,7 @@ void AddPaperTableCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "paper-table", "The paper's table for pairs of one's own: Detect-fail and Failure per sequence");
   command->footer(
-      "Of a run over a folder of match files (`rcme run experiments/studies/paper_table.yaml --set "
+      "Of a run over a folder of match files (`rcme run studies/paper_table.yaml --set "
       "folder=PAIRS`):\n"
       "per scene and group of scenes, and for every estimator, Detect-fail and other refusals, failures by "
       "the\n"
@@ -53,7 +53,7 @@ void AddPaperTableCommand(CLI::App& app) {
       "many independent pairs as would tell as much. The paper's printed figures follow with their own.\n"
       "\n"
       "Examples:\n"
-      "  rcme run experiments/studies/paper_table.yaml --set folder=PAIRS --out run.sqlite\n"
+      "  rcme run studies/paper_table.yaml --set folder=PAIRS --out run.sqlite\n"
       "  rcme paper-table run.sqlite --out table\n"
       "  rcme paper-table run.sqlite --group indoor='MH_*,V1_*,office' --group outdoor='kitti*'");
   auto arguments = std::make_shared<PaperTableArguments>();

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "experiments/base/message.h"
+#include "experiments/core/text/message.h"
 #include "experiments/study/command_permission.h"
 
 namespace rcme {

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
@@ -86,7 +86,7 @@ void AddRareCommand(CLI::App& app) {
       "so and why. Nothing is kept until the end.\n"
       "\n"
       "Examples:\n"
-      "  rcme rare experiments/studies/rare_noise.yaml --out rare\n"
+      "  rcme rare studies/rare_noise.yaml --out rare\n"
       "  rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare\n"
       "  rcme rare STUDY --method stratified --trials 1000000 --out strata");
   auto arguments = std::make_shared<RareArguments>();

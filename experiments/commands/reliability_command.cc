@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "experiments/analysis/forecast_output.h"
-#include "experiments/base/file_output.h"
+#include "experiments/statistics/forecast_output.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 

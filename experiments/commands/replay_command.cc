@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "experiments/answer/why.h"
+#include "experiments/real/answer/why.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/result_file/result_store.h"
+#include "experiments/run/store/result_store.h"
 #include "experiments/trial/trial_fields.h"
 #include "experiments/trial/trial_outcome.h"
 

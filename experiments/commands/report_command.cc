@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/analysis/report_data.h"
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
-#include "experiments/base/regular_file.h"
-#include "experiments/base/scratch_folder.h"
+#include "experiments/statistics/report_data.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/files/regular_file.h"
+#include "experiments/core/files/scratch_folder.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "parameters/input_error.h"

@@ -5,17 +5,17 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/analysis/count_study.h"
-#include "experiments/base/columns.h"
-#include "experiments/base/message.h"
-#include "experiments/base/progress.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/statistics/count_study.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
-#include "experiments/result_file/first_difference.h"
+#include "experiments/core/files/first_difference.h"
 #include "experiments/run/run_until.h"
 #include "parameters/input_error.h"
 

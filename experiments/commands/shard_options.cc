@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "experiments/base/message.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/time_limit.h"
 

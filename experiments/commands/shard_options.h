@@ -1,4 +1,4 @@
-// What the commands have in common whose work is divided into pieces (pieces/piece_plan.h): audit, tune,
+// What the commands have in common whose work is divided into pieces (core/work/piece_plan.h): audit, tune,
 // transfer, map.
 #pragma once
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/pieces/divided_work.h"
+#include "experiments/core/work/divided_work.h"
 
 namespace rcme {
 

@@ -5,18 +5,18 @@
 #include <fstream>
 #include <memory>
 
-#include "experiments/analysis/trial_output.h"
-#include "experiments/answer/why.h"
-#include "experiments/base/file_name.h"
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
-#include "experiments/base/scratch_folder.h"
+#include "experiments/statistics/trial_output.h"
+#include "experiments/real/answer/why.h"
+#include "experiments/core/files/file_name.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/files/scratch_folder.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/result_file/result_store.h"
+#include "experiments/run/store/result_store.h"
 #include "parameters/input_error.h"
 #include "parameters/suggestion.h"
 
@@ -128,7 +128,7 @@ void AddShowCommand(CLI::App& app) {
       "tell: they do not), with the parallax, the planar share and the runner-up.\n"
       "\n"
       "Examples:\n"
-      "  rcme show experiments/studies/failure_vs_outliers.yaml --condition 6 --trial 17\n"
+      "  rcme show studies/failure_vs_outliers.yaml --condition 6 --trial 17\n"
       "  rcme show run.sqlite --condition 6 --trial 17 --estimators standard,rcme_rank_aware --out figure\n"
       "  rcme show study.yaml --condition 0 --trial 3 --seed 5 --set motion=forward --set outlier_ratio=0.4\n"
       "The trials worth a look: `rcme report` names the first failure and refusal of every condition.");

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "experiments/claims/study_cases.h"
+#include "experiments/audit/claims/study_cases.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/study/estimator_file.h"

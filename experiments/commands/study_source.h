@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/result_file/result_store.h"
+#include "experiments/run/store/result_store.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {
@@ -28,7 +28,7 @@ void AddStudyOptions(CLI::App* command, StudyChanges* changes);
 // already.
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
 
-// The plan of the study of a YAML file, changed, that can give cases (claims/study_cases.h). Throws
+// The plan of the study of a YAML file, changed, that can give cases (audit/claims/study_cases.h). Throws
 // InputError as LoadChangedStudy and RequireCases.
 StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, PlanEstimators estimators);
 

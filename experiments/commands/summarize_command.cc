@@ -2,13 +2,13 @@
 
 #include <memory>
 
-#include "experiments/analysis/forecast_output.h"
-#include "experiments/analysis/summarize_counts.h"
-#include "experiments/analysis/summary_latex.h"
-#include "experiments/analysis/summary_output.h"
-#include "experiments/analysis/trial_table.h"
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
+#include "experiments/statistics/forecast_output.h"
+#include "experiments/statistics/summarize_counts.h"
+#include "experiments/statistics/summary_latex.h"
+#include "experiments/statistics/summary_output.h"
+#include "experiments/statistics/trial_table.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "parameters/input_error.h"

@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "experiments/base/duration.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/text/duration.h"
+#include "experiments/core/work/stop_request.h"
 #include "parameters/plain_text.h"
 
 namespace rcme {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/shard_options.h"
@@ -72,8 +72,8 @@ void AddTransferCommand(CLI::App& app) {
       "is violated, or undecided.\n"
       "\n"
       "Examples:\n"
-      "  rcme transfer experiments/studies/transfer_mu.yaml --out transfer\n"
-      "  rcme transfer experiments/studies/tune_mu_lambda.yaml --by scene --out by_scene\n"
+      "  rcme transfer studies/transfer_mu.yaml --out transfer\n"
+      "  rcme transfer studies/tune_mu_lambda.yaml --by scene --out by_scene\n"
       "  rcme transfer STUDY --shard 3/64 --out parts/3.json         one of 64 machines' share of the "
       "trials\n"
       "  rcme transfer STUDY --merge parts/*.json --out transfer     all of them: the bytes of one machine");

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/message.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
@@ -167,7 +167,7 @@ void AddTuneCommand(CLI::App& app) {
       "  rcme tune STUDY --merge parts/*.json --out tuned.yaml\n"
       "\n"
       "Examples:\n"
-      "  rcme tune experiments/studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned\n"
+      "  rcme tune studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned\n"
       "  rcme tune STUDY --out tuned.yaml --tune target=false_refusal --tune at_most=0.02\n"
       "  rcme tune STUDY --repeat 200              is the guarantee kept? 200 tunings with fresh seeds\n"
       "  rcme run STUDY --seed 2 --add-estimator tuned.yaml --out run.sqlite     other trials than the "

@@ -35,7 +35,7 @@ StudyPlan TuningPlanOf(const TuningArguments& arguments) {
   if (!study.tuning) {
     throw InputError(
         fmt::format("{}: has no block 'tune' (estimator, target, options); see "
-                    "experiments/studies/tune_mu_lambda.yaml",
+                    "studies/tune_mu_lambda.yaml",
                     arguments.study));
   }
   if (study.repeats_per_scene > 1) {

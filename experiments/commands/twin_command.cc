@@ -4,15 +4,15 @@
 #include <memory>
 #include <set>
 
-#include "experiments/base/file_name.h"
-#include "experiments/base/file_output.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/files/file_name.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/twin_commands.h"
 #include "experiments/data/match_folder.h"
 #include "experiments/study/study_file.h"
-#include "experiments/truth_free/twin_output.h"
+#include "experiments/real/truth_free/twin_output.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 

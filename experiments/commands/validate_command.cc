@@ -3,17 +3,17 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/base/file_output.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/study/study_file.h"
-#include "experiments/truth_free/advice.h"
-#include "experiments/truth_free/planted_fault.h"
-#include "experiments/truth_free/validate_output.h"
+#include "experiments/real/truth_free/advice.h"
+#include "experiments/real/truth_free/planted_fault.h"
+#include "experiments/real/truth_free/validate_output.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 
@@ -140,7 +140,7 @@ void AddValidateCommand(CLI::App& app) {
       "Examples:\n"
       "  rcme validate PAIRS --out validation\n"
       "  rcme validate PAIRS --set covariance=robust --scene kitti00\n"
-      "  rcme validate experiments/studies/indoor_like.yaml --data noise=correlated --trials 40\n"
+      "  rcme validate studies/indoor_like.yaml --data noise=correlated --trials 40\n"
       "  rcme validate PAIRS --plant focal_length=0.01 --no-advice      would these pairs show it?");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("pairs", arguments->pairs, "folders of match files, or study files (YAML)")->required();

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "experiments/base/message.h"
+#include "experiments/core/text/message.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 

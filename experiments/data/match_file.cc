@@ -12,8 +12,8 @@
 
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
-#include "experiments/base/file_output.h"
-#include "experiments/data/gzip_lines.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/files/gzip_lines.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"

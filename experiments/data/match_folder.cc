@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
-#include "experiments/base/field_text.h"
-#include "experiments/data/gzip_lines.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/core/files/gzip_lines.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 

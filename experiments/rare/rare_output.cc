@@ -6,9 +6,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "experiments/base/columns.h"
-#include "experiments/base/field_text.h"
-#include "experiments/base/json_output.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/core/text/json_output.h"
 #include "stats/moments.h"
 
 namespace rcme {

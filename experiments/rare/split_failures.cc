@@ -1,6 +1,6 @@
 #include "experiments/rare/split_failures.h"
 
-#include "experiments/base/for_each_index.h"
+#include "experiments/core/work/for_each_index.h"
 
 namespace rcme {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "experiments/base/progress.h"
+#include "experiments/core/work/progress.h"
 #include "experiments/rare/failing_motion.h"
 #include "stats/splitting_rate.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/base/for_each_index.h"
-#include "experiments/claims/cramer_rao.h"
-#include "experiments/claims/study_cases.h"
+#include "experiments/core/work/for_each_index.h"
+#include "experiments/audit/claims/cramer_rao.h"
+#include "experiments/audit/claims/study_cases.h"
 #include "experiments/rare/failing_motion.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"

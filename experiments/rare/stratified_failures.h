@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "experiments/base/progress.h"
+#include "experiments/core/work/progress.h"
 #include "experiments/study/study_plan.h"
 #include "stats/weighted_rate.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "experiments/base/thread_time.h"
+#include "experiments/core/work/thread_time.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

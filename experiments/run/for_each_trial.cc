@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "experiments/base/for_each_index.h"
+#include "experiments/core/work/for_each_index.h"
 
 namespace rcme {
 

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "experiments/base/progress.h"
-#include "experiments/study/shard.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/shard.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/base/message.h"
+#include "experiments/core/text/message.h"
 
 namespace rcme {
 

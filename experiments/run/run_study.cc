@@ -6,9 +6,9 @@
 #include <chrono>
 #include <mutex>
 
-#include "experiments/base/message.h"
-#include "experiments/base/progress.h"
-#include "experiments/base/stop_request.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/run/for_each_trial.h"
 #include "experiments/run/refusal_watch.h"
 

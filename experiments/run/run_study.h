@@ -1,7 +1,7 @@
 #pragma once
 
-#include "experiments/result_file/result_store.h"
-#include "experiments/study/shard.h"
+#include "experiments/run/store/result_store.h"
+#include "experiments/core/work/shard.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/base/message.h"
+#include "experiments/core/text/message.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "stats/confidence_sequence.h"

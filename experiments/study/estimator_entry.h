@@ -1,7 +1,7 @@
 // An estimator with its options as a map of YAML: an entry of a study's list, or a file (estimator_file.h).
 #pragma once
 
-#include "experiments/base/yaml_input.h"
+#include "experiments/core/files/yaml_input.h"
 #include "experiments/study/study.h"
 
 namespace rcme {

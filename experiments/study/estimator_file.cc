@@ -1,6 +1,6 @@
 #include "experiments/study/estimator_file.h"
 
-#include "experiments/base/shared_files.h"
+#include "experiments/core/files/shared_files.h"
 #include "experiments/study/estimator_entry.h"
 
 namespace rcme {

@@ -18,7 +18,7 @@ namespace rcme {
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 // Reads and validates an estimator file: a path, or the name of one that comes with the program
-// (base/shared_files.h). Throws InputError as LoadStudy does.
+// (core/files/shared_files.h). Throws InputError as LoadStudy does.
 EstimatorSpec LoadEstimatorFile(const std::string& name);
 
 // The same from text; `path` is what the messages call it.

@@ -6,18 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/text/program_name.h"
 #include "experiments/data/settings.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {
-
-// Who computes trials: last bits may depend on it.
-struct TrialOrigin {
-  std::string program;          // base/program_name.h
-  std::string instruction_set;  // estimator/instruction_set.h
-
-  bool operator==(const TrialOrigin&) const = default;
-};
 
 struct DescribedCondition {
   std::vector<std::string> levels;  // one per factor
@@ -47,10 +40,10 @@ struct RunDescription {
   std::string until_options;
   std::int64_t until_trials = 0;
   std::int64_t retried_trials = 0;  // run again because an answer from outside the program was missing
-  // Which shards of the study: "3/64" (study/shard.h), of several that were merged "1-3,7/64", "none/64" if
+  // Which shards of the study: "3/64" (core/work/shard.h), of several that were merged "1-3,7/64", "none/64" if
   // every one of them lacks trials; empty: all of it.
   std::string shard;
-  bool keeps_counts = false;  // of the trials, not the trials themselves (result_file/counts_tables.h)
+  bool keeps_counts = false;  // of the trials, not the trials themselves (run/store/counts_tables.h)
   TrialOrigin origin;         // of all trials; several names are separated by commas, none known is empty
 
   std::int64_t NumTrials() const;

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/base/shared_files.h"
+#include "experiments/core/files/shared_files.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"

@@ -26,7 +26,7 @@
 
 namespace rcme {
 
-// Reads and validates a study, a path or the name of one that comes with the program (base/shared_files.h).
+// Reads and validates a study, a path or the name of one that comes with the program (core/files/shared_files.h).
 // Every path in it, of estimator files, answers, a folder of pairs or a calibration, is seen from its own
 // folder; an estimator file may also be one that comes with the program, by its name. Throws InputError
 // with file, line, key and what is allowed for anything that is not: unknown or repeated keys, wrong types,

@@ -10,7 +10,7 @@
 //       selection: [mean_entropy, predictive_likelihood]
 #pragma once
 
-#include "experiments/base/yaml_input.h"
+#include "experiments/core/files/yaml_input.h"
 #include "experiments/study/study.h"
 
 namespace rcme {

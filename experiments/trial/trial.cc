@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "experiments/base/thread_time.h"
+#include "experiments/core/work/thread_time.h"
 #include "experiments/trial/answer_check.h"
 #include "stats/consistency.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <tuple>
 
-#include "experiments/claims/claim_verdict.h"
+#include "experiments/audit/claims/claim_verdict.h"
 #include "stats/intervals.h"
 #include "stats/pareto_front.h"
 #include "stats/risk_control.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "experiments/base/progress.h"
+#include "experiments/core/work/progress.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 #include "experiments/tuning/setting_plan.h"

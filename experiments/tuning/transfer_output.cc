@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "experiments/base/columns.h"
-#include "experiments/base/file_output.h"
-#include "experiments/base/json_output.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_json.h"
 

@@ -7,8 +7,8 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/ransac_estimator.h"
-#include "experiments/base/field_text.h"
-#include "experiments/base/json_output.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
 #include "experiments/tuning/rate_output.h"
 #include "stats/pareto_front.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "experiments/base/columns.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/tuning/rate_output.h"
 #include "stats/intervals.h"
 #include "stats/thresholds.h"

@@ -1,5 +1,5 @@
 // `rcme tune` and `rcme transfer` on many machines. A piece is ten trials of one condition
-// (pieces/piece_plan.h).
+// (core/work/piece_plan.h).
 //
 // A tuning has two rounds, for its last trials depend on what its first have chosen: the plain calls of the
 // tuned estimator and the study's. Everything else is in the first round: every setting in the trials to
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/pieces/divided_work.h"
+#include "experiments/core/work/divided_work.h"
 #include "experiments/tuning/entropy_roc.h"
 #include "experiments/tuning/tune.h"
 

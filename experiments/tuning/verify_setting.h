@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/base/progress.h"
+#include "experiments/core/work/progress.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 #include "stats/paired.h"

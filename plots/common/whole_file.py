@@ -1,4 +1,4 @@
-"""Files whole or not at all, as the program itself writes them (experiments/base/pending_file.h).
+"""Files whole or not at all, as the program itself writes them (experiments/core/files/pending_file.h).
 
 They are made beside their place as NAME.rcme-HOST-PROCESS-NUMBER.part, go to the disk and are then moved: a reader never
 meets half a file and a failure leaves what was there. Who makes one holds a lock on it, which ends with the process however

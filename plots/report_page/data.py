@@ -1,5 +1,5 @@
 """Reads what `rcme report` writes for its page: a folder run_NNNN per run with run.json, summary.csv and, where there is
-more than one estimator, comparison.csv, where one states probabilities, reliability.json (experiments/analysis/report_data.h)."""
+more than one estimator, comparison.csv, where one states probabilities, reliability.json (experiments/statistics/report_data.h)."""
 
 import pathlib
 from dataclasses import dataclass

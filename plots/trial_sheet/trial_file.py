@@ -1,6 +1,6 @@
 """Reads the JSON file of one trial, which `rcme show --json` writes. It checks and names; it computes nothing.
 
-What it holds stands in experiments/analysis/trial_output.h. Lists over matches become arrays with a row per match; None is "not
+What it holds stands in experiments/statistics/trial_output.h. Lists over matches become arrays with a row per match; None is "not
 known" or "not defined".
 """
 

@@ -35,8 +35,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     folder = build(ROOT / settings.get("build-dir", f"build/python-{python_tag()}"), shlex.split(settings.get("cmake-args", "")))
     files = {f"rcme/{file.name}": file.read_bytes() for file in sorted((folder / "python/rcme").iterdir())
              if file.name.endswith(PACKED)}
-    files |= {f"rcme/share/{file.relative_to(ROOT / 'experiments')}": file.read_bytes()
-              for folder in ("studies", "estimators") for file in sorted((ROOT / "experiments" / folder).rglob("*.yaml"))}
+    files |= {f"rcme/share/{file.relative_to(ROOT)}": file.read_bytes()
+              for folder in ("studies", "estimator_files") for file in sorted((ROOT / folder).rglob("*.yaml"))}
     project = read_project()
     name = f"{project['name']}-{project['version']}-{tag()}.whl"
     write_wheel(pathlib.Path(wheel_directory) / name, files, project)
@@ -51,7 +51,7 @@ def build_sdist(sdist_directory, config_settings=None):
     path = pathlib.Path(sdist_directory) / f"{base}.tar.gz"
     with tarfile.open(path, "w:gz") as archive:
         for file in listed:
-            if not file.startswith("experiments/results/"):
+            if not file.startswith("results/"):
                 archive.add(ROOT / file, f"{base}/{file}")
         info = ROOT / "build" / "PKG-INFO"
         info.parent.mkdir(exist_ok=True)

@@ -34,7 +34,7 @@ KEY = re.compile(r"^([a-z]+): (.*)$")
 
 
 def pages():
-    return sorted([ROOT / "README.md", ROOT / "experiments" / "RESULTS.md", *RESULTS.glob("*/README.md")])
+    return sorted([ROOT / "README.md", RESULTS / "README.md", *RESULTS.glob("*/README.md")])
 
 
 class Spec:
@@ -116,7 +116,7 @@ def say(spec):
 def text(spec):
     path = RESULTS / spec.argument
     if not path.exists():
-        raise ResultError(f"there is no {spec.argument} under experiments/results")
+        raise ResultError(f"there is no {spec.argument} under results")
     lines = [line.rstrip() for line in path.read_text().splitlines()]
     if spec.get("from"):
         lines = lines[next(i for i, line in enumerate(lines) if line.startswith(spec.get("from"))):]
@@ -175,7 +175,7 @@ def stale_pages():
 
 
 def unaccounted(recipes):
-    """Committed files under experiments/results that no recipe makes, and files of recipes that are not there."""
+    """Committed files under results that no recipe makes, and files of recipes that are not there."""
     known = {target for recipe in recipes.values() for _, target, _ in recipe.pairs()}
     own = {RESULTS / name for name in ("results.toml", "made.json", "digests.json")}
     there = {path for path in RESULTS.rglob("*") if path.is_file() and path.name != "README.md"}

@@ -1,4 +1,4 @@
-"""The recipes of the committed results (experiments/results/results.toml), and how one is followed."""
+"""The recipes of the committed results (results/results.toml), and how one is followed."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from pathlib import Path
 from audit_table import audit_csv, without_times
 
 ROOT = Path(__file__).resolve().parents[2]
-RESULTS = ROOT / "experiments" / "results"
+RESULTS = ROOT / "results"
 RECIPES, MADE, DIGESTS = RESULTS / "results.toml", RESULTS / "made.json", RESULTS / "digests.json"
 LONG_MINUTES = 10  # of CPU time, from which on a result is made only where it is asked for
 KEYS = {"name", "folder", "cpu_minutes", "needs", "commands", "files", "machine", "digest"}
@@ -171,7 +171,7 @@ def keep(recipe, out, cpu_seconds):
 def code_version():
     """The last commit that changed the programs or the plots, and whether there are changes that are in no commit."""
     code = ["CMakeLists.txt", "cmake", "parameters", "stats", "estimator", "peers", "simulator", "experiments", "plots",
-            ":!experiments/results", ":!*.md"]
+            ":!*.md"]
 
     def git(*words):
         return subprocess.run(["git", *words, "--", *code], cwd=ROOT, text=True, check=True,

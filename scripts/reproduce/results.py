@@ -1,4 +1,4 @@
-"""Makes the committed results again: every table and figure under experiments/results, and the tables of the pages.
+"""Makes the committed results again: every table and figure under results, and the tables of the pages.
 
   scripts/results --list               what there is, what it costs, which commit made the committed one
   scripts/results                      everything but what takes long; with --long everything
@@ -8,7 +8,7 @@
   scripts/results --blocks             only the tables of the pages, from the committed tables
   scripts/results --digests            stores the hashes of a few trials of each result, for the test results.digests
 
-A result is an entry of experiments/results/results.toml: commands, files, cost. Its numbers stand in the pages between
+A result is an entry of results/results.toml: commands, files, cost. Its numbers stand in the pages between
 "begin generated" and "end generated", with what they are made of; nothing there is typed by hand. Results do not depend
 on the number of threads or on the machine; what holds times (the benchmarks, the audit's figure of complexity) is made
 again, but not compared. Figures are compared byte by byte: another version of matplotlib draws other bytes.
@@ -79,9 +79,9 @@ def do_blocks(is_check):
               f"scripts/results --blocks")
     unknown, absent = blocks.unaccounted(read_recipes())
     for path in unknown:
-        print(f"{path.relative_to(ROOT)}: no result of experiments/results/results.toml makes this file")
+        print(f"{path.relative_to(ROOT)}: no result of results/results.toml makes this file")
     for path in absent:
-        print(f"{path.relative_to(ROOT)}: is missing, though experiments/results/results.toml names it")
+        print(f"{path.relative_to(ROOT)}: is missing, though results/results.toml names it")
     count = sum(len(blocks.block_names(page)) for page in blocks.pages())
     differs = bool(stale or unknown or absent)
     print(f"{count} blocks of {len(blocks.pages())} pages; {'differences' if differs else 'all equal'}")
@@ -137,7 +137,7 @@ def do_results(recipes, options):
                 ("DIFFERS: " + ", ".join(different) if different else "the same as committed"))
         else:
             keep(recipe, out, None if options.resume else cpu_seconds)
-            say(f"{recipe.name}: {cpu_seconds:.0f} s of CPU time; kept in experiments/results/{recipe.folder}")
+            say(f"{recipe.name}: {cpu_seconds:.0f} s of CPU time; kept in results/{recipe.folder}")
     if not options.check:
         do_blocks(False)
     return status

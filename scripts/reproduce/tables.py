@@ -15,7 +15,7 @@ BARE_COLUMNS = ("estimator", "quantity", "event", "claim", "covariance")
 
 @functools.lru_cache(maxsize=None)
 def read_table(name):
-    """The rows of experiments/results/NAME.csv, or of a CSV file named from the root of the repository."""
+    """The rows of results/NAME.csv, or of a CSV file named from the root of the repository."""
     path = RESULTS / f"{name}.csv"
     if not path.exists():
         raise ResultError(f"there is no table {path.name} in {path.parent}")

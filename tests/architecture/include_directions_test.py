@@ -28,8 +28,7 @@ ALLOWED = {
 # The folders of a room from below: a file includes files of its own folder and of those before it. "." is the room
 # itself, where the program begins.
 FOLDERS = {
-    "experiments": ["base", "data", "study", "trial", "result_file", "sequences", "pieces", "run", "model_choice", "analysis", "claims", "rare", "validity", "truth_free", "paper_table", "tuning",
-                    "contract", "answer", "commands", "."],
+    "experiments": ["core", "data", "study", "trial", "run", "statistics", "audit", "tuning", "rare", "real", "commands", "."],
     "plots": ["common", "page", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "trial_sheet", "."],
 }
 PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)
@@ -133,10 +132,10 @@ class IncludeDirections(unittest.TestCase):
             self.assertEqual(upward(room, arrows(room, files)), [])
 
     def test_an_upward_include_is_seen(self):
-        below = [("base/x.h", '#include "experiments/study/study.h"\n')]
-        above = [("study/x.h", '#include "experiments/base/message.h"\n#include "experiments/study/y.h"\n')]
-        self.assertEqual(upward("experiments", arrows("experiments", below)), [("base", "study")])
-        self.assertEqual(arrows("experiments", above), {("study", "base"): 1})
+        below = [("core/x.h", '#include "experiments/study/study.h"\n')]
+        above = [("study/x.h", '#include "experiments/core/text/message.h"\n#include "experiments/study/y.h"\n')]
+        self.assertEqual(upward("experiments", arrows("experiments", below)), [("core", "study")])
+        self.assertEqual(arrows("experiments", above), {("study", "core"): 1})
         self.assertEqual(upward("experiments", arrows("experiments", above)), [])
         of_a_script = [("rates/x.py", "from common import style\nimport heat_map\n")]
         self.assertEqual(upward("plots", arrows("plots", of_a_script)), [("rates", ".")])

@@ -11,9 +11,9 @@ RULES = {
     "C++": (("parameters", "stats", "estimator", "simulator", "peers", "experiments", "python", "robot"), {".h", ".cc"}, [
         (r"\bofstream\b", []),
         (r"\bstd::getline\(", []),
-        (r"\bfopen\(", ["experiments/base/file_output.cc", "experiments/sequences/pair_index.cc"]),
-        (r"\bO_CREAT\b", ["experiments/base/pending_file.cc"]),
-        (r"\brename\(", ["experiments/base/pending_file.cc"]),
+        (r"\bfopen\(", ["experiments/core/files/file_output.cc", "experiments/real/sequences/pair_index.cc"]),
+        (r"\bO_CREAT\b", ["experiments/core/files/pending_file.cc"]),
+        (r"\brename\(", ["experiments/core/files/pending_file.cc"]),
     ]),
     "Python": (("plots", "python/rcme"), {".py"}, [
         (r"\bopen\([^)]*[\"'][wax]b?[\"']", ["plots/common/whole_file.py", "plots/common/style.py"]),  # the second at a path of the first

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "experiments/analysis/summarize.h"
+#include "experiments/statistics/summarize.h"
 #include "experiments/run/run_study.h"
 #include "tests/benchmarks/engine_fixture.h"
 #include "tests/test_support/add_records.h"

@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "experiments/base/file_output.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/study/study_file.h"
 #include "tests/benchmarks/benchmark_cases.h"
 #include "tests/benchmarks/engine_fixture.h"

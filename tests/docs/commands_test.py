@@ -39,10 +39,10 @@ ELSEWHERE = {
 SHORTER = [
     (r"^\$rcme", "rcme"),
     (r"\bSTUDY --until ci=0.01\b", "STUDY --until ci=0.3"),
-    (r"^rcme (tune|transfer) (STUDY|experiments/studies/tune_acceptance.yaml)",
-     r"rcme \1 experiments/studies/tune_acceptance.yaml --set outlier_ratio=0.1"),
+    (r"^rcme (tune|transfer) (STUDY|studies/tune_acceptance.yaml)",
+     r"rcme \1 studies/tune_acceptance.yaml --set outlier_ratio=0.1"),
     (r"^rcme tune (\S+)", r"rcme tune \1 --set scene=room"),
-    (r"\bSTUDY\b", "experiments/studies/failure_vs_outliers.yaml"),
+    (r"\bSTUDY\b", "studies/failure_vs_outliers.yaml"),
     (r"\bPAIRS\b", "pairs"),
     (r"^rcme run (?!.*--(until|trials) )(?!first.yaml)(.*)$", r"rcme run \2 --trials 2"),
     (r"^rcme export (.*)--trials \d+", r"rcme export \1--trials 2"),
@@ -77,7 +77,7 @@ class Commands(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         folder = pathlib.Path(scratch.name)
-        for name in ("experiments", "examples", "scripts", "docs"):
+        for name in ("experiments", "studies", "estimator_files", "results", "examples", "scripts", "docs"):
             (folder / name).symlink_to(ROOT / name)
         (folder / "bin").mkdir()
         (folder / "bin/rcme").symlink_to(pathlib.Path(os.environ["RCME"]).resolve())

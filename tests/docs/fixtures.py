@@ -13,7 +13,7 @@ import numpy as np
 
 def make_pairs(folder, program):
     problems = folder / "exported"
-    subprocess.run([program, "export", "experiments/studies/indoor_like.yaml", "--trials", "1", "--set", "outlier_ratio=0.2",
+    subprocess.run([program, "export", "studies/indoor_like.yaml", "--trials", "1", "--set", "outlier_ratio=0.2",
                     "--out", problems], cwd=folder, check=True, capture_output=True)
     files = sorted((problems / "matches").glob("*.csv"))
     (folder / "pairs").mkdir()

@@ -35,7 +35,7 @@ TEST_F(Habits, StudiesHaveNamesInEveryFolder) {
   EXPECT_EQ(RunHere(run + "by_name.sqlite").exit_code, 0);
   EXPECT_EQ(
       RunHere("\"$RCME\" run '" + SourceFolder() +
-              "/experiments/studies/no_outliers_low_noise.yaml' --trials 1 --threads 1 --out by_name.sqlite")
+              "/studies/no_outliers_low_noise.yaml' --trials 1 --threads 1 --out by_name.sqlite")
           .exit_code,
       0)
       << "the same study by its path";
@@ -63,7 +63,7 @@ TEST_F(Habits, EstimatorFilesHaveNamesInEveryFolder) {
   const ProgramResult by_file = RunHere("\"$RCME\" estimate pair.csv --json --estimator-file rcme_tuned");
   EXPECT_EQ(by_file.exit_code, 0) << by_file.err;
   const ProgramResult by_path = RunHere("\"$RCME\" estimate pair.csv --json --estimator-file '" +
-                                        SourceFolder() + "/experiments/estimators/rcme_tuned.yaml'");
+                                        SourceFolder() + "/estimator_files/rcme_tuned.yaml'");
   EXPECT_EQ(by_file.out, by_path.out);
   EXPECT_EQ(RunHere("\"$RCME\" estimate pair.csv --json --estimator rcme_tuned").out, by_file.out);
   folder_.Write("study.yaml", SmallStudyYaml() + "  - {file: rcme_tuned, label: tuned}\n");

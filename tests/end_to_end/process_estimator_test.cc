@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "experiments/result_file/result_store.h"
+#include "experiments/run/store/result_store.h"
 #include "tests/test_support/descendants.h"
 #include "tests/test_support/run_program.h"
 

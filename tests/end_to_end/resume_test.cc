@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "experiments/result_file/result_store.h"
+#include "experiments/run/store/result_store.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/small_study.h"
 

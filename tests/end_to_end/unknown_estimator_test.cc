@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "experiments/base/program_name.h"
+#include "experiments/core/text/program_name.h"
 #include "experiments/run/run_study.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/small_study.h"

@@ -8,10 +8,10 @@
 
 #include <filesystem>
 
-#include "experiments/data/gzip_lines.h"
+#include "experiments/core/files/gzip_lines.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
-#include "experiments/data/match_images.h"
+#include "experiments/real/images/match_images.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
 #include "tests/fuzz/bomb.h"

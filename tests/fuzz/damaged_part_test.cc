@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "experiments/claims/audit_output.h"
-#include "experiments/claims/audit_part.h"
+#include "experiments/audit/claims/audit_output.h"
+#include "experiments/audit/claims/audit_part.h"
 #include "experiments/tuning/transfer.h"
 #include "experiments/tuning/transfer_output.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
 #include "experiments/tuning/tune_part.h"
-#include "experiments/validity/map_part.h"
+#include "experiments/audit/validity/map_part.h"
 #include "parameters/input_error.h"
 #include "tests/test_support/changed_part.h"
 #include "tests/test_support/temp_folder.h"

@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/analysis/compare.h"
-#include "experiments/analysis/comparison_output.h"
-#include "experiments/analysis/summary_output.h"
-#include "experiments/analysis/trial_table.h"
-#include "experiments/result_file/new_trials.h"
-#include "experiments/result_file/salvage.h"
+#include "experiments/statistics/compare.h"
+#include "experiments/statistics/comparison_output.h"
+#include "experiments/statistics/summary_output.h"
+#include "experiments/statistics/trial_table.h"
+#include "experiments/run/store/new_trials.h"
+#include "experiments/run/store/salvage.h"
 #include "experiments/run/run_study.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"

@@ -1,8 +1,8 @@
 // As bombs_test.cc, of the files that data sets come with.
 #include <filesystem>
 
-#include "experiments/sequences/colmap_model.h"
-#include "experiments/sequences/layouts.h"
+#include "experiments/real/sequences/colmap_model.h"
+#include "experiments/real/sequences/layouts.h"
 #include "tests/fuzz/bomb.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/temp_folder.h"

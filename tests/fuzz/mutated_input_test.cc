@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "experiments/data/image_header.h"
+#include "experiments/real/images/image_header.h"
 #include "experiments/data/match_file.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
@@ -118,7 +118,7 @@ const std::vector<std::string>& YamlWords() {
 TEST(MutatedInput, Studies) {
   std::vector<std::string> corpus = Corpus("tests/fuzz/corpus/study");
   corpus.push_back(SmallStudyYaml());
-  for (const std::string& study : Corpus("experiments/studies")) corpus.push_back(study);
+  for (const std::string& study : Corpus("studies")) corpus.push_back(study);
   const Outcomes outcomes = ReadDamaged(corpus, YamlWords(), 3000, [](const std::string& input) {
     const Study study = ParseStudy(input, "study.yaml");
     EXPECT_EQ(FindNotPlain(study.name), std::string::npos);
@@ -130,7 +130,7 @@ TEST(MutatedInput, Studies) {
 
 TEST(MutatedInput, EstimatorFiles) {
   std::vector<std::string> corpus = Corpus("tests/fuzz/corpus/estimator_file");
-  for (const std::string& file : Corpus("experiments/estimators")) corpus.push_back(file);
+  for (const std::string& file : Corpus("estimator_files")) corpus.push_back(file);
   const Outcomes outcomes = ReadDamaged(corpus, YamlWords(), 5000, [](const std::string& input) {
     EstimatorFileText(ParseEstimatorFile(input, "estimator.yaml"), {});
   });

@@ -17,8 +17,8 @@ SOURCE = FOLDER.parents[1]
 FOLDERS = {  # of each room
     "stats": "stats", "simulator": "simulator", "estimator": "estimator", "calibrated": "estimator/calibrated",
     "robust_covariance": "estimator/robust_covariance", "peers": "peers", "experiments": "experiments",
-    "pieces": "experiments/pieces", "rare": "experiments/rare", "sequences": "experiments/sequences",
-    "truth_free": "experiments/truth_free", "plots": "plots", "python": "python"}
+    "pieces": "experiments/core/work", "rare": "experiments/rare", "sequences": "experiments/real/sequences",
+    "truth_free": "experiments/real/truth_free", "plots": "plots", "python": "python"}
 ROOMS = tuple(FOLDERS)
 KEYS = {"was", "now", "in", "equivalent"}
 

@@ -49,7 +49,7 @@ class Entries(unittest.TestCase):
     def test_the_room_is_the_innermost_that_the_file_is_in(self):
         self.assertEqual(entries.room_of("estimator/ransac_loop.cc"), "estimator")
         self.assertEqual(entries.room_of("estimator/calibrated/influence.cc"), "calibrated")
-        self.assertEqual(entries.room_of("experiments/truth_free/twin.cc"), "truth_free")
+        self.assertEqual(entries.room_of("experiments/real/truth_free/twin.cc"), "truth_free")
         self.assertIsNone(entries.room_of("robot/pose_graph.cc"))
 
     def test_a_text_around_it_chooses_one_of_several(self):

@@ -24,7 +24,7 @@ bool IsKnown(const std::string& name) {
 TEST(EstimatorFile, EveryFileOfTheProjectIsValid) {
   ASSERT_TRUE(IsKnown("opencv_usac"));
   int num_files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/experiments/estimators")) {
+  for (const auto& entry : std::filesystem::directory_iterator(SourceFolder() + "/estimator_files")) {
     const std::string path = entry.path().string();
     if (entry.path().stem().string().starts_with("poselib") && !IsKnown("poselib")) {
       EXPECT_THROW(LoadEstimatorFile(path), InputError);
@@ -53,14 +53,14 @@ void ExpectRoundTrip(const std::string& path) {
 
 TEST(ToYaml, RoundTripOfTheCommittedStudies) {
   ASSERT_TRUE(IsKnown("opencv_usac"));
-  const std::vector<std::string> studies = StudiesIn("/experiments/studies");
+  const std::vector<std::string> studies = StudiesIn("/studies");
   for (const std::string& path : studies) ExpectRoundTrip(path);
   EXPECT_GE(studies.size(), 20u);
 }
 
 // The studies at equal time have PoseLib's estimator in them: without it nothing but that is wrong with them.
 TEST(ToYaml, RoundTripOfTheCommittedStudiesAtEqualTime) {
-  const std::vector<std::string> studies = StudiesIn("/experiments/studies/equal_time");
+  const std::vector<std::string> studies = StudiesIn("/studies/equal_time");
   EXPECT_GE(studies.size(), 16u);
   for (const std::string& path : studies) {
     if (IsKnown("poselib")) {

@@ -2,7 +2,7 @@
 // options.
 #include <gtest/gtest.h>
 
-#include "experiments/contract/estimator_contract.h"
+#include "experiments/audit/contract/estimator_contract.h"
 #include "tests/peers/peer_entries.h"
 #include "tests/test_support/option_checks.h"
 

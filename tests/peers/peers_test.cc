@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "estimator/uncertainty/motion_covariance.h"
-#include "experiments/contract/contract_problems.h"
-#include "experiments/contract/estimate_difference.h"
+#include "experiments/audit/contract/contract_problems.h"
+#include "experiments/audit/contract/estimate_difference.h"
 #include "experiments/trial/answer_check.h"
 #include "stats/intervals.h"
 #include "tests/peers/peer_entries.h"

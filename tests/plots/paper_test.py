@@ -33,7 +33,7 @@ from common import sheet, style, tikz  # noqa: E402
 from common.summary_csv import read_summary, where  # noqa: E402
 from drawn_text import do_overlap, drawn_texts, problems_of  # noqa: E402
 
-RESULTS = ROOT / "experiments" / "results"
+RESULTS = ROOT / "results"
 WIDTHS = (3.3, 7.0)
 LATEX = shutil.which("pdflatex")
 warnings.simplefilter("error")  # a layout that was given up is a fault

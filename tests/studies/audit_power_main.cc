@@ -1,6 +1,6 @@
 // How sharp the audit is: the share of seeds in which it calls a faulty estimator faulty and a sound one
 // sound. Prints three tables (CSV; `scripts/results audit_power` makes those of
-// experiments/results/audit_power):
+// results/audit_power):
 //   rcme_audit_power faults [SEEDS, default 50] > faults.csv
 //   rcme_audit_power sigma [SEEDS, default 20; half as many where cases are simulated] > sigma.csv
 //   rcme_audit_power edges [SEEDS, default 200] > edges.csv
@@ -18,14 +18,14 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/claims/audit.h"
-#include "experiments/claims/call_estimator.h"
-#include "experiments/claims/case.h"
-#include "experiments/claims/claim_table.h"
-#include "experiments/claims/cramer_rao.h"
-#include "experiments/claims/decide_check.h"
-#include "experiments/claims/design.h"
-#include "experiments/claims/sample_statistics.h"
+#include "experiments/audit/claims/audit.h"
+#include "experiments/audit/claims/call_estimator.h"
+#include "experiments/audit/claims/case.h"
+#include "experiments/audit/claims/claim_table.h"
+#include "experiments/audit/claims/cramer_rao.h"
+#include "experiments/audit/claims/decide_check.h"
+#include "experiments/audit/claims/design.h"
+#include "experiments/audit/claims/sample_statistics.h"
 #include "tests/test_support/answer_doubles.h"
 
 namespace rcme {

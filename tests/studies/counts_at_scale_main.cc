@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "experiments/analysis/merge_counts.h"
-#include "experiments/analysis/run_counts.h"
-#include "experiments/analysis/summarize_counts.h"
-#include "experiments/result_file/new_result_file.h"
-#include "experiments/result_file/result_store.h"
+#include "experiments/statistics/merge_counts.h"
+#include "experiments/statistics/run_counts.h"
+#include "experiments/statistics/summarize_counts.h"
+#include "experiments/run/store/new_result_file.h"
+#include "experiments/run/store/result_store.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/trial.h"
 

@@ -1,4 +1,4 @@
-// What the tests of a refined motion refuse and what they let pass (experiments/results/motion_tests):
+// What the tests of a refined motion refuse and what they let pass (results/motion_tests):
 //   rcme_motion_tests refusals 400 > refusals.csv    each condition, the same trials without and with the
 //   tests rcme_motion_tests coverage 400 > coverage.csv    coverage of right answers by the noise's share:
 //   why

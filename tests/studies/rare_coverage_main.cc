@@ -1,5 +1,5 @@
 // Do the intervals of multilevel splitting hold a rate that is known? Repeats `rcme rare` with fresh seeds
-// and as little effort as can be (`scripts/results rare_noise` makes those of experiments/results/rare):
+// and as little effort as can be (`scripts/results rare_noise` makes those of results/rare):
 //   rcme_rare_coverage STUDY KEY=VALUE KNOWN_RATE FOLDER [REPEATS, default 200]
 // of a study that KEY=VALUE leaves one condition of. Writes FOLDER/coverage.csv, a row for each repetition,
 // and prints what they say together, FOLDER/coverage.txt.
@@ -11,7 +11,7 @@
 #include <exception>
 #include <string>
 
-#include "experiments/base/file_output.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/rare/split_failures.h"
 #include "stats/intervals.h"

@@ -1,5 +1,5 @@
 // What the quarter of a pixel by which OpenCV 4.6 misplaces SIFT's key points does to the regions of
-// rcme_calibrated (experiments/results/sift_shift):
+// rcme_calibrated (results/sift_shift):
 //   rcme_sift_shift rendered 60 > rendered.csv    sequences of so many frames, rendered as KITTI and EuRoC
 //   lay them
 //                                                 out, with the key points as features.cc gives them and as
@@ -23,8 +23,8 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/data/match_folder.h"
-#include "experiments/sequences/layouts.h"
-#include "experiments/sequences/make_pairs.h"
+#include "experiments/real/sequences/layouts.h"
+#include "experiments/real/sequences/make_pairs.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 #include "tests/test_support/rendered_sequence.h"

@@ -1,7 +1,7 @@
 // Records of estimators with the records of their problems, which most tests do not care about.
 #pragma once
 
-#include "experiments/result_file/result_store.h"
+#include "experiments/run/store/result_store.h"
 
 namespace rcme {
 

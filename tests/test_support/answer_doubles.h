@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "estimator/motion_estimate.h"
-#include "experiments/claims/calibration.h"
-#include "experiments/claims/call_estimator.h"
+#include "experiments/audit/claims/calibration.h"
+#include "experiments/audit/claims/call_estimator.h"
 #include "stats/random.h"
 
 namespace rcme {

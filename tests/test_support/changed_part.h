@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "experiments/base/file_output.h"
-#include "experiments/result_file/checksum.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/files/checksum.h"
 
 namespace rcme {
 

@@ -1,6 +1,6 @@
 // What the tests of a refined motion (observability.h, motion_chance.h) refuse and what they let pass, on the
 // same trials with the tests off and on: for the test in short (motion_tests_study_test.cc) and the study of
-// experiments/results/motion_tests (tests/studies/motion_tests_main.cc).
+// results/motion_tests (tests/studies/motion_tests_main.cc).
 #pragma once
 
 #include <fmt/format.h>

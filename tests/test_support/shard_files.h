@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/result_file/merge_results.h"
+#include "experiments/run/store/merge_results.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/analysis/summarize.h"
+#include "experiments/statistics/summarize.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"

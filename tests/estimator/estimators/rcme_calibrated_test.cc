@@ -74,7 +74,7 @@ TEST_F(RcmeCalibratedOf, FindsTheMotionAndItsMatches) {
 
 // Trials of which about a fifth fails. With right probabilities z = sum(P - wrong) / sqrt(sum P (1 - P)) is
 // standard normal to good approximation; |z| > 4 would be a false alarm in 16,000 runs. The probabilities are
-// right to some hundredths at best (experiments/results), which is admitted beside it: 0.03 a trial.
+// right to some hundredths at best (results), which is admitted beside it: 0.03 a trial.
 TEST_F(RcmeCalibratedOf, FailsAsOftenAsItsProbabilitiesSay) {
   double expected = 0.0, failed = 0.0, variance = 0.0;
   constexpr int kNumTrials = 300;

@@ -246,7 +246,7 @@ Coverages CoverageUnder(const NoiseModel& noise, int num_matches, int num_trials
   return coverages;
 }
 
-// 400 scenes of 400 matches. Nominal: .92 to .96 (experiments/results/robust has it exactly); the exact
+// 400 scenes of 400 matches. Nominal: .92 to .96 (results/robust has it exactly); the exact
 // interval of confidence 0.9999 must meet that, a false alarm in 10,000 at most, and first order covers less:
 // power.
 TEST(RobustCovariance, CoversWhereErrorsAreCorrelatedAndMatchesRepeated) {

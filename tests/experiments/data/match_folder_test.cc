@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/analysis/truth_quality.h"
+#include "experiments/statistics/truth_quality.h"
 #include "experiments/data/match_file.h"
 #include "experiments/study/run_description.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
-#include "experiments/truth_free/pair_set.h"
+#include "experiments/real/truth_free/pair_set.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/base/thread_time.h"
+#include "experiments/core/work/thread_time.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {

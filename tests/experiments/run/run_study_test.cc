@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "experiments/analysis/summarize.h"
+#include "experiments/statistics/summarize.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/peak_memory.h"

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "experiments/analysis/summarize.h"
-#include "experiments/result_file/merge_results.h"
+#include "experiments/statistics/summarize.h"
+#include "experiments/run/store/merge_results.h"
 #include "stats/confidence_sequence.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"

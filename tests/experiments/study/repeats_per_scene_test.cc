@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "experiments/analysis/trial_output.h"
+#include "experiments/statistics/trial_output.h"
 #include "experiments/run/run_until.h"
 #include "experiments/study/run_description.h"
 #include "experiments/study/study_file.h"

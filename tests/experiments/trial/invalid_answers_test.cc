@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "experiments/analysis/compare.h"
-#include "experiments/analysis/summarize.h"
-#include "experiments/claims/call_estimator.h"
+#include "experiments/statistics/compare.h"
+#include "experiments/statistics/summarize.h"
+#include "experiments/audit/claims/call_estimator.h"
 #include "experiments/run/run_until.h"
 #include "experiments/tuning/verify_setting.h"
 #include "tests/test_support/small_study.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "experiments/sequences/listed_pairs.h"
+#include "experiments/real/sequences/listed_pairs.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {

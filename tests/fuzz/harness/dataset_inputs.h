@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/sequences/colmap_model.h"
-#include "experiments/sequences/layouts.h"
+#include "experiments/real/sequences/colmap_model.h"
+#include "experiments/real/sequences/layouts.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {

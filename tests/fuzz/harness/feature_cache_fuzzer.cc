@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "experiments/data/feature_cache.h"
+#include "experiments/real/images/feature_cache.h"
 #include "tests/fuzz/harness/only_input_error.h"
 
 namespace rcme {

@@ -1,4 +1,4 @@
-#include "experiments/data/image_header.h"
+#include "experiments/real/images/image_header.h"
 #include "tests/fuzz/harness/only_input_error.h"
 
 // The first bytes of an image.

@@ -1,4 +1,4 @@
-#include "experiments/sequences/listed_pairs.h"
+#include "experiments/real/sequences/listed_pairs.h"
 #include "tests/fuzz/harness/file_in_memory.h"
 #include "tests/fuzz/harness/only_input_error.h"
 

@@ -1,7 +1,7 @@
 #include <fstream>
 
-#include "experiments/analysis/summary_output.h"
-#include "experiments/base/scratch_folder.h"
+#include "experiments/statistics/summary_output.h"
+#include "experiments/core/files/scratch_folder.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/study_file.h"
 #include "tests/fuzz/harness/only_input_error.h"

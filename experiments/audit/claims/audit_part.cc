@@ -1,0 +1,148 @@
+#include "experiments/audit/claims/audit_part.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "estimator/instruction_set.h"
+#include "experiments/core/text/program_name.h"
+#include "experiments/audit/claims/outcomes_json.h"
+#include "experiments/audit/claims/trial_blocks.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+// What the results depend on, a line for each thing.
+std::string Identity(const Audit& plan) {
+  const AuditOptions& options = plan.options;
+  std::string identity = fmt::format("seed: {}\nbudget: {}\nclaimed numbers: {}\n", options.seed,
+                                     options.budget == Budget::kQuick ? "quick" : "full", plan.num_targets);
+  for (const auto& [key, value] : options.conditions) identity += fmt::format("{}: {}\n", key, value);
+  return identity + options.study_identity;
+}
+
+PiecePlan PlanOfChecks(const Audit& plan, const std::string& work, const std::string& piece_name,
+                       const AuditRound& num_pieces) {
+  PiecePlan pieces{work, piece_name, Identity(plan), {}};
+  for (const CheckPlace& place : PlacesOf(plan)) {
+    pieces.groups.push_back({fmt::format("check {} of claim {}", place.check, plan.claims[place.claim].id),
+                             num_pieces[pieces.groups.size()]});
+  }
+  return pieces;
+}
+
+// A round is kept as a part is, with one piece for each check: how many blocks it needs.
+PiecePlan PiecesOfRound(const Audit& plan) {
+  return PlanOfChecks(plan, "round of an audit", "number", AuditRound(PlacesOf(plan).size(), 1));
+}
+
+std::vector<TrialBlocks> BlocksOf(const Audit& plan) {
+  std::vector<TrialBlocks> blocks;
+  for (const CheckPlace& place : PlacesOf(plan))
+    blocks.emplace_back(CheckAt(plan, place), plan.options.budget);
+  return blocks;
+}
+
+// The pieces that a round needs.
+std::vector<PiecePlace> PiecesOf(const AuditRound& round) {
+  std::vector<PiecePlace> places;
+  for (size_t group = 0; group < round.size(); ++group) {
+    for (size_t block = 0; block < round[group]; ++block) places.push_back({group, block});
+  }
+  return places;
+}
+
+// Counts the blocks of a check that the parts hold, as far as they lead without a gap and are needed: its
+// result, and how many blocks it needs.
+size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks& blocks, size_t group,
+                   const PiecePlan& pieces, const MergedParts& parts, CheckResult* result) {
+  const Check& check = CheckAt(plan, place);
+  CheckDecision decision(check, RunOf(plan, place));
+  size_t num_counted = 0;
+  ReadEach(pieces, parts, group, group + 1, [&](const PiecePlace& piece, const std::string& json) {
+    if (piece.piece != num_counted || decision.IsDone()) return;
+    const std::int64_t num_trials = blocks.End(num_counted) - blocks.Begin(num_counted);
+    for (const Outcome& outcome : OutcomesFrom(check, json, static_cast<size_t>(num_trials)))
+      decision.Add(outcome);
+    ++num_counted;
+  });
+  *result = decision.Result();
+  return decision.IsDone() ? num_counted : blocks.RoundEnd(num_counted);
+}
+
+}  // namespace
+
+PiecePlan PiecesOfAudit(const Audit& plan) {
+  AuditRound num_blocks;
+  for (const TrialBlocks& blocks : BlocksOf(plan)) num_blocks.push_back(blocks.NumBlocks());
+  return PlanOfChecks(plan, "audit", "block", num_blocks);
+}
+
+AuditRound FirstRound(const Audit& plan) {
+  AuditRound round;
+  for (const TrialBlocks& blocks : BlocksOf(plan))
+    round.push_back(blocks.NumBlocks() == 0 ? 0 : blocks.RoundEnd(0));
+  return round;
+}
+
+void WriteRound(const Audit& plan, const AuditRound& round, const std::string& path) {
+  const PiecePlan pieces = PiecesOfRound(plan);
+  Part part{pieces.work, IdentityOf(pieces), {0, 1}, {ProgramName(), InstructionSetName()}, {}};
+  for (size_t group = 0; group < round.size(); ++group)
+    part.results[{group, 0}].json = fmt::format("{}", round[group]);
+  WritePart(path, part);
+}
+
+AuditRound ReadRound(const Audit& plan, const std::string& path) {
+  const PiecePlan pieces = PiecesOfRound(plan);
+  const MergedParts merged = MergeParts(pieces, {path});
+  const std::vector<TrialBlocks> blocks = BlocksOf(plan);
+  if (MissingIn(pieces, merged, 0, pieces.groups.size()).num_pieces > 0)
+    throw InputError(fmt::format("{}: damaged: it lacks checks", path));
+  AuditRound round(blocks.size());
+  ReadEach(pieces, merged, 0, round.size(), [&](const PiecePlace& place, const std::string& json) {
+    const auto num_blocks = static_cast<std::int64_t>(blocks[place.group].NumBlocks());
+    round[place.group] = static_cast<size_t>(CountFrom(ParsePiece(json), num_blocks));
+  });
+  return round;
+}
+
+void RunAuditPart(const Audit& plan, const AuditRound& round, const Shard& shard, const std::string& path) {
+  PartInWork part(PiecesOfAudit(plan), shard, path);
+  const std::vector<CheckPlace> checks = PlacesOf(plan);
+  const std::vector<TrialBlocks> blocks = BlocksOf(plan);
+  std::vector<PiecePlace> its_own = PiecesOf(round);
+  std::erase_if(its_own, [&](const PiecePlace& p) { return ShardOfPiece(p, shard.count) != shard.number; });
+  part.DoEach(its_own, [&](const PiecePlace& place) {
+    const CheckPlace& at = checks[place.group];
+    const TrialBlocks& of_check = blocks[place.group];
+    const Check& check = CheckAt(plan, at);
+    return OutcomesAsJson(
+        check, RunTrials(check, RunOf(plan, at), of_check.Begin(place.piece), of_check.End(place.piece)));
+  });
+}
+
+MergedAudit MergeAuditParts(const std::vector<Claim>& all, const AuditOptions& options,
+                            const std::vector<std::string>& paths) {
+  MergedAudit merged;
+  merged.audit = PlanAudit(all, options);
+  const PiecePlan pieces = PiecesOfAudit(merged.audit);
+  merged.parts = MergeParts(pieces, paths);
+  const std::vector<CheckPlace> checks = PlacesOf(merged.audit);
+  const std::vector<TrialBlocks> blocks = BlocksOf(merged.audit);
+  for (size_t group = 0; group < checks.size(); ++group) {
+    CheckResult* result = &merged.audit.results[checks[group].claim].checks[checks[group].check];
+    merged.round.push_back(
+        CountBlocks(merged.audit, checks[group], blocks[group], group, pieces, merged.parts, result));
+  }
+  merged.missing = MissingAmong(PiecesOf(merged.round), merged.parts);
+  for (const auto& [place, result] : merged.parts.results) {
+    if (place.piece >= merged.round[place.group]) merged.unneeded_seconds += result.seconds;
+  }
+  if (merged.missing.num_pieces == 0) JudgeClaims(&merged.audit);
+  return merged;
+}
+
+}  // namespace rcme

@@ -1,0 +1,88 @@
+#include "experiments/audit/claims/case.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/data/make_data.h"
+#include "stats/coverage.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+Settings WithDefaults(const Settings& settings) {
+  Settings all = {{"scene", "uniform_volume"}, {"outlier_ratio", "0"}, {"severity", "skipped"}};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return all;
+}
+
+}  // namespace
+
+CaseMaker CasesFrom(std::shared_ptr<const SimulatedData> simulated) {
+  return [simulated = std::move(simulated)](const StreamName& name) {
+    Case made{name, simulated->DrawScene(name), {}, StreamFor(name, StreamPurpose::kCheck)};
+    made.data = simulated->MakeFrom(made.scene, name);
+    made.sigma_px_true = simulated->sigma_px();
+    return made;
+  };
+}
+
+CaseMaker SimulatedCases(const Settings& settings) {
+  return CasesFrom(MakeSimulatedData(WithDefaults(settings)));
+}
+
+Settings ResolveCaseSettings(const Settings& settings) { return ResolveSettings(WithDefaults(settings)); }
+
+Check MakeCheck(const Settings& settings, const Statistic& statistic, const std::vector<Target>& targets,
+                const TrialLimits& limits) {
+  Check check;
+  check.conditions = settings;
+  for (const auto& [key, value] : settings) {
+    if (key == "sigma_px") check.sigma_px = std::stod(value);
+  }
+  check.targets = targets;
+  check.limits = limits;
+  check.trial = [cases = SimulatedCases(settings), statistic](const StreamName& name) {
+    Case made = cases(name);
+    return statistic(made);
+  };
+  return check;
+}
+
+std::vector<Check> ChecksAtNoiseLevels(const std::vector<double>& sigmas_px, const Settings& settings,
+                                       const Statistic& statistic, const std::vector<Target>& targets,
+                                       const TrialLimits& limits) {
+  std::vector<Check> checks;
+  for (const double sigma_px : sigmas_px) {
+    Settings at_sigma = settings;
+    at_sigma.emplace_back("sigma_px", fmt::format("{}", sigma_px));
+    checks.push_back(MakeCheck(at_sigma, statistic, targets, limits));
+  }
+  return checks;
+}
+
+std::vector<Target> CoverageTargets(int degrees_of_freedom, const ScaleTolerance& tolerance) {
+  constexpr double kFirstAlpha = 0.05;
+  std::vector<Target> targets;
+  for (const double alpha : Coverage::kSignificanceLevels) {
+    Target target{fmt::format("coverage at alpha {}", alpha),
+                  Target::Kind::kCoverage,
+                  1.0 - alpha,
+                  CoverageWithin(degrees_of_freedom, alpha, tolerance.coverage),
+                  ChiSquareQuantile(degrees_of_freedom, 1.0 - alpha),
+                  0,
+                  degrees_of_freedom};
+    targets.insert(alpha == kFirstAlpha ? targets.begin() : targets.end(), std::move(target));
+  }
+  targets.push_back({"mean PIT", Target::Kind::kMeanPit, 0.5,
+                     MeanPitWithin(degrees_of_freedom, tolerance.mean_pit),
+                     std::numeric_limits<double>::quiet_NaN(), 0, degrees_of_freedom});
+  return targets;
+}
+
+Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic) {
+  return {quantity, Target::Kind::kCoverage, 1.0, AllowedRate(1.0, kIdentity.margin), tolerance, statistic};
+}
+
+}  // namespace rcme

@@ -1,0 +1,37 @@
+#include "experiments/audit/claims/call_estimator.h"
+#include "experiments/audit/claims/design.h"
+#include "experiments/audit/claims/families.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// Of an answer, valid or not: flagged, if it failed; not flagged, if it did not.
+Outcome FlagStatistic(const MotionEstimator& estimator, const Case& made) {
+  const TrialRecord record = CallEstimator(estimator, made);
+  if (HasRefused(record)) return {kNaN, kNaN, kNaN};
+  const bool has_failed = FailsSilently(record);
+  return {has_failed ? 1.0 * record.failed_by_kappa : kNaN, has_failed ? kNaN : 1.0 * !record.failed_by_kappa,
+          1.0 * has_failed};
+}
+
+}  // namespace
+
+std::vector<Claim> FlagClaims() {
+  const std::vector<Target> targets = {PlannedRate("sensitivity: failures that are flagged", 1.0, kFlag, 0),
+                                       PlannedRate("specificity: good motions that are not", 1.0, kFlag, 1),
+                                       MeasuredRate("failures of the estimator", 2)};
+  std::shared_ptr<const MotionEstimator> standard = MakeEstimator("standard");
+  std::vector<Check> checks;
+  for (const char* outlier_ratio : {"0.4", "0.5"}) {
+    checks.push_back(MakeCheck(
+        {{"scene", "uniform_volume"}, {"num_matches", "200"}, {"outlier_ratio", outlier_ratio}},
+        [standard](Case& made) { return FlagStatistic(*standard, made); }, targets, kFlag.limits));
+  }
+  return {{"flag.kappa", "eq::metric", "standard, kappa = 0.5",
+           "n*_I / n_I <= kappa tells the failed motions from the good ones (9 of 10 of either)",
+           "the flag against rotation error > 3 deg or direction error > 15 deg", "outlier_ratio", checks}};
+}
+
+}  // namespace rcme

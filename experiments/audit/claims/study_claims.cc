@@ -1,0 +1,103 @@
+#include "experiments/audit/claims/study_claims.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "experiments/audit/claims/calibration.h"
+#include "experiments/audit/claims/study_cases.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<CaseClaim> CalibrationOf(const StudyPlan& plan) {
+  std::vector<CaseClaim> all;
+  for (const std::vector<CaseClaim>& family :
+       {SigmaFCalibration(), SigmaPCalibration(), InlierCalibration(), SampleTestCalibration(),
+        EntropyCalibration(), MleCalibration()}) {
+    all.insert(all.end(), family.begin(), family.end());
+  }
+  for (size_t e = 0; e < plan.estimators.size(); ++e) {
+    const EstimatorSpec& spec = plan.study.estimators[e];
+    const std::vector<CaseClaim> of_answers = AnswerCalibration(
+        spec.label, spec.name + ", options of the study", plan.estimators[e], plan.study.failure);
+    all.insert(all.end(), of_answers.begin(), of_answers.end());
+  }
+  return all;
+}
+
+// A condition of the study, with the first of its trials for a look at what they hold.
+struct ConditionCases {
+  Settings levels;  // factor, level
+  CaseMaker make;
+  std::vector<Case> first;
+};
+
+ConditionCases CasesOf(const StudyPlan& plan, const Condition& condition) {
+  constexpr std::uint32_t kNumFirst = 16;
+  ConditionCases cases{{}, StudyCases(plan, condition), {}};
+  for (size_t f = 0; f < plan.factor_names.size(); ++f) {
+    cases.levels.emplace_back(plan.factor_names[f], condition.levels[f]);
+  }
+  for (std::uint32_t trial = 0; trial < kNumFirst; ++trial) {
+    cases.first.push_back(cases.make(NameOfTrial(plan, condition, trial)));
+  }
+  return cases;
+}
+
+// What every one of the first trials lacks; empty: some of them lack nothing.
+std::string WhatAllLack(const std::vector<Case>& cases, const CaseNeeds& needs) {
+  std::string missing;
+  for (const Case& made : cases) {
+    missing = WhatIsMissing(made, needs);
+    if (missing.empty()) break;
+  }
+  return missing;
+}
+
+size_t NumStatistics(const std::vector<Target>& targets) {
+  size_t count = 0;
+  for (const Target& target : targets) count = std::max(count, target.statistic + 1);
+  return count;
+}
+
+Check CheckOn(const ConditionCases& cases, const CaseClaim& claim) {
+  Check check;
+  check.conditions = cases.levels;
+  check.sigma_px.reset();
+  check.not_possible = WhatAllLack(cases.first, claim.needs);
+  if (!check.not_possible.empty()) return check;
+  check.targets = claim.targets;
+  check.limits = claim.limits;
+  check.difficulty_statistic = claim.difficulty_statistic;
+  check.not_stated = claim.not_stated;
+  const Outcome nothing(NumStatistics(claim.targets), kNaN);
+  check.trial = [make = cases.make, statistic = claim.statistic, needs = claim.needs,
+                 nothing](const StreamName& name) {
+    Case made = make(name);
+    if (!WhatIsMissing(made, needs).empty()) return nothing;
+    KeepWhatIsNeeded(&made.data, needs);
+    return statistic(made);
+  };
+  return check;
+}
+
+}  // namespace
+
+std::vector<Claim> StudyClaims(const StudyPlan& plan) {
+  RequireCases(plan.study);
+  std::vector<CaseClaim> calibration = CalibrationOf(plan);
+  std::vector<Claim> claims;
+  for (const CaseClaim& claim : calibration) {
+    claims.push_back(claim.words);
+    claims.back().figure_x = plan.factor_names.size() == 1 ? plan.factor_names.front() : "";
+  }
+  for (const Condition& condition : plan.conditions) {
+    const ConditionCases cases = CasesOf(plan, condition);
+    for (size_t i = 0; i < claims.size(); ++i) claims[i].checks.push_back(CheckOn(cases, calibration[i]));
+  }
+  return claims;
+}
+
+}  // namespace rcme

@@ -1,0 +1,44 @@
+// How often each criterion of model choice says what, where the truth is what: a confusion matrix per
+// criterion.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "experiments/core/work/progress.h"
+#include "experiments/audit/model_choice/true_kind.h"
+#include "experiments/study/study_plan.h"
+
+namespace rcme {
+
+// Verdicts in the order of kSceneVerdicts; the last column counts trials without one.
+inline constexpr size_t kNumAnswers = kSceneVerdicts.size() + 1;
+// "general", ..., "no_verdict".
+const std::string& AnswerName(size_t answer);
+
+// Trials of one criterion: [truth][answer].
+using ConfusionMatrix = std::array<std::array<std::int64_t, kNumAnswers>, kTrueKinds.size()>;
+
+// Conditions with the same levels of the chosen factors, counted together: a matrix per criterion, in the
+// order of CriterionNames().
+struct ChoiceGroup {
+  std::vector<std::string> levels;  // of the chosen factors
+  std::vector<ConfusionMatrix> matrices;
+};
+
+struct ChoiceCounts {
+  std::vector<std::string> by;  // the chosen factors
+  std::vector<ChoiceGroup> groups;
+};
+
+// Every criterion, with default options, on the same fits to the first `plan.study.trials` trials of each
+// condition. The verdicts draw from the estimators' stream; the truth meets them here for the first time. The
+// groups are those of the factors `by`, in the order of the conditions; without any there is one.
+//
+// Throws InputError: `by` names what is no factor; a condition whose scenes nobody knows (real pairs), whose
+// trials have weights, or which meets its scenes again and again; conditions that share their scenes.
+ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>& by, int num_threads);
+
+}  // namespace rcme

@@ -1,0 +1,114 @@
+#include "experiments/audit/validity/study_samples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "experiments/audit/claims/study_cases.h"
+#include "experiments/data/make_data.h"
+#include "parameters/parameter.h"
+#include "simulator/exact_match.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char* kSigmaKey = "sigma_px";
+constexpr const char* kAssumedSigmaKey = "assumed_sigma_px";
+
+std::string ValueOf(const Settings& settings, const std::string& key) {
+  for (const auto& [name, value] : settings) {
+    if (name == key) return value;
+  }
+  return {};
+}
+
+double NumberOf(const Settings& settings, const std::string& key) {
+  double number = std::numeric_limits<double>::quiet_NaN();  // stays NaN for the word "true"
+  ParseReal(ValueOf(settings, key), &number);
+  return number;
+}
+
+// The settings of a condition in full, at another noise level.
+Settings AtSigma(Settings settings, double sigma_px) {
+  const double ratio = NumberOf(settings, kAssumedSigmaKey) / NumberOf(settings, kSigmaKey);
+  for (auto& [key, value] : settings) {
+    if (key == kSigmaKey) value = fmt::format("{}", sigma_px);
+    if (key == kAssumedSigmaKey && !std::isnan(ratio)) value = fmt::format("{}", ratio * sigma_px);
+    if (key == "severity") value = "skipped";
+  }
+  return settings;
+}
+
+// The factors of a map: without the noise level, which is an axis of its own, if the assumed one follows it.
+Settings LevelsOf(const StudyPlan& plan, const Condition& condition, const Settings& settings) {
+  const bool is_sigma_true = std::isnan(NumberOf(settings, kAssumedSigmaKey));
+  Settings levels;
+  for (size_t f = 0; f < plan.factor_names.size(); ++f) {
+    if (plan.factor_names[f] == kSigmaKey && is_sigma_true) continue;
+    levels.emplace_back(plan.factor_names[f], condition.levels[f]);
+  }
+  return levels;
+}
+
+std::string InWords(const StudyPlan& plan, const Settings& levels) {
+  std::string words;
+  for (const auto& [key, value] : levels) {
+    words += fmt::format("{}{} = {}", words.empty() ? "" : ", ", key, value);
+  }
+  return words.empty() ? plan.study.name : words;
+}
+
+// The first matches of a case in which all are true: `num_points` for the sample and a fresh one.
+MapSample SampleOf(const Case& made, int num_points) {
+  const auto n = static_cast<size_t>(num_points);
+  const TrialData& data = made.data;
+  MapSample sample{made.pose_true(), {data.problem, data.problem.matches[n]}, {data.problem, {}}, 0.0};
+  sample.observed.problem.matches.resize(n);
+  sample.observed.problem.noise_scale.clear();  // a map is of what first-order theory says of equal noise
+  sample.exact.problem.noise_scale.clear();
+  sample.exact.problem.matches.clear();
+  const auto point = [&](size_t k) { return made.scene.points_in_cam1[data.scene_point[k]]; };
+  for (size_t k = 0; k < n; ++k) sample.exact.problem.matches.push_back(ExactMatch(made.scene, point(k)));
+  sample.exact.fresh_match = ExactMatch(made.scene, point(n));
+  sample.parallax_rad = ParallaxRad(made.scene, point(n));
+  return sample;
+}
+
+MapSampler SamplerOf(const Settings& settings, int num_points) {
+  const CaseMaker make = CasesFrom(MakeSimulatedData(settings));
+  const CaseNeeds needs{.num_true_matches = num_points + 1};
+  return [make, needs, num_points](const StreamName& name) -> std::optional<MapSample> {
+    Case made = make(name);
+    if (!WhatIsMissing(made, needs).empty()) return std::nullopt;
+    KeepTrueMatches(&made.data);
+    return SampleOf(made, num_points);
+  };
+}
+
+}  // namespace
+
+std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
+  RequireCases(plan.study);
+  std::vector<MapCondition> conditions;
+  std::set<Settings> seen;
+  for (const Condition& condition : plan.conditions) {
+    const Settings settings = SimulatedSettings(plan, condition);
+    const Settings levels = LevelsOf(plan, condition, settings);
+    if (!seen.insert(levels).second) continue;
+    conditions.push_back({InWords(plan, levels), [settings](int num_points, double sigma_px) {
+                            return SamplerOf(AtSigma(settings, sigma_px), num_points);
+                          }});
+  }
+  return conditions;
+}
+
+std::vector<double> SigmasOf(const StudyPlan& plan) {
+  std::set<double> sigmas_px;
+  for (const Condition& condition : plan.conditions) {
+    sigmas_px.insert(NumberOf(SimulatedSettings(plan, condition), kSigmaKey));
+  }
+  return {sigmas_px.begin(), sigmas_px.end()};
+}
+
+}  // namespace rcme

@@ -1,0 +1,252 @@
+#include "experiments/audit/validity/validity_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+#include "estimator/point_consistency.h"
+#include "estimator/refinement/sampson_mle.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/core/work/for_each_index.h"
+#include "experiments/trial/covariance_score.h"
+#include "stats/accuracy.h"
+#include "stats/distributions.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNominalCoverage = 0.95;
+
+struct Quantity {
+  const char* name;
+  int degrees_of_freedom;
+  double ValidityTrial::*statistic;
+};
+constexpr std::array<Quantity, 4> kQuantities = {{{"f", 8, &ValidityTrial::f_nees},
+                                                  {"pose", 5, &ValidityTrial::pose_nees},
+                                                  {"fresh_point", 1, &ValidityTrial::fresh_point_d2},
+                                                  {"ml_pose", 5, &ValidityTrial::ml_pose_nees}}};
+
+struct Cell {
+  std::string level;  // of the condition, as a field of the table
+  int num_points;
+  double sigma_px;
+  std::vector<ValidityTrial> trials;
+};
+
+// Trials of a cell that are counted together.
+struct Group {
+  std::string name;
+  double median_conditioning;
+  std::vector<const ValidityTrial*> trials;
+};
+
+Group MakeGroup(std::string name, double ValidityTrial::*conditioning,
+                std::vector<const ValidityTrial*> trials) {
+  std::vector<double> values;
+  for (const ValidityTrial* trial : trials) values.push_back(trial->*conditioning);
+  return {std::move(name), MeasureQuantile(std::move(values), 0.5).value, std::move(trials)};
+}
+
+// All trials, then the thirds by either conditioning; trials without a model are in the lower third.
+std::vector<Group> GroupsOf(const std::vector<ValidityTrial>& trials) {
+  std::vector<const ValidityTrial*> order;
+  for (const ValidityTrial& trial : trials) order.push_back(&trial);
+  std::vector<Group> groups = {MakeGroup("all", &ValidityTrial::observed_conditioning, order)};
+  const auto add_thirds = [&](const std::string& measure, double ValidityTrial::*conditioning) {
+    std::stable_sort(order.begin(), order.end(), [&](const ValidityTrial* a, const ValidityTrial* b) {
+      return a->*conditioning < b->*conditioning;
+    });
+    const auto n = static_cast<std::ptrdiff_t>(order.size());
+    const std::array<const char*, 3> thirds = {"lower", "middle", "upper"};
+    for (std::ptrdiff_t k = 0; k < 3; ++k) {
+      const auto first = order.begin() + n * k / 3, end = order.begin() + n * (k + 1) / 3;
+      if (first == end) continue;  // fewer than three trials
+      groups.push_back(MakeGroup(measure + "_" + thirds[static_cast<size_t>(k)], conditioning, {first, end}));
+    }
+  };
+  add_thirds("exact", &ValidityTrial::exact_conditioning);
+  add_thirds("observed", &ValidityTrial::observed_conditioning);
+  return groups;
+}
+
+std::int64_t CountCovered(const Group& group, const Quantity& quantity) {
+  const double limit = ChiSquareQuantile(quantity.degrees_of_freedom, kNominalCoverage);
+  return std::count_if(group.trials.begin(), group.trials.end(),
+                       [&](const ValidityTrial* trial) { return trial->*quantity.statistic <= limit; });
+}
+
+std::string ParallaxField(double parallax_deg) {
+  return std::isnan(parallax_deg) ? "" : fmt::format("{:.4g}", parallax_deg);
+}
+
+std::string RowsOf(const Cell& cell, double median_parallax_deg) {
+  std::string text;
+  for (const Quantity& quantity : kQuantities) {
+    if (!cell.trials.empty()) break;
+    text += fmt::format("{},{},{},{},all,,{},0,0,,,\n", cell.sigma_px, cell.num_points, cell.level,
+                        ParallaxField(median_parallax_deg), quantity.name);
+  }
+  if (cell.trials.empty()) return text;
+  for (const Group& group : GroupsOf(cell.trials)) {
+    for (const Quantity& quantity : kQuantities) {
+      const auto n = static_cast<std::int64_t>(group.trials.size());
+      const std::int64_t num_covered = CountCovered(group, quantity);
+      const Interval interval = ExactBinomialInterval(num_covered, n);
+      text += fmt::format("{},{},{},{},{},{:.3g},{},{},{},{:.4f},{:.4f},{:.4f}\n", cell.sigma_px,
+                          cell.num_points, cell.level, ParallaxField(median_parallax_deg), group.name,
+                          group.median_conditioning, quantity.name, n, num_covered,
+                          static_cast<double>(num_covered) / static_cast<double>(n), interval.lower,
+                          interval.upper);
+    }
+  }
+  return text;
+}
+
+// Over all cells of one condition, which differ in nothing that parallax depends on. NaN: no cell has a
+// trial.
+double MedianParallaxDeg(std::span<const Cell> cells) {
+  std::vector<double> parallaxes_rad;
+  for (const Cell& cell : cells) {
+    for (const ValidityTrial& trial : cell.trials) parallaxes_rad.push_back(trial.parallax_rad);
+  }
+  if (parallaxes_rad.empty()) return std::numeric_limits<double>::quiet_NaN();
+  return MeasureQuantile(std::move(parallaxes_rad), 0.5).value * 180.0 / std::numbers::pi;
+}
+
+struct CellPlace {
+  size_t condition, num_points, sigma_px;  // indices into the options
+};
+
+CellPlace PlaceOf(const ValidityMapOptions& options, std::uint32_t cell) {
+  const size_t num_sigmas = options.sigmas_px.size(), num_points = options.nums_points.size();
+  return {cell / (num_sigmas * num_points), cell / num_sigmas % num_points, cell % num_sigmas};
+}
+
+}  // namespace
+
+std::vector<MapCondition> AtBaselines(const std::vector<double>& baselines_m) {
+  std::vector<MapCondition> conditions;
+  for (const double baseline_m : baselines_m) {
+    const auto sampler = [baseline_m](int num_points, double sigma_px) -> MapSampler {
+      const auto family = std::make_shared<const SampleFamily>(num_points, baseline_m, sigma_px);
+      return [family](const StreamName& name) -> std::optional<MapSample> {
+        const Scene scene = family->MakeScene(name);
+        RandomStream noise_rng = StreamFor(name, StreamPurpose::kNoise);
+        return MapSample{scene.cam2_from_cam1_true, family->Observe(scene, name, noise_rng),
+                         family->ObserveExactly(scene, name),
+                         ParallaxRad(scene, scene.points_in_cam1.back())};
+      };
+    };
+    conditions.push_back({fmt::format("{}", baseline_m), sampler});
+  }
+  return conditions;
+}
+
+ValidityTrial RunValidityTrial(const MapSample& sample) {
+  const MotionProblem& problem = sample.observed.problem;
+  ValidityTrial trial;
+  trial.parallax_rad = sample.parallax_rad;
+  if (const auto exact = EstimateLinearMotion(sample.exact.problem)) {
+    trial.exact_conditioning = exact->fit.conditioning;
+  }
+  const std::optional<LinearMotion> motion = EstimateLinearMotion(problem);
+  if (!motion) return trial;
+  trial.observed_conditioning = motion->fit.conditioning;
+
+  const RelativePose pose = NearestPose(motion->poses, sample.pose_true);
+  const Matrix5d pose_cov = CovarianceOfMotion(pose, motion->f_cov);
+  trial.f_nees = NormalizedErrorOfF(*motion, sample.pose_true);
+  trial.pose_nees = NormalizedErrorOfPose(pose, pose_cov, sample.pose_true);
+  if (const auto model = UncertainFundamental::From(pose, pose_cov, problem.camera1, problem.camera2)) {
+    PointResidual residual;
+    trial.fresh_point_d2 =
+        RankAwareTest(*model, problem.sigma_px).Distance(sample.observed.fresh_match, &residual);
+  }
+  const RefinedMotion refined = RefineAllBySampson(problem, pose);
+  if (refined.converged) {
+    trial.ml_pose_nees = NormalizedErrorOfPose(refined.cam2_from_cam1, refined.pose_cov, sample.pose_true);
+  }
+  return trial;
+}
+
+std::int64_t NumCells(const ValidityMapOptions& options) {
+  return static_cast<std::int64_t>(options.conditions.size() * options.nums_points.size() *
+                                   options.sigmas_px.size());
+}
+
+double SecondsOfWork(const ValidityMapOptions& options) {
+  constexpr std::uint32_t kNumTimed = 4;
+  const auto start = std::chrono::steady_clock::now();
+  for (const MapCondition& condition : options.conditions) {
+    for (const int num_points : options.nums_points) {
+      const MapSampler draw = condition.sampler(num_points, options.sigmas_px.back());
+      for (std::uint32_t trial = 0; trial < kNumTimed; ++trial) {
+        if (const auto sample = draw({options.seed, 0, trial})) RunValidityTrial(*sample);
+      }
+    }
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  return elapsed.count() / kNumTimed * static_cast<double>(options.sigmas_px.size()) * options.trials /
+         NumThreads(options.num_threads);
+}
+
+std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell) {
+  const CellPlace place = PlaceOf(options, cell);
+  return fmt::format("{} {}, {} points, {} px", options.condition_key,
+                     options.conditions[place.condition].level, options.nums_points[place.num_points],
+                     options.sigmas_px[place.sigma_px]);
+}
+
+std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,
+                                           TrialRange trials, Progress* progress) {
+  const CellPlace place = PlaceOf(options, cell);
+  const MapSampler draw = options.conditions[place.condition].sampler(options.nums_points[place.num_points],
+                                                                      options.sigmas_px[place.sigma_px]);
+  std::vector<std::optional<ValidityTrial>> all(trials.end - trials.first);
+  ForEachIndex(static_cast<std::int64_t>(all.size()), options.num_threads, [&](std::int64_t i) {
+    const std::optional<MapSample> sample =
+        draw({options.seed, cell, trials.first + static_cast<std::uint32_t>(i)});
+    if (sample) all[static_cast<size_t>(i)] = RunValidityTrial(*sample);
+    if (progress) progress->Advance(1);
+  });
+  std::vector<ValidityTrial> with_sample;
+  for (const std::optional<ValidityTrial>& trial : all) {
+    if (trial) with_sample.push_back(*trial);
+  }
+  return with_sample;
+}
+
+std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell& trials_of) {
+  std::string text = fmt::format(
+      "sigma_px,num_points,{},median_parallax_deg,conditioning,median_conditioning,quantity,n,num_covered,"
+      "coverage,lower,upper\n",
+      options.condition_key);
+  std::uint32_t cell = 0;
+  for (const MapCondition& condition : options.conditions) {
+    std::vector<Cell> cells;
+    for (const int num_points : options.nums_points) {
+      for (const double sigma_px : options.sigmas_px)
+        cells.push_back({CsvField(condition.level), num_points, sigma_px, trials_of(cell++)});
+    }
+    const double median_parallax_deg = MedianParallaxDeg(cells);
+    for (const Cell& each : cells) text += RowsOf(each, median_parallax_deg);
+  }
+  return text;
+}
+
+std::string ValidityMapCsv(const ValidityMapOptions& options) {
+  Progress progress("trials of the map", NumCells(options) * options.trials);
+  const TrialRange all{0, static_cast<std::uint32_t>(options.trials)};
+  return ValidityMapCsv(options,
+                        [&](std::uint32_t cell) { return RunTrialsOfCell(options, cell, all, &progress); });
+}
+
+}  // namespace rcme

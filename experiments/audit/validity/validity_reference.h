@@ -1,0 +1,55 @@
+// The second reference of the validity map: does first order fail because the problem is not linear, or
+// because its formula is wrong? For fixed samples, the covariance of the same estimator is found in two more
+// ways that use none of its derivatives, and all cover the same fresh draws of noise.
+//
+//   first_order_at_estimate  G D G' and J_p G D G' J_p' at the noisy sample, a new one for each draw: what a
+//                            user has. Its region lies in the tangent at the estimate.
+//   first_order_at_truth     the same formula at the noise-free sample, one for all draws
+//   unscented_at_truth       spread of the estimates from 8 m sigma points around the noise-free sample
+//   monte_carlo_at_truth     covariance of the estimates from thousands of noises other than the fresh ones
+//
+// The last three lie in the tangent at the truth, so that they differ in nothing but the covariance. If the
+// formula is right, first_order_at_truth meets the other two where noise is small. Where all three at the
+// truth cover and first_order_at_estimate does not, evaluating at the estimate is what fails; where not even
+// the Monte-Carlo covariance covers 0.95, the errors are biased or far from Gaussian and no covariance can.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/core/work/progress.h"
+#include "experiments/trial/trial_range.h"
+
+namespace rcme {
+
+struct ValidityReferenceOptions {
+  std::vector<double> sigmas_px = {0.1, 0.5};
+  std::vector<int> nums_points = {8, 20, 100};
+  double baseline_m = 0.5;
+  int num_samples = 100;   // fixed noise-free samples per cell
+  int num_draws = 100;     // fresh draws of noise per sample
+  int num_noises = 2'000;  // draws for each Monte-Carlo covariance
+  std::uint64_t seed = 1;
+  int num_threads = 0;  // 0: one per core
+};
+
+// How often a region covered, [f or pose][covariance].
+using CoveredCounts = std::array<std::array<std::int64_t, 4>, 2>;
+
+// A cell is a number of points with a noise level, which varies faster.
+std::int64_t NumCells(const ValidityReferenceOptions& options);
+// Over these samples of a cell. Advances `progress`, if there is one, by one per sample.
+CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_t cell, TrialRange samples,
+                           Progress* progress);
+
+// validity_reference.csv: one row per cell, quantity and covariance. n is num_samples x num_draws; the exact
+// 95 % interval is of the mean coverage over these very samples, not over all that the family could give.
+// `counts_of` has those of all samples of a cell; without it they are computed.
+using CountsOfCell = std::function<CoveredCounts(std::uint32_t cell)>;
+std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of);
+std::string ValidityReferenceCsv(const ValidityReferenceOptions& options);
+
+}  // namespace rcme

@@ -1,0 +1,29 @@
+// CRC-32 of what files hold. It finds accidents: every flip of one bit of a number or a text, any other change with
+// probability 1 - 2^-32. It is no signature: who changes a file on purpose can compute it again.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rcme {
+
+// Values as bytes, little-endian whatever the machine, in which nothing can pass for something else.
+class ChecksumBytes {
+ public:
+  explicit ChecksumBytes(size_t expected_size) { bytes_.reserve(expected_size); }
+
+  void Add(const std::string& text);
+  void Add(double number);  // every NaN is the same
+  void Add(std::uint64_t word);
+
+  std::uint32_t Checksum() const;
+
+ private:
+  std::string bytes_;
+};
+
+// Of some texts in order; where one ends and the next begins counts.
+std::uint32_t ChecksumOf(const std::vector<std::string>& texts);
+
+}  // namespace rcme

@@ -1,0 +1,68 @@
+// The file of one shard's part of a work, or of several that were put together: what each piece gave, every
+// number to its last bit, and of which work it is. Lines of JSON: the first describes the part and counts its
+// pieces, each of the others is one piece, ordered by group and number.
+//
+// Every line begins with a checksum (CRC-32) of what follows it, a piece's also of the first line's checksum,
+// so that no line of another part, or of another state of this one, passes. Like those of result files it is
+// against accidents, not against forgery: what a piece gave is checked again by who counts it.
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+#include "experiments/core/work/piece_plan.h"
+#include "experiments/core/text/program_name.h"
+
+namespace rcme {
+
+struct PieceResult {
+  std::string json;  // what the piece gave: the text of a JSON value on one line, equal where the results are
+  double seconds = 0.0;  // of processor time; what the piece gave does not depend on it
+};
+
+struct Part {
+  std::string work, identity;  // as PiecePlan, the latter as IdentityOf
+  Shard shard;                 // number 0: of several
+  TrialOrigin origin;
+  std::map<PiecePlace, PieceResult> results;  // of the pieces that are done
+};
+
+// Of a file. The first line of the largest study (100,000 conditions) has some 60 MB, the largest piece (a
+// tuning of 20,000 settings) 300 kB, the outcomes of a whole audit 100 MB.
+inline constexpr size_t kMaxPartBytes = size_t{1} << 30;
+inline constexpr size_t kMaxPartLineBytes = size_t{64} << 20;
+inline constexpr size_t kMaxPieceBytes = size_t{8} << 20;
+
+// A text as the file holds it: what is no UTF-8 is replaced.
+std::string AsStored(const std::string& text);
+
+// JSON has finite numbers alone; these come back to their last bit whatever they are. NaN has a sign: tables
+// print it. NumberFrom throws std::invalid_argument for what is no number.
+nlohmann::ordered_json NumberAsJson(double x);
+double NumberFrom(const nlohmann::ordered_json& json);
+
+// What a piece gave, for who counts it. Throws std::exception for what is no JSON, or lists within lists
+// deeper than any piece has them.
+nlohmann::ordered_json ParsePiece(const std::string& json);
+// One of the whole numbers in it. Throws std::exception for what is none in 0, ..., most.
+std::int64_t CountFrom(const nlohmann::ordered_json& json, std::int64_t most);
+// Throws std::invalid_argument where `json` is no list of so many.
+void RequireSize(const nlohmann::ordered_json& json, size_t size);
+
+std::string PartAsText(const Part& part);
+
+// Throws InputError where it cannot be written, or would be too long to be read.
+void WritePart(const std::string& path, const Part& part);
+
+// Throws InputError that names the path, the line and what is wrong for a file that is no such part, is
+// damaged, or is longer than a part can be. Memory is that of what is kept, and a line.
+Part ReadPart(const std::string& path);
+// The same of its text; `name` is what messages call it.
+Part ParsePart(std::string_view text, const std::string& name);
+
+// Whether the file begins as a part does, of whatever format; false where it cannot be read.
+bool IsPart(const std::string& path);
+
+}  // namespace rcme

@@ -1,0 +1,272 @@
+#include "experiments/real/answer/estimate_output.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "experiments/real/answer/motion_words.h"
+#include "experiments/real/answer/refusal_advice.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/study/estimator_spec.h"
+#include "parameters/probability_text.h"
+#include "peers/outside_answer.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+// The row-major numbers of a matrix.
+std::vector<double> RowMajor(const Eigen::MatrixXd& matrix) {
+  std::vector<double> numbers;
+  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) numbers.push_back(matrix(r, c));
+  }
+  return numbers;
+}
+
+std::string Vector(const Eigen::Vector3d& v) {
+  return fmt::format("({:.3f}, {:.3f}, {:.3f})", v.x(), v.y(), v.z());
+}
+
+std::string Percent(double share) { return std::isnan(share) ? "?" : fmt::format("{:.0f} %", 100.0 * share); }
+
+std::string RotationText(const Eigen::Matrix3d& R) {
+  std::string text;
+  for (int row = 0; row < 3; ++row)
+    text += fmt::format("  R {:>12.8f} {:>12.8f} {:>12.8f}\n", R(row, 0), R(row, 1), R(row, 2));
+  return text;
+}
+
+// Without a direction the rotation is all there is.
+std::string RotationAloneText(const MotionEstimate& estimate) {
+  const Eigen::Vector3d sd_deg = kDegPerRad * estimate.pose_cov.topLeftCorner<3, 3>().diagonal().cwiseSqrt();
+  return fmt::format(
+      "rotation of camera 2 from camera 1 (X2 = R X1 + t; t is not known)\n{}standard deviations (deg), if "
+      "there is no translation: {:.4f} {:.4f} {:.4f}\n",
+      RotationText(estimate.cam2_from_cam1.R), sd_deg(0), sd_deg(1), sd_deg(2));
+}
+
+std::string FoundText(const RelativePose& pose, const MotionSpread& spread) {
+  const Turn turn = TurnOf(pose.R);
+  std::string text = "\nFound: how camera 2 stands to camera 1 (x to the right, y down, z forward)\n";
+  text += fmt::format("  turned     {:.4g} deg (sd {:.2g})", turn.angle_deg, spread.angle_sd_deg);
+  // Of an angle within its noise the axis is noise.
+  if (turn.angle_deg > 3.0 * spread.angle_sd_deg) {
+    text += fmt::format(": {}\n             about the axis {} of camera 1", turn.words,
+                        Vector(turn.axis_in_cam1));
+  }
+  text +=
+      fmt::format("\n  stands     {}: towards {} from camera 1\n", PlaceInWords(pose), Vector(PlaceOf(pose)));
+  text += fmt::format("             sd of the direction {:.2g} deg, across {:.2g} deg\n",
+                      spread.direction_sd_deg(0), spread.direction_sd_deg(1));
+  text += "  cam2_from_cam1, X2 = R X1 + t, |t| = 1\n";
+  for (int row = 0; row < 3; ++row) {
+    text += fmt::format("  R {:>12.8f} {:>12.8f} {:>12.8f}   t {:>12.8f}\n", pose.R(row, 0), pose.R(row, 1),
+                        pose.R(row, 2), pose.t(row));
+  }
+  return text;
+}
+
+// The bounds of a stated probability are options of the estimator.
+std::string BoundsText(const EstimatorSpec& spec) {
+  std::string rotation, direction;
+  for (const auto& [option, value] : spec.options) {
+    if (option == "max_rotation_error_deg") rotation = value;
+    if (option == "max_direction_error_deg") direction = value;
+  }
+  if (rotation.empty() || direction.empty()) return "wrong";
+  return fmt::format("rotation off by more than {} deg or direction by {} deg", rotation, direction);
+}
+
+std::string SureText(const MotionEstimate& estimate, const MotionSpread& spread, const EstimatorSpec& spec) {
+  std::string text = "\nHow sure\n";
+  if (std::isnan(estimate.failure_probability)) {
+    text += "  P(wrong)   not stated by this estimator; rcme_calibrated states it\n";
+  } else {
+    text += fmt::format("  P(wrong)   {}  ({})\n", ProbabilityText(estimate.failure_probability),
+                        BoundsText(spec));
+  }
+  text += fmt::format(
+      "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
+      spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
+      spread.direction_95_deg(0), spread.direction_95_deg(1));
+  const MotionMode* found = RunnerUpOf(estimate);
+  if (found == nullptr) return text;
+  const MotionMode& other = *found;
+  const RelativePose &a = estimate.cam2_from_cam1, &b = other.cam2_from_cam1;
+  text += fmt::format(
+      "  otherwise  with probability {:.2g} a motion {:.3g} deg away in rotation,\n             {:.3g} deg "
+      "in "
+      "direction: {}\n",
+      other.weight, kDegPerRad * RotationAngleBetween(a.R, b.R), kDegPerRad * AngleBetween(a.t, b.t),
+      PlaceInWords(b));
+  return text;
+}
+
+std::string EvidenceText(const MotionEvidence& e) {
+  std::string text = "\nWhat it rests on\n";
+  text += fmt::format("  inliers    {} of {} matches ({})\n", e.num_inliers, e.num_matches,
+                      Percent(1.0 * e.num_inliers / std::max(e.num_matches, 1)));
+  if (std::isnan(e.sigma_px)) return text + "  too few distinct ones to say more\n";
+  text += fmt::format("  noise      {:.2g} px (sd {:.1g}) in their residuals, {:.2g} px assumed\n",
+                      e.sigma_px, e.sigma_sd_px, e.sigma_assumed_px);
+  text +=
+      fmt::format("  parallax   median {:.2g} deg, {:.0f} times its noise; {} show more than a rotation\n",
+                  e.parallax_median_deg, e.parallax_to_noise, Percent(e.parallax_share));
+  return text + fmt::format("  plane      {} could lie on one plane\n", Percent(e.planar_share));
+}
+
+// What a person had better know before the motion is used.
+std::string WarningsText(const PairAnswer& answer) {
+  const MotionEvidence& e = answer.evidence;
+  std::string text;
+  if (e.DoesNoiseDisagree()) {
+    text += fmt::format("warning: the residuals say {:.2g} px where {:.2g} px was assumed; ", e.sigma_px,
+                        e.sigma_assumed_px);
+    text +=
+        std::isnan(answer.estimate.sigma_estimated_px)
+            ? fmt::format("inliers and covariance\n  rest on the assumption: --sigma {:.2g}\n", e.sigma_px)
+            : "the covariance goes\n  by the residuals\n";
+  }
+  if (e.parallax_to_noise < 3.0)
+    text += "warning: the parallax hardly exceeds its noise: the direction may be anything\n";
+  if (e.planar_share > 0.9 && e.parallax_to_noise >= 3.0)
+    text += "warning: nearly all inliers lie on one plane: a second motion explains them as well\n";
+  if (answer.estimate.failed_by_kappa)
+    text += "the paper's failure flag is set: refinement lost half of the inliers\n";
+  return text.empty() ? text : "\n" + text;
+}
+
+std::string TruthText(const PairAnswer& answer) {
+  const TrialRecord& record = answer.record;
+  if (std::isnan(record.rotation_error_deg)) return {};
+  return fmt::format(
+      "\nAgainst the file's true motion\n  rotation error {:.4f} deg, direction error {:.4f} deg\n"
+      "  normalised error squared (5 degrees of freedom, 95 % below 11.07): {:.2f};\n  {}\n",
+      record.rotation_error_deg, record.direction_error_deg, record.nees,
+      answer.has_truth_sd ? "the true motion's own error (truth_sd) is part of it"
+                          : "the file's motion is of unknown accuracy (no truth_sd)");
+}
+
+// Of an estimator that states them; see motion_estimate.h.
+void AddProbabilities(const MotionEstimate& estimate, Json* json) {
+  (*json)["failure_probability"] = estimate.failure_probability;
+  (*json)["sigma_estimated_px"] = estimate.sigma_estimated_px;
+  (*json)["sigma_estimated_sd_px"] = estimate.sigma_estimated_sd_px;
+  (*json)["inlier_probabilities"] = estimate.inlier_probabilities;
+  (*json)["other_modes"] = Json::array();
+  for (const MotionMode& mode : estimate.other_modes) {
+    (*json)["other_modes"].push_back(
+        {{"weight", mode.weight},
+         {"explained_share", mode.explained_share},
+         {"R", RowMajor(mode.cam2_from_cam1.R)},
+         {"t", RowMajor(mode.cam2_from_cam1.t)},
+         {"pose_cov", RowMajor(CovarianceWithTranslation(mode.pose_cov, mode.cam2_from_cam1.t))}});
+  }
+}
+
+Json EvidenceAsJson(const MotionEvidence& e) {
+  return {{"sigma_px", JsonNumber(e.sigma_px)},
+          {"sigma_sd_px", JsonNumber(e.sigma_sd_px)},
+          {"sigma_assumed_px", e.sigma_assumed_px},
+          {"noise_disagrees", e.DoesNoiseDisagree()},
+          {"parallax_median_deg", JsonNumber(e.parallax_median_deg)},
+          {"parallax_to_noise", JsonNumber(e.parallax_to_noise)},
+          {"parallax_share", JsonNumber(e.parallax_share)},
+          {"planar_share", JsonNumber(e.planar_share)}};
+}
+
+}  // namespace
+
+std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec) {
+  const MotionEstimate& estimate = answer.estimate;
+  std::string text = fmt::format("{}: {} - {}\n", spec.label, StatusName(estimate.status), estimate.message);
+  if (estimate.status != MotionStatus::kOk) {
+    if (estimate.status == MotionStatus::kDirectionNotObservable) text += RotationAloneText(estimate);
+    text += "what to try\n";
+    for (const std::string& sentence : AdviceFor(estimate, spec)) text += "  " + sentence + "\n";
+    return text;
+  }
+  const MotionSpread spread = SpreadOf(estimate.cam2_from_cam1, estimate.pose_cov);
+  return text + FoundText(estimate.cam2_from_cam1, spread) + SureText(estimate, spread, spec) +
+         EvidenceText(answer.evidence) + TruthText(answer) + WarningsText(answer);
+}
+
+Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
+  const MotionEstimate& estimate = answer.estimate;
+  const TrialRecord& record = answer.record;
+  Json json = {{"status", StatusName(estimate.status)},
+               {"message", estimate.message},
+               {"estimator", spec.label},
+               {"R", nullptr},
+               {"t", nullptr},
+               {"pose_cov", nullptr},
+               {"num_matches", record.num_matches},
+               {"num_inliers", record.num_inliers},
+               {"failed_by_kappa", nullptr}};
+  if (estimate.status == MotionStatus::kDirectionNotObservable) {
+    json["R"] = RowMajor(estimate.cam2_from_cam1.R);
+    json["rotation_cov"] = RowMajor(estimate.pose_cov.topLeftCorner<3, 3>());
+  }
+  if (estimate.status != MotionStatus::kOk) {
+    json["what_to_try"] = AdviceFor(estimate, spec);
+    return json;
+  }
+  json["R"] = RowMajor(estimate.cam2_from_cam1.R);
+  json["t"] = RowMajor(estimate.cam2_from_cam1.t);
+  json["pose_cov"] = RowMajor(CovarianceWithTranslation(estimate.pose_cov, estimate.cam2_from_cam1.t));
+  json["failed_by_kappa"] = estimate.failed_by_kappa;
+  if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
+  json["evidence"] = EvidenceAsJson(answer.evidence);
+  if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
+  if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
+  if (!std::isnan(record.nees)) {
+    json["nees"] = JsonNumber(record.nees);
+    json["truth_sd"] = answer.has_truth_sd ? "stated" : "unknown";
+  }
+  return json;
+}
+
+std::vector<std::string> AnswerColumns(bool with_errors) {
+  std::vector<std::string> columns = {"pair", "inliers", "turned (sd)", "stands (sd)", "P(wrong)"};
+  if (with_errors) columns.push_back("errors");
+  columns.push_back("status");
+  return columns;
+}
+
+std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer, bool with_errors) {
+  const MotionEstimate& estimate = answer.estimate;
+  const TrialRecord& record = answer.record;
+  std::vector<std::string> row(AnswerColumns(with_errors).size(), "-");
+  row.front() = name;
+  row.back() = StatusName(estimate.status);
+  row[1] = fmt::format("{}/{}", record.num_inliers, record.num_matches);
+  if (estimate.status != MotionStatus::kOk) return row;
+  const RelativePose& pose = estimate.cam2_from_cam1;
+  const MotionSpread spread = SpreadOf(pose, estimate.pose_cov);
+  row[2] = fmt::format("{:.2f} ({:.2g})", TurnOf(pose.R).angle_deg, spread.angle_sd_deg);
+  row[3] = fmt::format("{} ({:.2g})", PlaceInWords(pose), spread.direction_sd_deg(0));
+  if (!std::isnan(estimate.failure_probability)) row[4] = ProbabilityText(estimate.failure_probability);
+  if (with_errors && !std::isnan(record.rotation_error_deg))
+    row[5] = fmt::format("{:.2g}/{:.2g}", record.rotation_error_deg, record.direction_error_deg);
+  return row;
+}
+
+std::string AnswerLegend(bool with_errors) {
+  return fmt::format(
+      "turned: by how much camera 2 is rotated, deg; stands: where it is, seen from camera 1; (sd): their "
+      "standard\ndeviations, deg{}\n",
+      with_errors ? "; errors: of rotation/direction against the file's true motion, deg" : "");
+}
+
+bool IsBadInput(MotionStatus status) {
+  return status == MotionStatus::kInvalidInput || status == MotionStatus::kTooFewMatches ||
+         status == MotionStatus::kDegenerateMatches;
+}
+
+}  // namespace rcme

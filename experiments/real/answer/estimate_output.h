@@ -1,0 +1,35 @@
+// The answer to one pair of images, for people and for programs.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/real/answer/motion_evidence.h"
+#include "experiments/study/estimator_spec.h"
+#include "experiments/trial/trial.h"
+
+namespace rcme {
+
+struct PairAnswer {
+  MotionEstimate estimate;  // judged (trial/answer_check.h)
+  TrialRecord record;       // scored against the file's truth, where it has one
+  MotionEvidence evidence;  // only of a motion (status ok)
+  bool has_truth_sd = false;
+};
+
+// What was found, how sure, what it rests on; of a refusal why, and what to try.
+std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec);
+
+// The same for a program, but for the format (core/text/json_output.h).
+nlohmann::ordered_json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec);
+
+// One row of a table over pairs, and what its columns mean; that of the errors only `with_errors`.
+std::vector<std::string> AnswerColumns(bool with_errors);
+std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer, bool with_errors);
+std::string AnswerLegend(bool with_errors);
+
+// Whether the file, not the problem, is to blame: too few matches, bad numbers, points on one line.
+bool IsBadInput(MotionStatus status);
+
+}  // namespace rcme

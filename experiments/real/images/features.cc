@@ -1,0 +1,157 @@
+#include "experiments/real/images/features.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/features2d.hpp>
+
+namespace rcme {
+namespace {
+
+constexpr int kOrbFeatures = 2000;
+constexpr float kSiftShiftPx = 0.25f;
+
+cv::Ptr<cv::Feature2D> Make(const DetectorOptions& options) {
+  switch (options.detector) {
+    case Detector::kSift:
+      return cv::SIFT::create(options.max_features);
+    case Detector::kOrb:
+      return cv::ORB::create(options.max_features > 0 ? options.max_features : kOrbFeatures);
+    case Detector::kAkaze:
+      break;
+  }
+  return cv::AKAZE::create();
+}
+
+// The size of what the detector finds at its finest scale: for SIFT sigma 1.6 2^(1/3) of the doubled image,
+// as a diameter; ORB's patch; AKAZE's first sigma 1.6 with its factor of 1.5, as a diameter.
+double FinestSize(Detector detector) {
+  switch (detector) {
+    case Detector::kSift:
+      return 1.6 * 1.2599210498948732;
+    case Detector::kOrb:
+      return 31.0;
+    case Detector::kAkaze:
+      break;
+  }
+  return 4.8;
+}
+
+// The descriptors as a matrix with a row each, which shares their memory.
+cv::Mat MatrixOf(const Features& features) {
+  const int num_rows = static_cast<int>(features.key_points.size());
+  const int num_bytes = static_cast<int>(features.descriptors.size()) / num_rows;
+  auto* bytes = const_cast<std::uint8_t*>(features.descriptors.data());
+  return features.is_binary ? cv::Mat(num_rows, num_bytes, CV_8UC1, bytes)
+                            : cv::Mat(num_rows, num_bytes / static_cast<int>(sizeof(float)), CV_32FC1, bytes);
+}
+
+// Of each key point of image 1 the nearest of image 2, where it passes the ratio test.
+std::vector<FeatureMatch> NearestOf(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
+                                    double max_ratio) {
+  std::vector<std::vector<cv::DMatch>> nearest;
+  cv::BFMatcher(is_binary ? cv::NORM_HAMMING : cv::NORM_L2).knnMatch(rows1, rows2, nearest, 2);
+  std::vector<FeatureMatch> matches;
+  for (const std::vector<cv::DMatch>& two : nearest) {
+    if (two.size() < 2 || two[0].distance >= max_ratio * two[1].distance) continue;
+    matches.push_back(
+        {static_cast<std::uint32_t>(two[0].queryIdx), static_cast<std::uint32_t>(two[0].trainIdx)});
+  }
+  return matches;
+}
+
+// Those whose key point of image 2 has no nearer one in image 1. SIFT finds a point with two orientations
+// twice, at the same place: of matches between the same two places the first is kept.
+void KeepMutual(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
+                std::vector<FeatureMatch>* matches) {
+  std::vector<cv::DMatch> back;
+  cv::BFMatcher(is_binary ? cv::NORM_HAMMING : cv::NORM_L2).match(rows2, rows1, back);
+  std::erase_if(*matches, [&](const FeatureMatch& match) {
+    return static_cast<std::uint32_t>(back[match.at2].trainIdx) != match.at1;
+  });
+}
+
+// Of the matches at one place of an image the first.
+void KeepOnePerPlace(const std::vector<KeyPoint>& key_points, std::uint32_t FeatureMatch::*at,
+                     std::vector<FeatureMatch>* matches) {
+  std::map<std::pair<float, float>, int> num_at;
+  std::erase_if(*matches, [&](const FeatureMatch& match) {
+    const KeyPoint& point = key_points[match.*at];
+    return num_at[{point.x_px, point.y_px}]++ > 0;
+  });
+}
+
+}  // namespace
+
+const std::vector<std::pair<std::string, Detector>>& DetectorNames() {
+  static const std::vector<std::pair<std::string, Detector>> names = {
+      {"sift", Detector::kSift}, {"orb", Detector::kOrb}, {"akaze", Detector::kAkaze}};
+  return names;
+}
+
+size_t CountDescriptorBytes(Detector detector) {
+  switch (detector) {
+    case Detector::kSift:
+      return 128 * sizeof(float);
+    case Detector::kOrb:
+      return 32;
+    case Detector::kAkaze:
+      break;
+  }
+  return 61;  // 486 bits
+}
+
+Features DetectFeatures(const GreyImage& image, const DetectorOptions& options) {
+  const cv::Mat pixels(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.grey.data()));
+  std::vector<cv::KeyPoint> key_points;
+  cv::Mat descriptors;
+  Make(options)->detectAndCompute(pixels, cv::noArray(), key_points, descriptors);
+  std::vector<int> order(key_points.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
+  if (options.max_features > 0 && order.size() > static_cast<size_t>(options.max_features)) {
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+      return key_points[static_cast<size_t>(a)].response > key_points[static_cast<size_t>(b)].response;
+    });
+    order.resize(static_cast<size_t>(options.max_features));
+    std::sort(order.begin(), order.end());
+  }
+  const float shift = options.detector == Detector::kSift ? kSiftShiftPx : 0.0f;
+  Features features;
+  features.is_binary = descriptors.depth() == CV_8U;
+  features.scale = image.scale;
+  const float scale = static_cast<float>(image.scale), middle = 0.5f * (scale - 1.0f);
+  for (const int i : order) {
+    const cv::KeyPoint& point = key_points[static_cast<size_t>(i)];
+    features.key_points.push_back(
+        {scale * (point.pt.x - shift) + middle, scale * (point.pt.y - shift) + middle, scale * point.size});
+    const std::uint8_t* row = descriptors.ptr(i);
+    features.descriptors.insert(features.descriptors.end(), row,
+                                row + descriptors.step1() * descriptors.elemSize1());
+  }
+  return features;
+}
+
+std::vector<FeatureMatch> MatchFeatures(const Features& features1, const Features& features2,
+                                        const MatcherOptions& options) {
+  if (features1.key_points.empty() || features2.key_points.size() < 2) return {};
+  const cv::Mat rows1 = MatrixOf(features1), rows2 = MatrixOf(features2);
+  std::vector<FeatureMatch> matches = NearestOf(rows1, rows2, features1.is_binary, options.max_ratio);
+  if (options.is_mutual) {
+    KeepMutual(rows1, rows2, features1.is_binary, &matches);
+    KeepOnePerPlace(features1.key_points, &FeatureMatch::at1, &matches);
+    KeepOnePerPlace(features2.key_points, &FeatureMatch::at2, &matches);
+  }
+  return matches;
+}
+
+double SigmaOfMatch(Detector detector, const KeyPoint& point1, const KeyPoint& point2, int scale1,
+                    int scale2) {
+  constexpr double kFinestSigmaPx = 0.5, kGrowth = 0.7;
+  const double size =
+      std::hypot(point1.size_px / static_cast<float>(scale1), point2.size_px / static_cast<float>(scale2)) /
+      std::sqrt(2.0);
+  const double scale = std::hypot(scale1, scale2) / std::sqrt(2.0);
+  return scale * kFinestSigmaPx * std::pow(size / FinestSize(detector), kGrowth);
+}
+
+}  // namespace rcme

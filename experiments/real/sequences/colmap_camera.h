@@ -1,0 +1,30 @@
+// The cameras of COLMAP, in a database and in a reconstruction.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "experiments/real/sequences/lens.h"
+
+namespace rcme {
+
+// COLMAP's pixel (0.5, 0.5) is the centre of the top-left one, here (0, 0) is.
+constexpr double kColmapHalfPixel = 0.5;
+
+struct ColmapCamera {
+  std::int64_t model = 0;  // COLMAP's number
+  std::int64_t width = 0, height = 0;
+  std::vector<double> parameters;  // as COLMAP orders them: f or fx fy, cx cy, distortion
+};
+
+// How many parameters the model has. Throws InputError that begins with `place`: the model is not supported.
+size_t NumColmapParameters(std::int64_t model, const std::string& place);
+// The number of a model's name, as cameras.txt has it. Throws InputError as above.
+std::int64_t ColmapModelNumber(const std::string& name, const std::string& place);
+
+// Its principal point with (0, 0) a pixel's centre. Throws InputError that begins with `place`: another
+// number of parameters, a size or a focal length that no camera has.
+Lens LensOfColmapCamera(const ColmapCamera& camera, const std::string& place);
+
+}  // namespace rcme

@@ -1,0 +1,44 @@
+// Data sets that hold matches already: their pairs one after another.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "experiments/data/match_file.h"
+#include "experiments/real/sequences/sequence.h"
+
+namespace rcme {
+
+struct ListedPair {
+  MatchFile file;  // in pixels of cameras without distortion; truth where the data set has one
+  double baseline = std::numeric_limits<double>::quiet_NaN();  // of the true motion; NaN: not known
+  bool is_direction_weak = false;                              // as the data set says itself
+};
+
+class ListedPairs {
+ public:
+  virtual ~ListedPairs() = default;
+  virtual size_t size() const = 0;
+  virtual std::string IdOf(size_t i) const = 0;  // what its match file is called
+  virtual ListedPair Read(size_t i) = 0;         // throws InputError that names the file
+  virtual std::string Note() const { return {}; }
+};
+
+// The database of COLMAP (SQLite: cameras, images, keypoints, matches), or the folder of a database.db.
+// Matches are those of the table `matches`, before COLMAP's own verification. The poses of a reconstruction
+// (images.txt or images.bin) are taken as the truth, and with them its cameras, which were adjusted together
+// with the poses: those of the database are guesses from before. COLMAP's pixel (0.5, 0.5) is the centre of
+// the top-left one; half a pixel is taken from key points and principal point.
+std::unique_ptr<ListedPairs> OpenColmap(const DatasetOptions& options);
+
+// An HDF5 file as posebench keeps pairs, a group each with x1, x2, R, t, camera1, camera2, taken one at a time.
+// Cameras and pixels are COLMAP's. Each pair is read in a process of its own (posebench_file.h): a file that crashes
+// libhdf5 is an InputError. To be called where no other thread runs. Throws InputError where the program was built
+// without the library.
+std::unique_ptr<ListedPairs> OpenPosebench(const DatasetOptions& options);
+
+// A folder of match files (match_file.h).
+std::unique_ptr<ListedPairs> OpenMatchFiles(const DatasetOptions& options);
+
+}  // namespace rcme

@@ -1,0 +1,51 @@
+#include "experiments/real/truth_free/pair_set.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+
+#include "experiments/data/match_file.h"
+#include "experiments/data/match_folder.h"
+
+namespace rcme {
+
+std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px) {
+  std::map<std::string, PairSet> sets;
+  CameraWarnings warnings;
+  for (const std::filesystem::path& path : MatchFilesIn(folder)) {
+    MatchFile file = ReadMatchFile(path.string());
+    warnings.Add(file.doubts);
+    PairSet& set = sets[file.scene];
+    set.name = file.scene;
+    NamedPair pair{path.filename().string(), file.image1, file.image2, {}, file.seconds_between};
+    pair.problem = ProblemOf(std::move(file), sigma_px);
+    set.pairs.push_back(std::move(pair));
+  }
+  warnings.Print();
+  std::vector<PairSet> all;
+  for (auto& [scene, set] : sets) all.push_back(std::move(set));
+  return all;
+}
+
+std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan) {
+  std::vector<PairSet> all;
+  for (const Condition& condition : plan.conditions) {
+    PairSet set{
+        condition.levels.empty() ? plan.study.name : fmt::format("{}", fmt::join(condition.levels, ", ")),
+        {}};
+    // A simulated motion is even in time, and each pair has the same; real pairs of a study do not say.
+    const double seconds_between =
+        condition.source->SharedScene() ? std::numeric_limits<double>::quiet_NaN() : 1.0;
+    for (int trial = 0; trial < condition.num_trials; ++trial) {
+      const auto number = static_cast<std::uint32_t>(trial);
+      set.pairs.push_back({fmt::format("{} trial {}", set.name, trial), "", "",
+                           condition.source->Make(NameOfScene(plan, condition, number)).problem,
+                           seconds_between});
+    }
+    all.push_back(std::move(set));
+  }
+  return all;
+}
+
+}  // namespace rcme

@@ -1,0 +1,83 @@
+#include "experiments/real/truth_free/planted_fault.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+
+namespace rcme {
+namespace {
+
+class ScaledCovariance : public MotionEstimator {
+ public:
+  ScaledCovariance(std::unique_ptr<MotionEstimator> estimator, double factor)
+      : estimator_(std::move(estimator)), factor_(factor) {}
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    MotionEstimate estimate = estimator_->Estimate(problem, rng);
+    estimate.pose_cov *= factor_;
+    return estimate;
+  }
+
+ private:
+  std::unique_ptr<MotionEstimator> estimator_;
+  double factor_;
+};
+
+// Every fault with its value and what is allowed, as options are.
+std::vector<Parameter> Parameters(PlantedFaults& faults) {
+  std::vector<Parameter> parameters = {
+      Parameter::Real("covariance", &faults.covariance, {1e-6, 1e6}, "",
+                      "the estimator's covariances, times"),
+      Parameter::Real("sigma", &faults.sigma, {1e-3, 1e3}, "", "the assumed noise level, times")};
+  for (const CameraFault fault : kCameraFaults) {
+    const auto i = static_cast<Eigen::Index>(fault);
+    // Nobody knows the motion along which rows were read; the last ones are no faults that are named.
+    if (fault == CameraFault::kReadoutTime || i >= kNumNamedFaults) continue;
+    const double greatest =
+        fault == CameraFault::kFocalLength || fault == CameraFault::kDistortion ? 0.5 : 1e3;
+    parameters.push_back(Parameter::Real(TextOf(fault).name, &faults.camera(i), {-greatest, greatest}, "",
+                                         TextOf(fault).words));
+  }
+  return parameters;
+}
+
+}  // namespace
+
+std::string PlantableFaults() {
+  PlantedFaults faults;
+  std::string names;
+  for (const Parameter& parameter : Parameters(faults))
+    names += (names.empty() ? "" : ", ") + parameter.name();
+  return names;
+}
+
+PlantedFaults ParsePlantedFaults(const std::vector<std::string>& settings) {
+  PlantedFaults faults;
+  const std::vector<Parameter> parameters = Parameters(faults);
+  for (const std::string& setting : settings) {
+    const size_t equals = std::min(setting.find('='), setting.size());
+    const auto found = std::ranges::find(parameters, setting.substr(0, equals), &Parameter::name);
+    if (found == parameters.end() || equals == setting.size())
+      throw InputError(fmt::format("--plant: '{}' is not allowed; give NAME=VALUE, NAME one of: {}", setting,
+                                   PlantableFaults()));
+    found->SetFromText(setting.substr(equals + 1));
+  }
+  return faults;
+}
+
+PairSet PlantFaultsIn(PairSet set, const PlantedFaults& faults) {
+  for (NamedPair& pair : set.pairs) {
+    pair.problem = PlantFaults(std::move(pair.problem), faults.camera);
+    pair.problem.sigma_px *= faults.sigma;
+  }
+  return set;
+}
+
+std::unique_ptr<MotionEstimator> ScaleCovariances(std::unique_ptr<MotionEstimator> estimator, double factor) {
+  return std::make_unique<ScaledCovariance>(std::move(estimator), factor);
+}
+
+}  // namespace rcme

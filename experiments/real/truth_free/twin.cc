@@ -1,0 +1,81 @@
+#include "experiments/real/truth_free/twin.h"
+
+#include <bit>
+#include <cmath>
+
+#include "estimator/geometry/sampson.h"
+#include "estimator/noise_scale.h"
+#include "experiments/data/data_source.h"
+#include "stats/median_ratio.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
+
+// A key point's stream: by its image and place (FNV-1a, folded to 48 bits).
+std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const auto add = [&hash](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3; };
+  for (const char letter : image) add(static_cast<unsigned char>(letter));
+  for (const double x : x_px) add(std::bit_cast<std::uint64_t>(x));
+  hash ^= hash >> 32;
+  return (hash * 0x9e3779b97f4a7c15) >> 16;
+}
+
+}  // namespace
+
+Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose) {
+  return FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
+}
+
+std::uint64_t StreamKeyOf(const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char letter : name) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3;
+  return (hash >> 48 ^ hash) & 0xffff'ffff'ffff;
+}
+
+Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match) {
+  for (int round = 0; round < 2; ++round) {
+    const Eigen::Vector4d delta = SampsonVector(F, match);
+    match.x1_px += delta.head<2>();
+    match.x2_px += delta.tail<2>();
+  }
+  return match;
+}
+
+double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate) {
+  if (std::isfinite(estimate.sigma_estimated_px)) return estimate.sigma_estimated_px;
+  const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
+  std::vector<double> sizes;
+  for (const int index : estimate.inliers) {
+    const auto i = static_cast<size_t>(index);
+    sizes.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[i])) / NoiseScaleAt(problem, i));
+  }
+  return MedianOf(std::move(sizes)) / kNormalQuartile;
+}
+
+NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
+                 std::uint32_t twin) {
+  const Eigen::Matrix3d F = FundamentalOf(pair.problem, estimate.cam2_from_cam1);
+  const double sigma_px = NoiseOf(pair.problem, estimate);
+  const auto noise_of = [&](const std::string& image, const Eigen::Vector2d& x_px, double scale) {
+    RandomStream rng = StreamFor({seed, KeyOf(image, x_px), twin, 0}, StreamPurpose::kNoise);
+    const double x = rng.Normal(), y = rng.Normal();
+    return Eigen::Vector2d(scale * sigma_px * x, scale * sigma_px * y);
+  };
+  const std::string image1 = pair.image1.empty() ? pair.name + "/1" : pair.image1;
+  const std::string image2 = pair.image2.empty() ? pair.name + "/2" : pair.image2;
+  NamedPair made = pair;
+  for (const int i : estimate.inliers) {
+    Correspondence& match = made.problem.matches[static_cast<size_t>(i)];
+    const Correspondence observed = match;
+    const double scale = NoiseScaleAt(pair.problem, static_cast<size_t>(i));
+    match = Snapped(F, match);
+    match.x1_px += noise_of(image1, observed.x1_px, scale);
+    match.x2_px += noise_of(image2, observed.x2_px, scale);
+  }
+  return made;
+}
+
+}  // namespace rcme

@@ -1,0 +1,32 @@
+// The simulated twin of a pair: what the matches would be if the estimate were the truth and errors
+// independent.
+#pragma once
+
+#include <string>
+
+#include "estimator/motion_estimate.h"
+#include "experiments/real/truth_free/pair_set.h"
+#include "stats/random.h"
+
+namespace rcme {
+
+// Names the random streams of a pair or a set by its name (FNV-1a, folded to the 48 bits of a condition).
+std::uint64_t StreamKeyOf(const std::string& name);
+
+Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose);
+
+// The match moved onto the nearest one that satisfies F, to second order of the distance.
+Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match);
+
+// Residual noise of the matches that agree with an answer, px, of one as noisy as the median
+// (MotionProblem::noise_scale): as the estimator says, else from the median of their residuals.
+double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate);
+
+// The inliers of an answer at the nearest points that satisfy it, with independent normal noise of its
+// standard deviation, times each match's noise_scale, anew; all other matches as they are. The noise is each
+// key point's own: matches that share one, of this or another pair of the image, share its noise. `twin`: the
+// number of the twin.
+NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
+                 std::uint32_t twin);
+
+}  // namespace rcme

@@ -1,0 +1,28 @@
+// What a simulated twin is fitted to: the noise, the layout and the motion of a scene.
+#pragma once
+
+#include "experiments/data/redraw.h"
+#include "experiments/real/truth_free/twin_source.h"
+
+namespace rcme {
+
+// What is measured on a scene. Medians over pairs, where nothing else is said.
+struct TwinFit {
+  int num_templates = 0;
+  RedrawSettings noise;            // of the semi-real twin (noise_fit.h)
+  RedrawSettings simulated_noise;  // of the simulated one: size, tails and correlation of neighbours
+  Camera camera1, camera2;         // of the first pair
+  int num_matches = 0;
+  double wrong_share = 0.0;           // mean over pairs
+  double wrong_agreeing_share = 0.0;  // of the wrong: another one within 30 px moves alike, to 10 px
+  double rotation_deg = 0.0, parallax_deg = 0.0;
+  double forwardness = 0.0;              // |t_z|
+  double nearest = 0.0, farthest = 0.0;  // 5 % and 95 % points of all depths, in baselines
+  double homography_share = 0.0;         // of the right matches: one homography explains them
+  double clark_evans = 0.0;              // of the right key points in image 1: 1 random, less: clustered
+  double twice_share = 0.0;              // of the right matches: another is within 1 px in image 1
+};
+// Throws InputError where no pair of the scene has a template.
+TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed);
+
+}  // namespace rcme

@@ -1,0 +1,202 @@
+#include "experiments/real/truth_free/twin_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "experiments/core/work/stop_request.h"
+#include "experiments/data/make_data.h"
+#include "experiments/real/truth_free/noise_fit.h"
+#include "experiments/real/truth_free/twin.h"
+#include "experiments/real/truth_free/twin_quantities.h"
+#include "experiments/real/truth_free/twin_settings.h"
+#include "parameters/input_error.h"
+#include "stats/shared_members.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kLeastPairs = 3;  // for a mean to be compared
+
+double MeanOf(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double x : values) sum += x;
+  return sum / static_cast<double>(values.size());
+}
+
+// The pairs of a scene with numbers of their images, what was observed, and what the twins of each gave.
+struct ComparedPair {
+  std::int64_t image1 = 0, image2 = 0;
+  Values observed, twins;
+};
+
+std::vector<PairEvent> EventsOf(const std::vector<ComparedPair>& pairs, size_t quantity) {
+  std::vector<PairEvent> events;
+  for (const ComparedPair& pair : pairs) {
+    for (const double x : pair.observed[quantity]) events.push_back({pair.image1, pair.image2, x != 0.0});
+  }
+  return events;
+}
+
+// Of a mean: observed values less what is predicted for the same pair, or for all where twins are not of one.
+std::vector<PairValue> DifferencesOf(const std::vector<ComparedPair>& pairs, size_t quantity, bool is_paired,
+                                     double prediction) {
+  std::vector<PairValue> differences;
+  for (const ComparedPair& pair : pairs) {
+    const std::vector<double>& twins = pair.twins[quantity];
+    if (pair.observed[quantity].empty() || (is_paired && twins.empty())) continue;
+    const double predicted = is_paired ? MeanOf(twins) : prediction;
+    differences.push_back({pair.image1, pair.image2, MeanOf(pair.observed[quantity]) - predicted});
+  }
+  return differences;
+}
+
+// The mean of what twins gave; of paired ones over the pairs that gave something too.
+double PredictionOf(const std::vector<ComparedPair>& pairs, size_t quantity, bool is_paired_mean) {
+  std::vector<double> all;
+  for (const ComparedPair& pair : pairs) {
+    const std::vector<double>& twins = pair.twins[quantity];
+    if (!is_paired_mean)
+      all.insert(all.end(), twins.begin(), twins.end());
+    else if (!twins.empty() && !pair.observed[quantity].empty())
+      all.push_back(MeanOf(twins));
+  }
+  return all.empty() ? kNaN : MeanOf(all);
+}
+
+std::optional<TwinComparison> Compared(const std::vector<ComparedPair>& pairs, size_t quantity,
+                                       const std::string& twin, double confidence) {
+  const QuantityText& text = kQuantityTexts[quantity];
+  const bool is_paired = twin == "semi_real" && !text.is_rate;
+  TwinComparison compared;
+  compared.quantity = text.name;
+  compared.twin = twin;
+  compared.is_rate = text.is_rate;
+  // Points of a simulated scene are not found twice.
+  compared.is_fitted = text.is_fitted && !(twin == "simulated" && quantity == kNearCorrelation);
+  compared.predicted = PredictionOf(pairs, quantity, is_paired);
+  if (std::isnan(compared.predicted)) return std::nullopt;
+  if (text.is_rate) {
+    const SharedMemberRate rate = MeasureSharedMemberRate(EventsOf(pairs, quantity), confidence);
+    if (rate.n == 0) return std::nullopt;
+    compared.n = rate.n;
+    compared.observed = rate.rate;
+    compared.joint = rate.interval;
+    return compared;
+  }
+  const SharedMemberMean mean =
+      MeasureSharedMemberMean(DifferencesOf(pairs, quantity, is_paired, compared.predicted), confidence);
+  if (mean.n < kLeastPairs) return std::nullopt;
+  compared.n = mean.n;
+  compared.observed = compared.predicted + mean.value;
+  compared.joint = {compared.predicted + mean.interval.lower, compared.predicted + mean.interval.upper};
+  if (quantity == kRotationSd || quantity == kDirectionSd) {
+    for (double* x : {&compared.observed, &compared.predicted, &compared.joint.lower, &compared.joint.upper})
+      *x = std::exp(*x);
+  }
+  return compared;
+}
+
+void AddComparisons(const std::vector<ComparedPair>& pairs, const std::string& twin, TwinReport* report) {
+  size_t num_compared = 0;
+  for (size_t q = 0; q < kNumQuantities; ++q) num_compared += Compared(pairs, q, twin, 0.95).has_value();
+  const double confidence = 1.0 - 0.05 / static_cast<double>(std::max<size_t>(num_compared, 1));
+  for (size_t q = 0; q < kNumQuantities; ++q) {
+    const std::optional<TwinComparison> compared = Compared(pairs, q, twin, confidence);
+    if (compared) report->comparisons.push_back(*compared);
+  }
+}
+
+Values Joined(Values a, const Values& b) {
+  for (size_t q = 0; q < kNumQuantities; ++q) a[q].insert(a[q].end(), b[q].begin(), b[q].end());
+  return a;
+}
+
+constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
+
+Values TwinValues(const TrialData& twin, const MotionEstimator& estimator, const StreamName& name) {
+  return ValuesOf(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
+}
+
+std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstimator& estimator,
+                                     std::uint64_t seed) {
+  std::map<std::string, std::int64_t> numbers;
+  const auto number_of = [&](const std::string& image, const std::string& otherwise) {
+    const std::string& name = image.empty() ? otherwise : image;
+    return numbers.try_emplace(name, static_cast<std::int64_t>(numbers.size())).first->second;
+  };
+  std::vector<ComparedPair> pairs;
+  for (const AnsweredTrial& one : source.pairs) {
+    if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
+    ComparedPair pair{number_of(one.image1, one.pair.origin + "/1"),
+                      number_of(one.image2, one.pair.origin + "/2"),
+                      ValuesOf(one.pair, one.estimate, estimator, {seed, StreamKeyOf(one.pair.origin), 0, 0}),
+                      {}};
+    pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
+}  // namespace
+
+int TwinReport::NumCompared(const std::string& twin, bool fitted) const {
+  return static_cast<int>(std::ranges::count_if(
+      comparisons, [&](const TwinComparison& c) { return c.twin == twin && c.is_fitted == fitted; }));
+}
+
+int TwinReport::NumWithin(const std::string& twin, bool fitted) const {
+  return static_cast<int>(std::ranges::count_if(comparisons, [&](const TwinComparison& c) {
+    return c.twin == twin && c.is_fitted == fitted && c.IsWithin();
+  }));
+}
+
+TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estimator,
+                          const std::string& folder, double assumed_sigma_px, std::uint64_t seed,
+                          int num_twins) {
+  TwinReport report;
+  report.scene = source.scene;
+  report.num_pairs = static_cast<int>(source.pairs.size());
+  report.fit = FitTwin(source, estimator, seed);
+  report.semi_real = SemiRealData(report.fit, folder, assumed_sigma_px);
+  std::vector<ComparedPair> pairs = ObservedOf(source, estimator, seed);
+  const Redraw redraw(report.fit.noise);
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    if (!source.pairs[i].exact) continue;
+    for (int k = 1; k <= num_twins; ++k) {
+      if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
+      const StreamName name{seed, StreamKeyOf(source.pairs[i].pair.origin),
+                            static_cast<std::uint32_t>(k) * kCallsOfOne, 0};
+      pairs[i].twins = Joined(
+          pairs[i].twins, TwinValues(redraw.Draw(*source.pairs[i].exact, name, source.pairs[i].noise_level),
+                                     estimator, name));
+    }
+  }
+  AddComparisons(pairs, "semi_real", &report);
+  try {
+    const double clustered_share = ClusteredShareOf(report.fit);
+    report.fit.simulated_noise =
+        FitSimulatedNoise(source, report.fit, clustered_share, estimator, assumed_sigma_px, seed);
+    report.simulated = SimulatedTwinData(report.fit, clustered_share, assumed_sigma_px);
+    const std::shared_ptr<const SimulatedData> data = MakeSimulatedData(report.simulated);
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      pairs[i].twins = Values();
+      for (int k = 1; k <= num_twins; ++k) {
+        if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
+        const StreamName name{
+            seed, StreamKeyOf(source.scene),
+            (static_cast<std::uint32_t>(i) * 1000 + static_cast<std::uint32_t>(k)) * kCallsOfOne, 0};
+        pairs[i].twins = Joined(pairs[i].twins, TwinValues(data->Make(name), estimator, name));
+      }
+    }
+    AddComparisons(pairs, "simulated", &report);
+  } catch (const InputError& error) {
+    report.simulated.clear();
+    report.why_not_simulated = error.what();
+  }
+  return report;
+}
+
+}  // namespace rcme

@@ -1,0 +1,204 @@
+#include "experiments/real/truth_free/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/robust_covariance/disjoint_sets.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/data/data_source.h"
+#include "experiments/trial/answer_check.h"
+#include "experiments/real/truth_free/advice.h"
+#include "experiments/real/truth_free/closure.h"
+#include "experiments/real/truth_free/halves.h"
+#include "experiments/real/truth_free/residual_correlation.h"
+#include "experiments/real/truth_free/self_calibration.h"
+#include "experiments/real/truth_free/twin.h"
+#include "stats/consistency.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kConfidence = 0.95;
+constexpr int kResamples = 1000;          // of pairs
+constexpr double kLeastProducts = 100.0;  // of residuals, for a correlation
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Answered Ask(NamedPair pair, const MotionEstimator& estimator, const StreamName& name) {
+  RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
+  MotionEstimate estimate = Judged(estimator.Estimate(pair.problem, rng), pair.problem.matches.size());
+  return {std::move(pair), std::move(estimate)};
+}
+
+// What is computed of each pair and its twins.
+struct PairResults {
+  UnitValues spatial, random;
+  std::vector<double> twin_errors;  // normalised and squared, of the twins' answers against their truth
+  ResidualProducts products, twin_products;
+};
+
+void AddHalves(const Answered& answered, const MotionEstimator& estimator, StreamName name,
+               std::vector<double>* spatial, std::vector<double>* random) {
+  const auto add = [&](Split split, std::vector<double>* values) {
+    ++name.trial;
+    const std::optional<double> difference =
+        DifferenceOfHalves(answered.pair.problem, answered.estimate, split, estimator, name);
+    if (difference) values->push_back(*difference);
+  };
+  for (const Split split : kSpatialSplits) add(split, spatial);
+  for (const Split split : kRandomSplits) add(split, random);
+}
+
+// Answers a pair and its twins too.
+PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
+                      const ValidationOptions& options, PairAnswers* answers) {
+  constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
+  StreamName name{options.seed, StreamKeyOf(pair.name), 0, 0};
+  PairResults results;
+  answers->whole = Ask(pair, estimator, name);
+  const Answered& whole = answers->whole;
+  if (!whole.IsOk()) return results;
+  AddHalves(whole, estimator, name, &results.spatial.observed, &results.random.observed);
+  results.products = ProductsOf(pair.problem, whole.estimate);
+  for (int k = 1; k <= options.num_twins; ++k) {
+    const auto number = static_cast<std::uint32_t>(k);
+    name.trial = number * kCallsOfOne;
+    answers->twins.push_back(Ask(TwinOf(pair, whole.estimate, options.seed, number), estimator, name));
+    const Answered& twin = answers->twins.back();
+    if (!twin.IsOk()) continue;
+    AddHalves(twin, estimator, name, &results.spatial.null, &results.random.null);
+    results.twin_errors.push_back(
+        NormalizedErrorSquared(LocalCoordinates(twin.estimate.cam2_from_cam1, whole.estimate.cam2_from_cam1),
+                               twin.estimate.pose_cov));
+    results.twin_products += ProductsOf(twin.pair.problem, twin.estimate);
+  }
+  return results;
+}
+
+std::map<size_t, int> CountLoops(const std::vector<Loop>& loops, const std::vector<PairAnswers>& answers) {
+  std::map<size_t, int> counts;
+  for (const Loop& loop : loops) {
+    const bool is_answered =
+        std::ranges::all_of(loop, [&](const LoopStep& step) { return answers[step.pair].whole.IsOk(); });
+    if (is_answered) ++counts[loop.size()];
+  }
+  return counts;
+}
+
+// Loops that have a pair in common, directly or by way of others, are of one group.
+std::vector<std::int64_t> GroupLoops(const std::vector<Loop>& loops, size_t num_pairs) {
+  DisjointSets sets(num_pairs);
+  for (const Loop& loop : loops) {
+    for (const LoopStep& step : loop) sets.Unite(loop.front().pair, step.pair);
+  }
+  std::vector<std::int64_t> groups;
+  for (const Loop& loop : loops) groups.push_back(static_cast<std::int64_t>(sets.Find(loop.front().pair)));
+  return groups;
+}
+
+std::vector<TestUnit> CloseLoops(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
+                                 LoopErrorOf error_of) {
+  const std::vector<std::int64_t> groups = GroupLoops(loops, answers.size());
+  std::vector<TestUnit> units;
+  for (size_t k = 0; k < loops.size(); ++k) {
+    for (UnitValues& values : ClosuresOf(answers, {loops[k]}, error_of))
+      units.push_back({groups[k], groups[k], std::move(values)});
+  }
+  return units;
+}
+
+std::vector<DistanceCorrelation> CorrelationsOf(const std::vector<PairResults>& results, RandomStream& rng) {
+  std::vector<DistanceCorrelation> all;
+  const auto sum_of = [](const std::vector<const PairResults*>& chosen, ResidualProducts PairResults::*list) {
+    ResidualProducts sum;
+    for (const PairResults* one : chosen) sum += one->*list;
+    return sum;
+  };
+  std::vector<const PairResults*> chosen;
+  for (const PairResults& one : results) chosen.push_back(&one);
+  const ResidualProducts of_pairs = sum_of(chosen, &PairResults::products),
+                         of_twins = sum_of(chosen, &PairResults::twin_products);
+  std::vector<std::vector<double>> resampled(kNumDistances);
+  for (int resample = 0; resample < kResamples && !results.empty(); ++resample) {
+    for (const PairResults*& one : chosen)
+      one = &results[rng.IntegerBelow(static_cast<std::uint32_t>(results.size()))];
+    const ResidualProducts a = sum_of(chosen, &PairResults::products),
+                           b = sum_of(chosen, &PairResults::twin_products);
+    for (size_t k = 0; k < kNumDistances; ++k) {
+      const double difference = a.Correlation(k) - b.Correlation(k);
+      if (std::isfinite(difference)) resampled[k].push_back(difference);
+    }
+  }
+  for (size_t k = 0; k < kNumDistances; ++k) {
+    DistanceCorrelation of{kDistanceEdgesPx[k],     kDistanceEdgesPx[k + 1], of_pairs.counts[k],
+                           of_pairs.Correlation(k), of_twins.Correlation(k), {kNaN, kNaN}};
+    if (of.num_products >= kLeastProducts && !resampled[k].empty()) {
+      std::ranges::sort(resampled[k]);
+      const auto last = static_cast<double>(resampled[k].size() - 1);
+      of.difference = {resampled[k][static_cast<size_t>(0.025 * last + 0.5)],
+                       resampled[k][static_cast<size_t>(0.975 * last + 0.5)]};
+    }
+    all.push_back(of);
+  }
+  return all;
+}
+
+ComparedMedians SigmaOf(const std::vector<PairAnswers>& answers, RandomStream& rng) {
+  std::vector<UnitValues> units;
+  for (const auto& [whole, twins] : answers) {
+    if (whole.IsOk()) units.push_back({{NoiseOf(whole.pair.problem, whole.estimate)}, {1.0}});
+  }
+  return RatioOfMedians(units, kConfidence, kResamples, rng);
+}
+
+// Of the assumed sigma: wrong only where the whole interval lies beyond what is nominal.
+TruthFreeVerdict JudgeSigma(const ComparedMedians& estimated_px, double assumed_px) {
+  if (std::isnan(estimated_px.value)) return TruthFreeVerdict::kNoData;
+  const Interval ratio = {estimated_px.interval.lower / assumed_px, estimated_px.interval.upper / assumed_px};
+  if (ratio.lower > kNominalSigma.upper) return TruthFreeVerdict::kTooSmall;
+  if (ratio.upper < kNominalSigma.lower) return TruthFreeVerdict::kTooLarge;
+  const bool is_nominal = ratio.lower >= kNominalSigma.lower && ratio.upper <= kNominalSigma.upper;
+  return is_nominal ? TruthFreeVerdict::kHolds : TruthFreeVerdict::kUndecided;
+}
+
+}  // namespace
+
+SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options) {
+  SetReport report;
+  report.name = set.name;
+  report.num_pairs = static_cast<int>(set.pairs.size());
+  std::vector<PairAnswers> answers;
+  std::vector<PairResults> results;
+  std::vector<TestUnit> simulation, spatial, random;
+  for (const NamedPair& pair : set.pairs) {
+    if (IsStopRequested()) throw Stopped("stopped; nothing is written");
+    results.push_back(ResultsOf(pair, estimator, options, &answers.emplace_back()));
+    report.num_answered += answers.back().whole.IsOk();
+  }
+  const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
+  for (size_t i = 0; i < results.size(); ++i) {
+    const auto [image1, image2] = images[i];
+    simulation.push_back({image1, image2, {results[i].twin_errors, results[i].twin_errors}});
+    spatial.push_back({image1, image2, results[i].spatial});
+    random.push_back({image1, image2, results[i].random});
+  }
+  const std::vector<Loop> loops = FindLoops(set.pairs);
+  report.num_loops = CountLoops(loops, answers);
+  RandomStream rng = StreamFor({options.seed, StreamKeyOf(set.name), 0, 0}, StreamPurpose::kMonteCarlo);
+  report.tests = {TestCovariances("spatial_halves", 5, spatial, rng),
+                  TestCovariances("random_halves", 5, random, rng),
+                  TestCovariances("closure", 3, CloseLoops(answers, loops, RotationClosure), rng),
+                  TestCovariances("directions", 1, CloseLoops(answers, loops, DirectionClosure), rng),
+                  TestCovariances(kSimulationTest, 5, simulation, rng)};
+  report.covariances = JudgeTests(report.tests);
+  report.assumed_sigma_px = set.pairs.empty() ? kNaN : set.pairs.front().problem.sigma_px;
+  report.sigma_px = SigmaOf(answers, rng);
+  report.sigma_verdict = JudgeSigma(report.sigma_px, report.assumed_sigma_px);
+  report.correlations = CorrelationsOf(results, rng);
+  report.calibration = Calibrate(answers, estimator, options.seed);
+  report.sizes = TestKeyPointSizes(answers);
+  report.advice = FindReasons(report);
+  return report;
+}
+
+}  // namespace rcme

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/real/truth_free/validate.h"
+
+namespace rcme {
+
+// "holds", "too small by 2.1 [1.8, 2.5] in variance", "undecided: 1.3 [0.9, 1.9]".
+std::string VerdictInWords(const TruthFreeTest& test);
+
+std::string ValidationAsTable(const std::vector<SetReport>& reports);
+// A row per set and test, sigma and correlations among them.
+std::string ValidationAsCsv(const std::vector<SetReport>& reports);
+std::string ValidationAsJson(const std::vector<SetReport>& reports);
+
+}  // namespace rcme

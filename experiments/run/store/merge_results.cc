@@ -1,0 +1,145 @@
+#include "experiments/run/store/merge_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/run/store/new_trials.h"
+#include "experiments/trial/trial_fields.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+// Calls `visit` for every trial of a part, all of which are checked.
+void ReadPart(const std::string& path, const std::string& identity,
+              const std::function<void(const StoredTrial&)>& visit) {
+  const std::unique_ptr<ResultFile> part = OpenPart(path);
+  NamingFile(path, [&] {
+    if (part->description.identity != identity) throw Damage("it has been replaced while it was read");
+    if (part->description.keeps_counts)
+      throw InputError(fmt::format("{}: holds counts, not trials (--keep counts)", path));
+    part->ForEachTrial(std::nullopt, [&](const StoredTrial& trial) {
+      if (IsStopRequested()) throw Stopped("stopped; nothing was written");
+      visit(trial);
+    });
+  });
+}
+
+// Field by field as text, the time aside; the estimator's number leads.
+Settings FieldsOf(const StoredTrial& trial) {
+  Settings fields;
+  const auto add = [&](const std::string& name, const auto& field) {
+    using Field = std::decay_t<decltype(field)>;
+    if (name == "seconds") return;
+    if constexpr (std::is_same_v<Field, MotionStatus>) {
+      fields.emplace_back(name, StatusName(field));
+    } else {
+      fields.emplace_back(name, fmt::format("{}", field));
+    }
+  };
+  VisitProblemFields(trial.problem, add);
+  for (const TrialRecord& record : trial.records) VisitFields(record, add);
+  return fields;
+}
+
+void CheckEqual(const std::string& path, const StoredTrial& here, const StoredTrial& there) {
+  const Settings a = FieldsOf(here), b = FieldsOf(there);
+  const auto [in_a, in_b] = std::ranges::mismatch(a, b);
+  if (in_a == a.end()) return;
+  throw InputError(
+      fmt::format("{}: condition {}, trial {} is there twice and not equal: {} is {} here, {} in a part "
+                  "before; a trial is a "
+                  "function of its study, so one of the two was computed by another program or was changed",
+                  path, here.problem.condition, here.problem.trial, in_a->first, in_a->second, in_b->second));
+}
+
+// What is missing of the trials asked for, and whose shards' they are.
+void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, MergeReport* report) {
+  report->num_trials = held.num_trials();
+  report->num_shards = descriptions.num_shards();
+  if (!report->run.stopping_rule.empty()) return;
+  std::set<std::uint32_t> shards;
+  const auto repeats = static_cast<std::uint32_t>(report->run.repeats_per_scene);
+  for (std::uint32_t c = 0; c < report->run.conditions.size(); ++c) {
+    for (std::uint32_t trial = 0; trial < report->run.conditions[c].num_trials; ++trial) {
+      if (held.Has(c, trial)) continue;
+      ++report->num_missing;
+      if (report->num_shards > 0) shards.insert(ShardOf(c, trial / repeats, report->num_shards));
+    }
+  }
+  report->missing_shards.assign(shards.begin(), shards.end());
+}
+
+}  // namespace
+
+bool TrialsHeld::Add(std::uint32_t condition, std::uint32_t trial) {
+  if (condition >= held_.size()) held_.resize(condition + size_t{1});
+  std::vector<bool>& trials = held_[condition];
+  if (trial >= trials.size()) trials.resize(std::max<size_t>(trial + size_t{1}, 2 * trials.size()));
+  if (trials[trial]) return false;
+  trials[trial] = true;
+  ++num_trials_;
+  return true;
+}
+
+void TrialsHeld::AddAll(const TrialsHeld& other) {
+  for (std::uint32_t c = 0; c < other.held_.size(); ++c) {
+    for (std::uint32_t trial = 0; trial < other.held_[c].size(); ++trial) {
+      if (other.held_[c][trial]) Add(c, trial);
+    }
+  }
+}
+
+bool TrialsHeld::Has(std::uint32_t condition, std::uint32_t trial) const {
+  return condition < held_.size() && trial < held_[condition].size() && held_[condition][trial];
+}
+
+MergeReport MergeResults(const std::vector<std::string>& parts, const std::string& out, bool is_partial,
+                         const MergeOptions& options) {
+  const PartDescriptions descriptions = DescribeParts(parts, options, nullptr);
+  MergeReport report;
+  report.run = descriptions.Merged();
+  Progress progress("trials merged", descriptions.num_trials());
+  NewTrials merged(out, report.run);
+  TrialsHeld held;
+  for (const std::string& path : parts) {
+    ReadPart(path, report.run.identity, [&](const StoredTrial& trial) {
+      progress.Advance(1);
+      if (held.Add(trial.problem.condition, trial.problem.trial)) return merged.Add(trial);
+      CheckEqual(path, trial, merged.Read(trial.problem.condition, trial.problem.trial));
+      ++report.num_twice;
+    });
+  }
+  NoteMissing(held, descriptions, &report);
+  report.run.shard = ShardsOfMerged(report);
+  if (report.num_missing == 0 || is_partial) merged.Finish(report.run);
+  return report;
+}
+
+MergeReport CheckParts(const std::vector<std::string>& parts, const MergeOptions& options) {
+  MergeReport report;
+  const PartDescriptions descriptions = DescribeParts(parts, options, &report.unreadable);
+  report.run = descriptions.Merged();
+  TrialsHeld held;
+  for (const std::string& path : parts) {
+    TrialsHeld of_part;  // none of them count if it is damaged at its end
+    try {
+      ReadPart(path, report.run.identity,
+               [&](const StoredTrial& trial) { of_part.Add(trial.problem.condition, trial.problem.trial); });
+      held.AddAll(of_part);
+    } catch (const InputError& error) {
+      if (std::ranges::count(report.unreadable, error.what()) == 0) report.unreadable.push_back(error.what());
+    }
+  }
+  NoteMissing(held, descriptions, &report);
+  return report;
+}
+
+}  // namespace rcme

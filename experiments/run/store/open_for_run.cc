@@ -1,0 +1,128 @@
+#include "experiments/run/store/open_for_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "experiments/core/files/first_difference.h"
+#include "experiments/study/study_file.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+// The run as a plan asks for it, in a file that earlier runs have written to: what they asked for is still
+// asked for, and what they noted stays.
+RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {
+  RunDescription run = Describe(plan);
+  if (earlier.trials > run.trials) {
+    Study study = plan.study;
+    study.trials = run.trials = earlier.trials;
+    run.study_yaml = ToYaml(study);
+  }
+  for (size_t c = 0; c < run.conditions.size(); ++c) {
+    run.conditions[c].num_trials = std::max(run.conditions[c].num_trials, earlier.conditions[c].num_trials);
+  }
+  run.shard = earlier.shard;
+  run.keeps_counts = earlier.keeps_counts;
+  run.stopping_rule = earlier.stopping_rule;
+  run.until_options = earlier.until_options;
+  run.until_trials = earlier.until_trials;
+  run.retried_trials = earlier.retried_trials;
+  run.origin = earlier.origin;
+  return run;
+}
+
+RunDescription Requested(const StudyPlan& plan, const Shard& shard, Keep keep) {
+  RunDescription run = Describe(plan);
+  run.shard = shard.Text();
+  run.keeps_counts = keep == Keep::kCounts;
+  return run;
+}
+
+// What a file is of, and keeps.
+std::string InWords(const RunDescription& run) {
+  return fmt::format("{} of {}", run.keeps_counts ? "counts" : "trials",
+                     run.shard.empty() ? "the whole study" : "shard " + run.shard);
+}
+
+// Throws InputError if a file that holds trials is not continued by the run asked for.
+void CheckIsThatRun(const ResultFile& file, const RunDescription& wanted) {
+  const RunDescription& held = file.description;
+  if (held.identity != wanted.identity) {
+    throw InputError(
+        fmt::format("{}: holds the results of another study, run by {}; first difference: {}. Give another "
+                    "--out",
+                    file.path, held.origin.program, FirstDifference(held.identity, wanted.identity)));
+  }
+  if (InWords(held) != InWords(wanted)) {
+    throw InputError(fmt::format("{}: holds the {}, not {}. Give another --out", file.path, InWords(held),
+                                 InWords(wanted)));
+  }
+}
+
+// Names separated by commas, with this one.
+std::string WithName(const std::string& names, const std::string& name) {
+  if (names.empty()) return name;
+  const bool has_it = (", " + names + ",").find(", " + name + ",") != std::string::npos;
+  return has_it ? names : names + ", " + name;
+}
+
+}  // namespace
+
+void CheckPathToWrite(const std::string& path) {
+  if (path.empty()) throw InputError("--out: '' is not allowed; give the path of a result file");
+  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
+  if (std::filesystem::is_directory(path))
+    throw InputError(fmt::format("{}: is a folder, not a result file", path));
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
+    throw InputError(fmt::format("{}: cannot be written as a result file: it is a device or a pipe", path));
+  if (!parent.empty() && !std::filesystem::is_directory(parent))
+    throw InputError(fmt::format("{}: folder '{}' does not exist", path, parent.string()));
+}
+
+void CheckFits(const RunDescription& run, const StudyPlan& plan) {
+  if (plan.conditions.size() != run.conditions.size() ||
+      plan.study.estimators.size() != run.estimators.size())
+    throw Damage("its tables are not those of its study");
+}
+
+std::unique_ptr<ResultFile> OpenFileForRun(const std::string& path, const StudyPlan& plan, const Shard& shard,
+                                           Keep keep) {
+  CheckPathToWrite(path);
+  const RunDescription wanted = Requested(plan, shard, keep);
+  auto file = std::make_unique<ResultFile>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  file->database.exec(kTakeLock);  // now: a second run stops here
+  if (file->IsNew()) {
+    file->Create(wanted);
+  } else {
+    file->LoadDescription();
+    file->CheckTrials();
+    file->CheckPages();
+  }
+  if (file->totals.NumTrials() > 0) CheckIsThatRun(*file, wanted);
+  // A file without a trial (its run failed at once) takes any study and any shard.
+  if (file->description.identity != wanted.identity || InWords(file->description) != InWords(wanted)) {
+    file->CreateAnew(wanted);
+  } else {
+    CheckFits(file->description, plan);
+    const RunDescription run = Continued(file->description, plan);
+    if (run.study_yaml != file->description.study_yaml) file->SetDescription(run);
+  }
+  return file;
+}
+
+std::string NoteOriginIn(RunDescription* run, const std::string& path, bool has_trials,
+                         const TrialOrigin& origin) {
+  const TrialOrigin before = run->origin;
+  run->origin = {WithName(before.program, origin.program),
+                 WithName(before.instruction_set, origin.instruction_set)};
+  if (run->origin == origin || !has_trials) return {};
+  return fmt::format(
+      "{}: its trials are of {} ({}), the further ones will be of {} ({}): they may differ in their last "
+      "bits",
+      path, before.program, before.instruction_set, origin.program, origin.instruction_set);
+}
+
+}  // namespace rcme

@@ -1,0 +1,220 @@
+#include "experiments/run/store/schema.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+
+#include "experiments/core/files/database.h"
+#include "experiments/run/store/record_table.h"
+
+namespace rcme {
+namespace {
+
+// The SQL of each table, word for word as the file keeps it.
+const std::map<std::string, std::string>& Tables() {
+  static const std::map<std::string, std::string> tables = [] {
+    std::map<std::string, std::string> sql;
+    for (const ResultTable& table : ResultTables()) {
+      std::string columns;
+      for (const ResultColumn& column : table.columns)
+        columns += fmt::format("{} {}{}, ", column.name, column.type, column.may_be_null ? "" : " NOT NULL");
+      sql[table.name] = fmt::format("CREATE TABLE {} ({}PRIMARY KEY ({})) WITHOUT ROWID", table.name, columns,
+                                    fmt::join(table.key, ", "));
+    }
+    return sql;
+  }();
+  return tables;
+}
+
+std::string FormatIn(SQLite::Database& database) {
+  if (!database.tableExists("run")) return {};
+  SQLite::Statement query(database, "SELECT value FROM run WHERE key = 'format'");
+  return query.executeStep() && query.getColumn(0).isText() ? query.getColumn(0).getString() : std::string();
+}
+
+// "table trials", "view problems", ... with its SQL.
+std::map<std::string, std::string> SchemaOf(SQLite::Database& database) {
+  std::map<std::string, std::string> entries;
+  SQLite::Statement query(database, "SELECT type, name, sql FROM sqlite_schema");
+  while (query.executeStep()) {
+    entries[query.getColumn(0).getString() + " " + query.getColumn(1).getString()] =
+        query.getColumn(2).getString();
+  }
+  return entries;
+}
+
+const ResultColumn kCondition = {"condition", "INTEGER", "", "number of the condition, from 0"};
+
+const ResultColumn kChecksumColumn = {
+    "checksum", "INTEGER", "",
+    "CRC-32 of the problem and its trials, begun with that of the study's identity"};
+
+}  // namespace
+
+const std::vector<ResultTable>& ResultTables() {
+  static const std::vector<ResultTable> tables = {
+      {"run",
+       "What is known of the run as a whole; the rows are below.",
+       {{"key", "TEXT", "", "one of the keys below"}, {"value", "TEXT", "", "its value as text"}},
+       {"key"}},
+      {"factors",
+       "What the study varies. For a folder of real pairs the last one is `pair_scene`, which the folder "
+       "brings.",
+       {{"factor", "INTEGER", "", "number of the factor, from 0"},
+        {"name", "TEXT", "", "the data key that it varies; the key's name has its unit"}},
+       {"factor"}},
+      {"conditions",
+       "The conditions of the study: one combination of levels each.",
+       {kCondition, {"num_trials", "INTEGER", "trials", "trials asked for, by whichever run asked for most"}},
+       {"condition"}},
+      {"levels",
+       "The level of every factor in every condition.",
+       {kCondition,
+        {"factor", "INTEGER", "", "number of the factor, from 0"},
+        {"level", "TEXT", "of the factor", "its level, as the study has it"}},
+       {"condition", "factor"}},
+      {"estimators",
+       "The estimators of the study.",
+       {{"estimator", "INTEGER", "", "number of the estimator, from 0"},
+        {"label", "TEXT", "", "what tables and figures call it; unique"},
+        {"name", "TEXT", "", "what `rcme list estimators` calls it"},
+        {"effort", "TEXT", "", "what limits the work of a call, in words; empty: unknown"}},
+       {"estimator"}},
+      {"options",
+       "Every option of every estimator, defaults included; the program that reads need not know them.",
+       {{"estimator", "INTEGER", "", "number of the estimator, from 0"},
+        {"name", "TEXT", "", "name of the option"},
+        {"value", "TEXT", "of the option", "its value as text"}},
+       {"estimator", "name"}},
+      {"totals",
+       "What the file holds of every condition, written together with the trials: lost trials are noticed.",
+       {kCondition,
+        {"num_trials", "INTEGER", "trials", "trials in the file"},
+        {"checksum", "INTEGER", "", "sum of their checksums"}},
+       {"condition"}},
+      {"counted",
+       "Which trials the counts are of; empty unless the run keeps counts.",
+       {kCondition,
+        {"shard", "TEXT", "", "the shard that has them, as `3/64`; empty: all trials"},
+        {"places", "TEXT", "", "their places in the shard, from 0: `0-499,600`"},
+        {"checksum", "INTEGER", "", "CRC-32 of the row, begun with that of the study's identity"}},
+       {"condition", "shard"}},
+      {"counts",
+       "What the summary needs of all trials, exactly; empty unless the run keeps counts. A sum is a "
+       "hexadecimal "
+       "whole number and a power of two, `-1a3p-20`.",
+       {kCondition,
+        {"estimator", "INTEGER", "", "number of the estimator; the one after the last: the problems"},
+        {"quantity", "TEXT", "", "its name (`rcme list quantities`)"},
+        {"n", "INTEGER", "trials", "trials that give it a number"},
+        {"sum", "TEXT", "of the quantity", "their sum; of a rate in decimal digits; empty for a median"},
+        {"sum_squares", "TEXT", "", "the sum of their squares; empty for a rate and a median"},
+        {"cells", "TEXT", "",
+         "of a median how many, the least and the greatest of its cells (`stats/stream_median.h`), of a "
+         "score "
+         "its parts on a grid (`stats/exact_scores.h`); else empty"},
+        {"checksum", "INTEGER", "", "CRC-32 of the row, begun with that of the study's identity"}},
+       {"condition", "estimator", "quantity"}},
+      {"problems",
+       "One row per trial: the problem, whoever solves it.",
+       RecordColumns<ProblemRecord>(kChecksumColumn),
+       {"condition", "trial"}},
+      {"trials",
+       "One row per trial and estimator: what became of the call.",
+       RecordColumns<TrialRecord>(),
+       {"condition", "trial", "estimator"}}};
+  return tables;
+}
+
+const std::vector<RunKey>& RunKeys() {
+  static const std::vector<RunKey> keys = {
+      {"format", "the format of the file"},
+      {"name", "the name of the study"},
+      {"description", "the study in its own words"},
+      {"ademp_aims",
+       "the study's aims, in its own words; this and the next four empty without an ADEMP block"},
+      {"ademp_data", "how its data come about"},
+      {"ademp_estimands", "what is estimated"},
+      {"ademp_methods", "what is compared"},
+      {"ademp_performance", "what is measured"},
+      {"seed", "the seed of all random streams"},
+      {"trials",
+       "trials per condition that were asked for; for a folder of real pairs, passes over each pair"},
+      {"repeats_per_scene",
+       "trials of each scene, one after the other: trial k is of scene k / repeats_per_scene"},
+      {"max_rotation_error_deg", "failure bound: a motion with a greater rotation error has failed"},
+      {"max_direction_error_deg", "failure bound: a motion with a greater error of the direction has failed"},
+      {"stopping_rule", "not empty: the number of trials depended on their outcomes, in these words"},
+      {"stopping_rule_checksum",
+       "CRC-32 of identity and stopping_rule: which kind of interval holds is known although other rows are "
+       "damaged"},
+      {"until_options", "options of `rcme run` that alone gave `until_trials` trials; empty: none"},
+      {"until_trials", "how many trials those gave in all conditions"},
+      {"retried_trials",
+       "how many trials were run again because an answer from outside the program was missing (`rcme run "
+       "--retry`), each time counted; a file of an earlier version has no such row"},
+      {"shard",
+       "which shards of the study the file is of: `3/64`, or merged ones that are complete, `1-3,7/64` or "
+       "`none/64`; empty: the whole study"},
+      {"keep",
+       "`all`: every trial is in the file; `counts`: what the summary needs of all, a few trials as they "
+       "are"},
+      {"program",
+       "programs that computed trials, with their versions; separated by commas, empty: not known"},
+      {"instruction_set", "instruction sets they used, likewise"},
+      {"study", "the study in full (YAML), for `rcme run`, `rcme replay` and `rcme show`"},
+      {"identity", "what two runs must have in common to share a file: study, seed, digest of real data"},
+      {"checksum",
+       "CRC-32 of all rows of the tables "
+       "run, factors, conditions, levels, estimators and options but this one"}};
+  return keys;
+}
+
+const std::vector<std::string>& DescriptionTables() {
+  static const std::vector<std::string> names = {"run",    "factors",    "conditions",
+                                                 "levels", "estimators", "options"};
+  return names;
+}
+
+void CreateTables(SQLite::Database& database) {
+  for (const auto& [name, sql] : Tables()) database.exec(sql);
+}
+
+void DropTables(SQLite::Database& database) {
+  for (const auto& [name, sql] : Tables()) database.exec("DROP TABLE " + name);
+}
+
+void CheckFormat(SQLite::Database& database, const std::string& path) {
+  const std::string format = FormatIn(database);
+  if (format == kResultFormat) return;
+  if (format.starts_with("rcme results ")) {
+    throw InputError(
+        fmt::format("{}: was written by another version of rcme ('{}'; this one reads '{}'): run "
+                    "its study again, into another file",
+                    path, format, kResultFormat));
+  }
+  throw InputError(fmt::format("{}: is not an rcme result file ({})", path, kResultFormat));
+}
+
+void CheckTables(SQLite::Database& database, const std::vector<std::string>& names) {
+  const std::map<std::string, std::string> entries = SchemaOf(database);
+  for (const std::string& name : names) {
+    const auto found = entries.find("table " + name);
+    if (found == entries.end()) throw Damage(fmt::format("table {} is missing", name));
+    if (found->second != Tables().at(name))
+      throw Damage(fmt::format("table {} has other columns than rcme gives it", name));
+  }
+}
+
+void CheckSchema(SQLite::Database& database) {
+  std::vector<std::string> names;
+  for (const auto& [name, sql] : Tables()) names.push_back(name);
+  CheckTables(database, names);
+  for (const auto& [entry, sql] : SchemaOf(database)) {
+    const bool is_ours = entry.starts_with("table ") && Tables().contains(entry.substr(6));
+    if (!is_ours) throw Damage(fmt::format("it holds a {}, which rcme does not make", entry));
+  }
+}
+
+}  // namespace rcme

@@ -1,0 +1,39 @@
+#include "experiments/run/store/trial_checksum.h"
+
+#include "experiments/core/files/checksum.h"
+#include "experiments/trial/trial_fields.h"
+
+namespace rcme {
+namespace {
+
+// A visitor of the fields of records. A NaN is NULL in the file.
+class FieldBytes {
+ public:
+  explicit FieldBytes(size_t expected_size) : bytes_(expected_size) {}
+
+  void operator()(const char*, const std::string& text) { bytes_.Add(text); }
+  void operator()(const char*, MotionStatus status) { bytes_.Add(std::string(StatusName(status))); }
+  void operator()(const char*, double number) { bytes_.Add(number); }
+  template <typename Integer>
+  void operator()(const char*, Integer number) {
+    bytes_.Add(static_cast<std::uint64_t>(number));
+  }
+
+  std::uint32_t Checksum() const { return bytes_.Checksum(); }
+
+ private:
+  ChecksumBytes bytes_;
+};
+
+}  // namespace
+
+std::uint32_t ChecksumOfTrial(std::uint32_t identity, const ProblemRecord& problem,
+                              std::span<const TrialRecord> records) {
+  FieldBytes bytes(200 + 300 * records.size());
+  bytes("", identity);
+  VisitProblemFields(problem, bytes);
+  for (const TrialRecord& record : records) VisitFields(record, bytes);
+  return bytes.Checksum();
+}
+
+}  // namespace rcme

@@ -1,0 +1,230 @@
+#include "experiments/statistics/compare.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "experiments/statistics/scenes_of_run.h"
+#include "parameters/input_error.h"
+#include "parameters/suggestion.h"
+#include "stats/multiple_testing.h"
+#include "stats/score_mean.h"
+#include "stats/stream_median.h"
+
+namespace rcme {
+namespace {
+
+size_t IndexOf(const std::string& label, const RunDescription& run) {
+  if (label.empty()) return 0;
+  std::vector<std::string> labels;
+  for (const DescribedEstimator& estimator : run.estimators) {
+    if (estimator.label == label) return labels.size();
+    labels.push_back(estimator.label);
+  }
+  throw InputError(fmt::format("--against: study '{}' has no estimator '{}'{}; allowed: {}", run.study, label,
+                               DidYouMean(label, labels), fmt::join(labels, ", ")));
+}
+
+// The pairs of one group, estimator and thing compared, growing trial by trial.
+class Pairs {
+ public:
+  Pairs(ComparedKind kind, bool has_repeats) : kind_(kind), has_repeats_(has_repeats) {}
+
+  void Add(double first, double second, bool is_first_of_scene) {
+    if (kind_ == ComparedKind::kEvent) counts_.Add(first != 0.0, second != 0.0);
+    if (kind_ != ComparedKind::kError) {
+      scene_.Add(first - second);
+    } else if (is_first_of_scene) {
+      counts_.Add(first > second, second > first);
+      error_difference_.Add(first == second ? 0.0 : first - second);  // two infinite errors are equal
+    }
+  }
+
+  void EndScene() {
+    const std::optional<double> mean = scene_.Take();
+    if (mean && IsByMeans()) mean_difference_.Add(*mean);
+  }
+
+  // What a row says of them.
+  void Fill(bool is_anytime_valid, ComparisonRow* row) const {
+    row->kind = kind_;
+    row->is_anytime_valid = is_anytime_valid || IsByMeans();
+    row->is_of_scenes = has_repeats_;
+    row->counts = counts_;
+    if (IsByMeans()) {
+      FillMeans(row);
+    } else if (kind_ == ComparedKind::kEvent) {
+      FillEvent(row);
+    } else {
+      FillError(row);
+    }
+    if (row->n == 0) row->p_value = std::nan("");
+    row->holm_p_value = row->p_value;
+  }
+
+ private:
+  bool IsByMeans() const {
+    return kind_ == ComparedKind::kScore || (kind_ == ComparedKind::kEvent && has_repeats_);
+  }
+
+  double PValueOfCounts(bool is_anytime_valid) const {
+    return is_anytime_valid ? AnytimeMcNemarPValue(counts_) : McNemarExactPValue(counts_);
+  }
+
+  void FillEvent(ComparisonRow* row) const {
+    row->n = counts_.n();
+    row->difference = row->n > 0 ? counts_.RiskDifference() : std::nan("");
+    row->p_value = PValueOfCounts(row->is_anytime_valid);
+    row->interval = row->is_anytime_valid ? AnytimeRiskDifferenceInterval() : RiskDifferenceInterval(counts_);
+  }
+  void FillMeans(ComparisonRow* row) const {
+    row->n = mean_difference_.n();
+    row->difference = mean_difference_.mean();
+    row->p_value = mean_difference_.PValue(0.0);
+    row->interval = mean_difference_.Sequence();
+  }
+  // The sign test: McNemar's of "greater than the other". Its median's interval is of a fixed number of
+  // trials.
+  void FillError(ComparisonRow* row) const {
+    row->n = error_difference_.n();
+    row->difference = error_difference_.median();
+    row->p_value = PValueOfCounts(row->is_anytime_valid);
+    row->interval = row->is_anytime_valid || row->n == 0 ? Interval{std::nan(""), std::nan("")}
+                                                         : error_difference_.interval();
+  }
+
+  Interval AnytimeRiskDifferenceInterval() const {
+    ScoreMean difference({-1.0, 1.0});
+    difference.Add(1.0, counts_.first_only);
+    difference.Add(-1.0, counts_.second_only);
+    difference.Add(0.0, counts_.both + counts_.neither);
+    return difference.Sequence();
+  }
+
+  ComparedKind kind_;
+  bool has_repeats_;
+  PairedCounts counts_;
+  SceneMean scene_;                         // so far
+  ScoreMean mean_difference_{{-1.0, 1.0}};  // of the means of scenes
+  StreamMedian error_difference_;
+};
+
+// The pairs of every group, estimator and thing compared; of the reference with itself too, which no one
+// reads.
+class AllPairs {
+ public:
+  AllPairs(const RunDescription& run, const TrialGroups& groups, size_t reference,
+           const std::vector<Compared>& compared)
+      : bounds_(run.failure),
+        groups_(groups),
+        reference_(reference),
+        num_estimators_(run.estimators.size()),
+        compared_(compared) {
+    for (size_t cell = 0; cell < groups.levels.size() * num_estimators_; ++cell) {
+      for (const Compared& each : compared_) cells_.emplace_back(each.kind, run.repeats_per_scene > 1);
+    }
+  }
+
+  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first_of_scene) {
+    ++num_trials_;
+    group_ = groups_.group_of(problem);
+    is_weighted_ = is_weighted_ || problem.weight != 1.0;
+    for (size_t v = 0; v < compared_.size(); ++v) {
+      const std::optional<double> of_reference = compared_[v].of(records[reference_], bounds_);
+      if (!of_reference) continue;
+      for (size_t e = 0; e < num_estimators_; ++e) {
+        const std::optional<double> of_estimator = compared_[v].of(records[e], bounds_);
+        if (!of_estimator) continue;
+        cells_[IndexOfCell(group_, e, v)].Add(*of_estimator, *of_reference, is_first_of_scene);
+      }
+    }
+  }
+
+  void EndScene() {
+    for (size_t i = IndexOfCell(group_, 0, 0); i < IndexOfCell(group_ + 1, 0, 0); ++i) cells_[i].EndScene();
+  }
+
+  const Pairs& Of(size_t group, size_t estimator, size_t compared) const {
+    return cells_[IndexOfCell(group, estimator, compared)];
+  }
+  std::int64_t num_trials() const { return num_trials_; }
+  bool is_weighted() const { return is_weighted_; }
+
+ private:
+  size_t IndexOfCell(size_t group, size_t estimator, size_t compared) const {
+    return (group * num_estimators_ + estimator) * compared_.size() + compared;
+  }
+
+  FailureBounds bounds_;
+  const TrialGroups& groups_;
+  size_t group_ = 0;  // of the last trial
+  size_t reference_, num_estimators_;
+  std::vector<Compared> compared_;
+  std::vector<Pairs> cells_;
+  std::int64_t num_trials_ = 0;
+  bool is_weighted_ = false;
+};
+
+// One family: whoever reads the tables reads all of them, and Holm's procedure holds however the tests depend
+// on each other (an event and its union with another do). A comparison without trials is no test: it costs
+// the others nothing.
+void AdjustForAllTests(std::vector<ComparisonRow>* rows) {
+  std::vector<ComparisonRow*> tested;
+  std::vector<double> p_values;
+  for (ComparisonRow& row : *rows) {
+    if (row.n == 0) continue;
+    tested.push_back(&row);
+    p_values.push_back(row.p_value);
+  }
+  const std::vector<double> adjusted = HolmAdjusted(p_values);
+  for (size_t i = 0; i < tested.size(); ++i) tested[i]->holm_p_value = adjusted[i];
+}
+
+}  // namespace
+
+Comparison Compare(const ResultStore& store, const std::string& reference, const CompareOptions& options) {
+  const RunDescription run = store.Description();
+  const std::vector<DescribedEstimator>& estimators = run.estimators;
+  const size_t reference_index = IndexOf(reference, run);
+  const std::vector<Compared> compared = ComparedByName(options.compared);
+  const TrialGroups groups = options.pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(run);
+  AllPairs pairs(run, groups, reference_index, compared);
+  ForEachTrialByScene(
+      store, run.repeats_per_scene,
+      [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
+        pairs.Add(problem, records, is_first);
+      },
+      [&](std::uint32_t) { pairs.EndScene(); });
+  Comparison comparison{run.study,
+                        estimators[reference_index].label,
+                        groups.factor_names,
+                        compared,
+                        {},
+                        pairs.num_trials(),
+                        run.NumTrials(),
+                        {}};
+  if (pairs.is_weighted()) {
+    comparison.caution =
+        "trials are weighted (tilted_to): counts of them say nothing, so there are none here";
+    return comparison;
+  }
+  const bool is_anytime_valid = options.is_anytime_valid || !run.stopping_rule.empty();
+  for (std::uint32_t c = 0; c < groups.levels.size(); ++c) {
+    for (size_t e = 0; e < estimators.size(); ++e) {
+      if (e == reference_index) continue;
+      for (size_t v = 0; v < compared.size(); ++v) {
+        ComparisonRow row;
+        row.condition = c;
+        row.levels = groups.levels[c];
+        row.estimator = estimators[e].label;
+        row.event = compared[v].name;
+        pairs.Of(c, e, v).Fill(is_anytime_valid, &row);
+        comparison.rows.push_back(std::move(row));
+      }
+    }
+  }
+  AdjustForAllTests(&comparison.rows);
+  return comparison;
+}
+
+}  // namespace rcme

@@ -1,0 +1,86 @@
+#include "experiments/statistics/compared.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/statistics/failure_forecasts.h"
+#include "experiments/trial/trial_event.h"
+#include "experiments/trial/trial_measure.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+Compared Event(const TrialEvent& event) {
+  return {ComparedKind::kEvent, event.name, event.doc,
+          [event](const TrialRecord& record, const FailureBounds& bounds) -> std::optional<double> {
+            if (event.needs_truth && !IsScored(record)) return std::nullopt;
+            return event.has_happened(record, bounds) ? 1.0 : 0.0;
+          }};
+}
+
+Compared Measure(ComparedKind kind, const TrialMeasure& measure) {
+  return {kind, measure.name, measure.doc,
+          [measure](const TrialRecord& record, const FailureBounds&) { return measure.Of(record); }};
+}
+
+// The less the better, other than the scores of accuracy.
+Compared Brier() {
+  return {ComparedKind::kScore, "brier",
+          "Brier score (P - y)^2 of the stated probability of failure, 0 best; of answers that have one",
+          BrierOfStated};
+}
+
+bool IsNamed(const Compared& compared, const std::string& name) {
+  return name == compared.name || name == Name(compared.kind) + "s";
+}
+
+}  // namespace
+
+std::string Name(ComparedKind kind) {
+  switch (kind) {
+    case ComparedKind::kEvent:
+      return "event";
+    case ComparedKind::kScore:
+      return "score";
+    case ComparedKind::kError:
+      return "error";
+  }
+  return "";
+}
+
+const std::vector<Compared>& AllCompared() {
+  static const std::vector<Compared> all = [] {
+    std::vector<Compared> compared;
+    for (const TrialEvent& event : TrialEvents()) compared.push_back(Event(event));
+    for (const TrialMeasure& score : TrialScores()) compared.push_back(Measure(ComparedKind::kScore, score));
+    compared.push_back(Brier());
+    for (const TrialMeasure& error : TrialErrors()) compared.push_back(Measure(ComparedKind::kError, error));
+    return compared;
+  }();
+  return all;
+}
+
+std::vector<Compared> ComparedByName(const std::vector<std::string>& names) {
+  const std::vector<Compared>& all = AllCompared();
+  const auto fail = [&](const std::string& what) {
+    std::vector<std::string> allowed = {"events", "scores", "errors"};
+    for (const Compared& compared : all) allowed.push_back(compared.name);
+    throw InputError(fmt::format("--of: {}; allowed: {}", what, fmt::join(allowed, ", ")));
+  };
+  for (const std::string& name : names) {
+    if (std::ranges::none_of(all, [&](const Compared& compared) { return IsNamed(compared, name); }))
+      fail(fmt::format("nothing called {} can be compared", Quoted(name)));
+  }
+  std::vector<Compared> chosen;
+  for (const Compared& compared : all) {
+    if (std::ranges::any_of(names, [&](const std::string& name) { return IsNamed(compared, name); }))
+      chosen.push_back(compared);
+  }
+  if (chosen.empty()) fail("nothing is named");
+  return chosen;
+}
+
+}  // namespace rcme

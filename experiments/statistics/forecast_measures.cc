@@ -1,0 +1,137 @@
+#include "experiments/statistics/forecast_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "stats/random.h"
+#include "stats/risk_coverage_area.h"
+
+namespace rcme {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kNumHistogramBins = 20;
+// Of the outcomes that are drawn here; the streams of trials have other purposes (data_source.h).
+constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200;
+
+double MeanProbability(const std::vector<Forecast>& forecasts) {
+  double sum = 0.0;
+  for (const Forecast& forecast : forecasts) sum += forecast.probability;
+  return sum / static_cast<double>(forecasts.size());
+}
+
+AreaUnderCurve AreaOf(std::vector<Forecast> forecasts, const ClusteredEstimate& failure) {
+  if (failure.value == 0.0 || failure.value == 1.0) return {kNaN, kNaN, {0.0, 1.0}};
+  std::ranges::stable_sort(forecasts, {}, &Forecast::cluster);
+  std::vector<ScoreCluster> clusters;
+  for (size_t i = 0; i < forecasts.size(); ++i) {
+    if (i == 0 || forecasts[i].cluster != forecasts[i - 1].cluster) clusters.emplace_back();
+    ScoreCluster& cluster = clusters.back();
+    (forecasts[i].happened ? cluster.positives : cluster.negatives).push_back(forecasts[i].probability);
+  }
+  return MeasureClusteredAreaUnderCurve(clusters);
+}
+
+// Surest first by the probability; refusals last.
+std::vector<ClusteredOutcome> OutcomesOf(const FailureForecasts& of) {
+  std::vector<ClusteredOutcome> outcomes;
+  for (const Forecast& forecast : of.forecasts)
+    outcomes.push_back({-forecast.probability, forecast.happened, forecast.cluster});
+  for (const std::int64_t scene : of.refused_scenes)
+    outcomes.push_back({-std::numeric_limits<double>::infinity(), true, scene});
+  return outcomes;
+}
+
+void MeasureRiskCoverage(const FailureForecasts& of, ForecastMeasures* measures) {
+  const std::vector<ClusteredOutcome> outcomes = OutcomesOf(of);
+  measures->risk_coverage_area = MeasureRiskCoverageArea(outcomes);
+  std::vector<ScoredOutcome> scored;
+  for (const ClusteredOutcome& outcome : outcomes) scored.push_back({outcome.score, outcome.failed});
+  measures->risk_coverage = RiskCoverageCurve(std::move(scored));
+}
+
+void CountSure(const std::vector<Forecast>& forecasts, ForecastMeasures* measures) {
+  for (const Forecast& forecast : forecasts) {
+    if (forecast.probability > kSureBelow) continue;
+    ++measures->num_sure;
+    measures->num_sure_failed += forecast.happened ? 1 : 0;
+  }
+}
+
+std::vector<std::int64_t> HistogramOf(const std::vector<Forecast>& forecasts) {
+  const std::vector<double> edges = HistogramEdges();
+  std::vector<std::int64_t> counts(kNumHistogramBins, 0);
+  for (const Forecast& forecast : forecasts) {
+    const auto above = std::ranges::upper_bound(edges, forecast.probability);
+    ++counts[std::min<size_t>(static_cast<size_t>(above - edges.begin()), kNumHistogramBins) - 1];
+  }
+  return counts;
+}
+
+// The same stream for all: samples of equal forecasts are equal.
+void MeasureCalibration(const std::vector<Forecast>& forecasts, std::uint64_t seed,
+                        ForecastMeasures* measures) {
+  RandomStream rng({.seed = seed, .purpose = kPurposeOfDrawnOutcomes});
+  measures->parts = DecomposeBrierScore(forecasts);
+  measures->curve = ReliabilityCurve(forecasts);
+  measures->check = CheckCalibration(forecasts, BandProbabilities(), kNumCalibrationSamples, rng);
+  measures->bins = BinForecasts(forecasts, Binning::kEqualWidth, kNumCalibrationBins);
+  measures->error_of_equal_width = MeasureCalibrationError(forecasts, Binning::kEqualWidth,
+                                                           kNumCalibrationBins, kNumCalibrationSamples, rng);
+  measures->error_of_equal_mass = MeasureCalibrationError(forecasts, Binning::kEqualMass, kNumCalibrationBins,
+                                                          kNumCalibrationSamples, rng);
+  measures->line = FitCalibrationLine(forecasts);
+}
+
+}  // namespace
+
+std::vector<double> BandProbabilities() {
+  std::vector<double> probabilities = {0.0, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2};
+  for (int i = 1; i <= 50; ++i) probabilities.push_back(i / 50.0);
+  return probabilities;
+}
+
+std::vector<double> HistogramEdges() {
+  std::vector<double> edges;
+  for (int k = 0; k <= kNumHistogramBins; ++k)
+    edges.push_back(std::pow(static_cast<double>(k) / kNumHistogramBins, 2.0));
+  return edges;
+}
+
+ForecastMeasures MeasureForecasts(const FailureForecasts& of, std::uint64_t seed) {
+  ForecastMeasures measures;
+  measures.estimator = of.estimator;
+  measures.group = of.group;
+  measures.source = of.source;
+  measures.n = std::ssize(of.forecasts);
+  measures.num_refused = std::ssize(of.refused_scenes);
+  measures.num_without = of.num_without;
+  if (measures.n == 0) return measures;
+  measures.mean_probability = MeanProbability(of.forecasts);
+  measures.failure = MeasureShareHappened(of.forecasts);
+  measures.brier = MeasureBrierScore(of.forecasts);
+  measures.log_score = MeasureLogScore(of.forecasts);
+  measures.histogram = HistogramOf(of.forecasts);
+  measures.area = AreaOf(of.forecasts, measures.failure);
+  MeasureCalibration(of.forecasts, seed, &measures);
+  MeasureRiskCoverage(of, &measures);
+  CountSure(of.forecasts, &measures);
+  return measures;
+}
+
+std::vector<ForecastMeasures> MeasureFailureForecasts(std::span<const ResultStore> runs,
+                                                      const std::string& by) {
+  std::vector<FailureForecasts> forecasts;
+  for (const ResultStore& run : runs) AddForecastsOfRun(CollectFailureForecasts(run, by), &forecasts);
+  std::vector<ForecastMeasures> all;
+  for (const FailureForecasts& of : forecasts)
+    all.push_back(MeasureForecasts(of, runs.front().Description().seed));
+  return all;
+}
+
+std::vector<ForecastMeasures> MeasureFailureForecasts(const ResultStore& run, const std::string& by) {
+  return MeasureFailureForecasts(std::span(&run, 1), by);
+}
+
+}  // namespace rcme

@@ -1,0 +1,194 @@
+#include "experiments/statistics/forecast_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/core/text/json_output.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kMaxCurvePoints = 400;  // of a risk-coverage curve in a file
+
+// "0.0123 [0.0100, 0.0150]"; "-" where it is not known.
+std::string WithInterval(double value, const Interval& interval, int digits) {
+  if (std::isnan(value)) return "-";
+  if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper))
+    return fmt::format("{:.{}f}", value, digits);
+  return fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", value, digits, interval.lower, digits, interval.upper,
+                     digits);
+}
+std::string WithInterval(const ClusteredEstimate& estimate, int digits) {
+  return WithInterval(estimate.value, estimate.interval, digits);
+}
+
+// In per cent: "12.34 % [10.10, 14.80]"; "-" of none.
+std::string Rate(std::int64_t count, std::int64_t n, const Interval& interval) {
+  if (n == 0) return "-";
+  return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * static_cast<double>(count) / static_cast<double>(n),
+                     100.0 * interval.lower, 100.0 * interval.upper);
+}
+
+std::vector<std::string> CellsOf(const ForecastMeasures& m) {
+  if (m.n == 0) return {"0", fmt::format("{}", m.num_refused), "-", "-", "-", "-", "-", "-", "-", "-", "-"};
+  const MeasuredCalibrationError& error = m.error_of_equal_width;
+  return {fmt::format("{}", m.n),
+          fmt::format("{}", m.num_refused),
+          fmt::format("{:.4f}", m.mean_probability),
+          WithInterval(m.failure, 4),
+          WithInterval(m.brier, 4),
+          fmt::format("{:.4f} ({:.4f}; p {:.2g})", error.value, error.mean_if_calibrated, error.p_value),
+          WithInterval(m.line.slope, 2),
+          WithInterval(m.area.value, m.area.interval, 3),
+          WithInterval(m.risk_coverage_area, 4),
+          Rate(m.num_sure_failed, m.num_sure, m.sure_failed_interval()),
+          Rate(m.num_sure, m.num_trials(), m.sure_interval())};
+}
+
+Json AsJson(const Interval& interval) { return {JsonNumber(interval.lower), JsonNumber(interval.upper)}; }
+
+Json AsJson(double value, double standard_error, const Interval& interval) {
+  return {{"value", JsonNumber(value)},
+          {"standard_error", JsonNumber(standard_error)},
+          {"interval", AsJson(interval)}};
+}
+Json AsJson(const ClusteredEstimate& e) { return AsJson(e.value, e.standard_error, e.interval); }
+
+Json AsJson(const MeasuredCalibrationError& error) {
+  return {{"value", JsonNumber(error.value)},
+          {"mean_if_calibrated", JsonNumber(error.mean_if_calibrated)},
+          {"upper_if_calibrated", JsonNumber(error.upper_if_calibrated)},
+          {"p_value", JsonNumber(error.p_value)}};
+}
+
+Json RateAsJson(std::int64_t count, std::int64_t n, const Interval& interval) {
+  const double value = n > 0 ? static_cast<double>(count) / static_cast<double>(n) : std::nan("");
+  return {{"value", JsonNumber(value)}, {"interval", AsJson(interval)}, {"n", n}};
+}
+
+Json CurveAsJson(const ForecastMeasures& m) {
+  Json steps = Json::array();
+  for (const ReliabilityStep& s : m.curve) {
+    steps.push_back({{"first", s.first},
+                     {"last", s.last},
+                     {"recalibrated", s.recalibrated},
+                     {"n", s.n},
+                     {"failed", s.num_happened}});
+  }
+  return steps;
+}
+
+Json BandAsJson(const ForecastMeasures& m) {
+  Json band = Json::array();
+  for (const ConsistencyPoint& p : m.check.band)
+    band.push_back({{"probability", p.probability}, {"lower", p.lower}, {"upper", p.upper}});
+  return band;
+}
+
+Json BinsAsJson(const ForecastMeasures& m) {
+  Json bins = Json::array();
+  for (const CalibrationBin& b : m.bins) {
+    bins.push_back({{"least", b.least},
+                    {"greatest", b.greatest},
+                    {"mean_probability", b.mean_probability},
+                    {"failure", RateAsJson(b.num_happened, b.n, b.interval)}});
+  }
+  return bins;
+}
+
+// At most some hundred points, evenly over the curve, the ends among them. `probability` null: refusals too.
+Json RiskCoverageAsJson(const ForecastMeasures& m) {
+  Json points = Json::array();
+  const size_t size = m.risk_coverage.size(), count = std::min(size, kMaxCurvePoints);
+  for (size_t k = 0; k < count; ++k) {
+    const RiskCoveragePoint& p = m.risk_coverage[count == 1 ? 0 : k * (size - 1) / (count - 1)];
+    points.push_back({{"probability", JsonNumber(-p.threshold)}, {"coverage", p.coverage}, {"risk", p.risk}});
+  }
+  return points;
+}
+
+Json EntryOf(const ForecastMeasures& m) {
+  Json entry = {{"estimator", m.estimator}, {"group", m.group},        {"source", Name(m.source)}, {"n", m.n},
+                {"refused", m.num_refused}, {"without", m.num_without}};
+  if (m.n == 0) return entry;
+  entry.update(Json{{"mean_probability", m.mean_probability},
+                    {"failure", AsJson(m.failure)},
+                    {"brier", AsJson(m.brier)},
+                    {"log_score", AsJson(m.log_score)},
+                    {"miscalibration", m.parts.miscalibration},
+                    {"miscalibration_if_calibrated", m.check.miscalibration_if_calibrated},
+                    {"miscalibration_p_value", m.check.p_value},
+                    {"discrimination", m.parts.discrimination},
+                    {"uncertainty", m.parts.uncertainty},
+                    {"calibration_error", AsJson(m.error_of_equal_width)},
+                    {"calibration_error_equal_mass", AsJson(m.error_of_equal_mass)},
+                    {"calibration_intercept", AsJson(m.line.intercept)},
+                    {"calibration_slope", AsJson(m.line.slope)},
+                    {"area_under_curve", AsJson(m.area.value, m.area.standard_error, m.area.interval)},
+                    {"risk_coverage_area", AsJson(m.risk_coverage_area)},
+                    {"sure_failed", RateAsJson(m.num_sure_failed, m.num_sure, m.sure_failed_interval())},
+                    {"sure", RateAsJson(m.num_sure, m.num_trials(), m.sure_interval())},
+                    {"curve", CurveAsJson(m)},
+                    {"band", BandAsJson(m)},
+                    {"bins", BinsAsJson(m)},
+                    {"histogram", m.histogram},
+                    {"risk_coverage", RiskCoverageAsJson(m)}});
+  return entry;
+}
+
+}  // namespace
+
+std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
+  std::vector<std::vector<std::string>> rows(1);
+  if (!by.empty()) rows[0].push_back(by);
+  const std::vector<std::string> columns = {
+      "estimator", "P from", "n",     "refused",
+      "mean P",    "failed", "Brier", "ECE (if right; p)",
+      "slope",     "AUC",    "AURC",  fmt::format("failed at P <= {}", kSureBelow),
+      "kept"};
+  rows[0].insert(rows[0].end(), columns.begin(), columns.end());
+  bool has_proxy = false;
+  for (const ForecastMeasures& m : measures) {
+    rows.emplace_back();
+    if (!by.empty()) rows.back().push_back(m.group);
+    has_proxy = has_proxy || m.source == ForecastSource::kInlierShare;
+    rows.back().insert(rows.back().end(), {m.estimator, Name(m.source)});
+    const std::vector<std::string> cells = CellsOf(m);
+    rows.back().insert(rows.back().end(), cells.begin(), cells.end());
+  }
+  std::string text = fmt::format(
+      "Probability of failure P, of the answers whose truth is known\n\n{}\n"
+      "failed, Brier (mean (P - y)^2), slope (1: right, below: too sure), AUC, AURC: 95 % intervals, the "
+      "trials\n"
+      "of a scene as one cluster. ECE: {} bins of equal width; in brackets its mean if P were right, and the "
+      "share\nof samples of such that reach it. AURC: mean failure rate over all shares of trials answered, "
+      "surest first,\na refusal as the last and a failure; kept: trials at P <= {}, of all; exact "
+      "intervals.\n",
+      FormatColumns(rows), kNumCalibrationBins, kSureBelow);
+  if (has_proxy) {
+    text +=
+        "P from inlier_share: the estimator states none; its share of inliers, recalibrated by isotonic\n"
+        "regression on the other half of the scenes of this run, stands in.\n";
+  }
+  return text;
+}
+
+std::string ForecastsAsJson(const std::string& study, const std::string& by,
+                            const std::vector<ForecastMeasures>& measures) {
+  Json json = {{"study", study},
+               {"by", by},
+               {"sure_below", kSureBelow},
+               {"histogram_edges", HistogramEdges()},
+               {"entries", Json::array()}};
+  for (const ForecastMeasures& m : measures) json["entries"].push_back(EntryOf(m));
+  return JsonText(kReliabilityFormat, json);
+}
+
+}  // namespace rcme

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/statistics/forecast_measures.h"
+
+namespace rcme {
+
+// For people: a line per estimator and group, and what the columns mean. `by`: the factor of the groups, or
+// empty.
+std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, const std::string& by = {});
+
+// For programs and figures: an object {study, by, entries: [...]} with every measure, the reliability curve
+// with its band, the bins and the risk-coverage curve; unknown and infinite numbers are null.
+std::string ForecastsAsJson(const std::string& study, const std::string& by,
+                            const std::vector<ForecastMeasures>& measures);
+
+}  // namespace rcme

@@ -1,0 +1,141 @@
+#include "experiments/statistics/report_data.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "experiments/statistics/comparison_output.h"
+#include "experiments/statistics/forecast_output.h"
+#include "experiments/statistics/report_findings.h"
+#include "experiments/statistics/summary_output.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/json_output.h"
+#include "experiments/trial/trial_event.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The first trials worth a replay, of one estimator in one condition.
+struct FirstTrials {
+  std::optional<std::uint32_t> failure, refusal;
+};
+
+struct ConditionProgress {
+  std::int64_t num_trials_done = 0;
+  std::int64_t trials_end = 0;     // after the last; a run that was cut off may have gaps
+  std::vector<FirstTrials> first;  // one per estimator
+};
+
+// One pass.
+std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const RunDescription& run) {
+  std::vector<ConditionProgress> progress(run.conditions.size(),
+                                          {0, 0, std::vector<FirstTrials>(run.estimators.size())});
+  store.ForEachRecord([&](const TrialRecord& record) {
+    ConditionProgress& condition = progress.at(record.condition);
+    if (record.estimator == 0) ++condition.num_trials_done;
+    condition.trials_end = record.trial + 1;
+    FirstTrials& first = condition.first.at(record.estimator);
+    if (HasFailed(record, run.failure) && !first.failure) first.failure = record.trial;
+    if (HasRefused(record) && !first.refusal) first.refusal = record.trial;
+  });
+  return progress;
+}
+
+Json TrialOrNull(const std::optional<std::uint32_t>& trial) { return trial ? Json(*trial) : Json(); }
+
+// Conditions with their levels, their progress, and per estimator the first failure and refusal.
+Json ConditionsAsJson(const ResultStore& store, const RunDescription& run) {
+  Json conditions = Json::array();
+  const std::vector<ConditionProgress> progress = ProgressOf(store, run);
+  for (size_t c = 0; c < run.conditions.size(); ++c) {
+    const ConditionProgress& done = progress[c];
+    Json first = Json::array();
+    for (const FirstTrials& trials : done.first) {
+      first.push_back({{"failure", TrialOrNull(trials.failure)}, {"refusal", TrialOrNull(trials.refusal)}});
+    }
+    conditions.push_back({{"index", c},
+                          {"levels", run.conditions[c].levels},
+                          {"trials_done", done.num_trials_done},
+                          {"trials_end", done.trials_end},
+                          {"trials_planned", run.conditions[c].num_trials},
+                          {"first", first}});
+  }
+  return conditions;
+}
+
+// A list of [key, text].
+Json AsPairs(const Settings& settings) {
+  Json pairs = Json::array();
+  for (const auto& [key, text] : settings) pairs.push_back({key, text});
+  return pairs;
+}
+
+Json RunAsJson(const std::string& path, const ResultStore& store) {
+  const RunDescription run = store.Description();
+  Json estimators = Json::array(), quantities = Json::array(), events = Json::array(), bounds = Json::array();
+  for (const DescribedEstimator& estimator : run.estimators) estimators.push_back(estimator.label);
+  for (const QuantityHelp& q : SummaryQuantities()) {
+    quantities.push_back({{"name", q.name}, {"kind", q.kind}, {"doc", q.doc}});
+  }
+  for (const TrialEvent& event : TrialEvents()) {
+    events.push_back({{"name", event.name}, {"doc", event.doc}});
+  }
+  FailureBounds failure = run.failure;
+  for (const Parameter& p : Parameters(failure)) {
+    bounds.push_back({{"name", p.name()}, {"value", p.Value()}, {"unit", p.unit()}});
+  }
+  return {{"run", path},
+          {"rcme_version", RCME_VERSION},
+          {"name", run.study},
+          {"description", run.description},
+          {"ademp", AsPairs(run.ademp)},
+          {"seed", run.seed},
+          {"trials_planned", run.NumTrials()},
+          {"until", run.until_options},
+          {"study_yaml", run.study_yaml},
+          {"factors", run.factors},
+          {"estimators", estimators},
+          {"conditions", ConditionsAsJson(store, run)},
+          {"failure_bounds", bounds},
+          {"quantities", quantities},
+          {"events", events}};
+}
+
+void WriteFiles(const std::string& run, const std::string& against, const std::string& folder) {
+  const ResultStore store = ResultStore::OpenForReading(run);
+  const Summary summary = Summarize(store, /*with_times=*/false);
+  if (summary.num_trials_done == 0) {
+    throw InputError(fmt::format("{}: holds no trial yet; `rcme run` with --out {} adds them", run, run));
+  }
+  const Comparison comparison = Compare(store, against);
+  Json json = RunAsJson(run, store);
+  json["trials_done"] = summary.num_trials_done;
+  json["reference"] = comparison.reference;
+  json["caution"] = comparison.caution;
+  json["findings"] = FindingsOf(summary, comparison);
+  WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));
+  WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));
+  if (HasFailureProbabilities(summary)) {
+    const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(store);
+    WriteFileWhole(folder + "/reliability.json", ForecastsAsJson(summary.study, "", measures));
+  }
+  if (!comparison.rows.empty()) WriteFileWhole(folder + "/comparison.csv", ComparisonAsCsv(comparison));
+}
+
+}  // namespace
+
+void WriteReportData(const std::string& run, const std::string& against, const std::string& folder) {
+  try {
+    WriteFiles(run, against, folder);
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    if (message.find(run) != std::string::npos) throw;
+    throw InputError(fmt::format("{}: {}", run, message));  // one of several runs
+  }
+}
+
+}  // namespace rcme

@@ -1,0 +1,29 @@
+#include "experiments/statistics/scenes_of_run.h"
+
+#include <utility>
+
+namespace rcme {
+
+std::optional<double> SceneMean::Take() {
+  const SceneMean whole = std::exchange(*this, SceneMean());
+  if (whole.count_ == 0) return std::nullopt;
+  return whole.sum_ / whole.count_;
+}
+
+void ForEachTrialByScene(
+    const ResultStore& store, int repeats_per_scene,
+    const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&, bool is_first)>& visit,
+    const std::function<void(std::uint32_t condition)>& end_of_scene) {
+  using SceneId = std::pair<std::uint32_t, std::uint32_t>;  // condition, scene
+  std::optional<SceneId> current;
+  const auto repeats = static_cast<std::uint32_t>(repeats_per_scene);
+  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    const SceneId scene(problem.condition, problem.trial / repeats);
+    if (current && *current != scene) end_of_scene(current->first);
+    current = scene;
+    visit(problem, records, problem.trial % repeats == 0);
+  });
+  if (current) end_of_scene(current->first);
+}
+
+}  // namespace rcme

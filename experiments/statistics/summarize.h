@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/statistics/coverage_verdict.h"
+#include "experiments/statistics/trial_groups.h"
+#include "experiments/run/store/result_store.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+
+// Which intervals rates and scores have.
+enum class IntervalKind {
+  kExact,         // Clopper-Pearson
+  kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
+  kWeighted,      // of weighted trials, with the cautious upper end (stats/weighted_rate.h)
+  kBetting,       // of scores: a confidence sequence, whatever the number of trials depended on
+  kLogStudent     // of shares (stats/variance_split.h)
+};
+
+// One number of one estimator in one condition, never without what says how far to trust it.
+struct SummaryRow {
+  enum class Kind {
+    kRate,
+    kMean,
+    kMedian,
+    kScore,  // mean of numbers in [0, 1]
+    kShare   // of a variance (scene_split.h)
+  };
+
+  std::uint32_t condition = 0;
+  std::vector<std::string> levels;  // one per factor
+  std::string estimator;            // label; kSceneLabel: of the problem, whoever solves it
+  std::string quantity;
+  Kind kind = Kind::kRate;
+  double value = 0.0;  // NaN where n is 0
+  IntervalKind interval_kind = IntervalKind::kExact;
+  Interval interval;            // all but means: 95 %; NaN where a median's would not hold
+  double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
+  std::int64_t n = 0;           // trials that the number is of; of repeated scenes: scenes
+  std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
+};
+
+std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median", "score", "share"
+
+// Stands in the place of an estimator in rows about the problems themselves.
+inline constexpr const char* kSceneLabel = "scene";
+
+struct Summary {
+  std::string study;
+  std::vector<std::string> factor_names;
+  Settings efforts;  // of each estimator, by label: what limits the work of a call; empty: unknown
+  std::vector<SummaryRow> rows;
+  std::int64_t num_trials_done = 0, num_trials_planned = 0;
+  int repeats_per_scene = 1;
+  std::string truth_quality;     // truth_quality.h
+  std::int64_t num_retried = 0;  // trials that were run again (RunDescription::retried_trials)
+};
+
+// Whether an estimator of the run states probabilities of failure.
+bool HasFailureProbabilities(const Summary& summary);
+
+// The estimators that refused every trial of every condition.
+std::vector<std::string> FindAlwaysRefusing(const Summary& summary);
+
+// A quantity of the summary, for `rcme list quantities`.
+struct QuantityHelp {
+  std::string name, kind, doc;
+};
+const std::vector<QuantityHelp>& SummaryQuantities();
+
+// Where the trials of a condition are weighted, only the rates of all trials are given: of a part of the
+// trials they would be ratios of estimates.
+//
+// Where scenes are repeated, every scene counts once: with the mean over its repeats in rates, scores and
+// means, with its first trial in medians. The means of scenes are independent numbers, so that rates have
+// the intervals of scores.
+//
+// Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
+// one pass, in memory that does not grow with the trials. Times (which no two runs share) only if asked for.
+//
+// Pooled: all trials of all conditions as if they were of one, which has no levels.
+Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling = Pooling::kPerCondition);
+// The same with the trials put together otherwise.
+Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups);
+
+}  // namespace rcme

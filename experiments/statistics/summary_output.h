@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/statistics/summarize.h"
+
+namespace rcme {
+
+// For people: one row per condition and estimator with the main quantities, intervals and n.
+std::string SummaryAsTable(const Summary& summary);
+
+// For programs: every quantity in a row of its own (tidy), the columns study, condition, one per factor,
+// estimator, quantity, kind, value, lower, upper, standard_error, n, interval (its kind), verdict and
+// trials_to_decide (of nees_coverage: coverage_verdict.h). Empty cells: unknown.
+std::string SummaryAsCsv(const Summary& summary);
+
+// The same rows as an object {study, trials_done, trials_planned, rows: [...]}; unknown and infinite
+// numbers are null.
+std::string SummaryAsJson(const Summary& summary);
+
+// "exact 95 % (Clopper-Pearson)", for people.
+std::string IntervalKindInWords(IntervalKind kind);
+
+// Of the rates of the estimators: one kind, or several joined by "and".
+std::string IntervalKindsIn(const Summary& summary);
+
+}  // namespace rcme

@@ -1,0 +1,194 @@
+#include "experiments/statistics/summary_quantities.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/statistics/failure_forecasts.h"
+#include "experiments/trial/trial_measure.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+std::optional<double> If(bool is_of_interest, double value) {
+  return is_of_interest && !std::isnan(value) ? std::optional<double>(value) : std::nullopt;
+}
+
+std::optional<double> Yes(bool value) { return value ? 1.0 : 0.0; }
+
+bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
+
+bool IsSure(const TrialRecord& r) {
+  const std::optional<double> stated = StatedFailureProbability(r);
+  return stated && *stated <= kSureBelow;
+}
+
+TrialQuantity StatusRate(MotionStatus status, const std::string& doc) {
+  return {StatusName(status), SummaryRow::Kind::kRate, doc + ", of all trials",
+          [status](const TrialRecord& r, const FailureBounds&) { return Yes(r.status == status); }};
+}
+
+TrialQuantity QuantityOf(const TrialMeasure& measure, SummaryRow::Kind kind) {
+  return {measure.name, kind, measure.doc,
+          [measure](const TrialRecord& r, const FailureBounds&) { return measure.Of(r); }};
+}
+
+const std::vector<TrialQuantity>& OwnQuantities() {
+  constexpr auto kRate = SummaryRow::Kind::kRate;
+  constexpr auto kMean = SummaryRow::Kind::kMean;
+  constexpr auto kMedian = SummaryRow::Kind::kMedian;
+  using R = const TrialRecord&;
+  using B = const FailureBounds&;
+  static const double nees_bound = ChiSquareQuantile(5, 0.95);
+  static const std::vector<TrialQuantity> all = {
+      {"not_scored", kRate, "a motion whose truth is not known, of all trials",
+       [](R r, B) { return Yes(!IsScored(r)); }},
+      {"success", kRate, "a motion within the failure bounds, of all trials but those not scored",
+       [](R r, B b) { return If(IsScored(r), HasSucceeded(r, b)); }},
+      {"failure", kRate,
+       "a motion beyond a failure bound or an answer that is not valid, of all trials but those not scored",
+       [](R r, B b) { return If(IsScored(r), HasFailed(r, b)); }},
+      {"failure_or_refusal", kRate, "no success: a failure or no motion, of all trials but those not scored",
+       [](R r, B b) { return If(IsScored(r), HasFailedOrRefused(r, b)); }},
+      StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
+      {"other_refusal", kRate, "no motion for any other reason (the sum of the next fifteen), of all trials",
+       [](R r, B) { return Yes(HasRefused(r) && r.status != MotionStatus::kNoCandidate); }},
+      StatusRate(MotionStatus::kTooFewMatches, "too few distinct matches"),
+      StatusRate(MotionStatus::kDegenerateMatches, "matches that determine no motion"),
+      StatusRate(MotionStatus::kRefinementDiverged, "refinement without a finite optimum"),
+      StatusRate(MotionStatus::kTooFewExplained, "a refined motion that explains too few matches"),
+      StatusRate(MotionStatus::kDirectionNotObservable, "parallax within its noise, no direction"),
+      StatusRate(MotionStatus::kNotBetterThanChance, "no more matches agree than by chance"),
+      StatusRate(MotionStatus::kTooUncertain, "a probability of failure greater than what is allowed"),
+      StatusRate(MotionStatus::kPlanarScene, "model choice: the matches lie on a plane"),
+      StatusRate(MotionStatus::kRotationOnly, "model choice: no translation to be seen"),
+      StatusRate(MotionStatus::kTooLittleParallax, "model choice: too few matches show parallax"),
+      StatusRate(MotionStatus::kInvalidInput, "coordinates, cameras or a noise level that are not valid"),
+      StatusRate(MotionStatus::kLibraryError, "another library that the estimator calls failed"),
+      StatusRate(MotionStatus::kTimedOut, "an estimator outside the program gave no answer in time"),
+      StatusRate(MotionStatus::kNoAnswer, "an estimator outside the program gave no answer: it ended"),
+      StatusRate(MotionStatus::kUnreadableAnswer, "an estimator outside the program gave what is no answer"),
+      StatusRate(MotionStatus::kInvalidMotion, "a failure: not a rotation and a unit vector, or not finite"),
+      StatusRate(MotionStatus::kInvalidCovariance, "a failure: not finite, symmetric, positive semidefinite"),
+      {"kappa_flag", kRate, "the paper's failure flag n*_I / n_I <= kappa, of returned motions",
+       [](R r, B) { return If(IsOk(r), r.failed_by_kappa); }},
+      {"nees_coverage", kRate,
+       "truth within the 95 % region of the reported covariance (never of an answer that is not valid), of "
+       "returned motions",
+       [](R r, B) { return If(!HasRefused(r) && !std::isnan(r.nees), r.nees <= nees_bound); }},
+      {"nees_median", kMedian,
+       "normalised estimation error squared (4.35 expected; infinite where not valid), of returned motions",
+       [](R r, B) { return If(!HasRefused(r), r.nees); }},
+      {"nees", kMean, "the same, its mean (below 5 expected: without failures it is truncated), of successes",
+       [](R r, B b) { return If(HasSucceeded(r, b), r.nees); }},
+      {"rotation_error_deg", kMean, "rotation error, of successes",
+       [](R r, B b) { return If(HasSucceeded(r, b), r.rotation_error_deg); }},
+      {"direction_error_deg", kMean, "error of the translation direction, of successes",
+       [](R r, B b) { return If(HasSucceeded(r, b), r.direction_error_deg); }},
+      {"inlier_precision", kMean, "true ones among the final inliers, of returned motions",
+       [](R r, B) { return If(IsOk(r), r.inlier_precision); }},
+      {"inlier_recall", kMean, "final inliers among the true ones, of returned motions",
+       [](R r, B) { return If(IsOk(r), r.inlier_recall); }},
+      {"num_support", kMean, "n_j of the selected hypothesis, of returned motions",
+       [](R r, B) { return If(IsOk(r), r.num_support); }},
+      {"mean_entropy", kMean, "psi_j of the selected hypothesis (nats), of returned motions",
+       [](R r, B) { return If(IsOk(r), r.mean_entropy); }},
+      {"explained_share", kMean, "matches that agree with the refined motion, of returned motions",
+       [](R r, B) { return If(IsOk(r), static_cast<double>(r.num_explained) / r.num_matches); }},
+      {"num_candidates", kMean, "hypotheses that passed every test, of all trials",
+       [](R r, B) { return std::optional<double>(r.counts.num_candidates); }},
+      {"sigma_estimated_px", kMean,
+       "noise level estimated from the residuals, of returned motions that have one",
+       [](R r, B) { return If(IsOk(r), r.sigma_estimated_px); }},
+      {"inlier_brier", SummaryRow::Kind::kScore,
+       "mean squared error of the inlier probabilities, 0 best; of returned motions that have them",
+       [](R r, B) { return If(IsOk(r), r.inlier_brier); }},
+      {"failure_probability", SummaryRow::Kind::kScore,
+       "stated probability of failure, its mean; of answers that have one and whose truth is known, as the "
+       "next two",
+       [](R r, B) { return StatedFailureProbability(r); }},
+      {"brier", SummaryRow::Kind::kScore, "Brier score (P - y)^2 of that, 0 best", BrierOfStated},
+      {"failure_of_sure", kRate, "failure, of those with P at most 0.1",
+       [](R r, B b) { return If(IsSure(r), HasFailed(r, b)); }},
+      {"time_ms", kMedian, "processor time of the call, of all trials; only with --times",
+       [](R r, B) { return std::optional<double>(1e3 * r.seconds); }},
+      {"mean_time_ms", kMean, "the same, its mean, which `rcme budget` sets; only with --times",
+       [](R r, B) { return std::optional<double>(1e3 * r.seconds); }},
+  };
+  return all;
+}
+
+// Of what few estimators state.
+bool IsOfProbabilities(const std::string& quantity) {
+  return quantity == "sigma_estimated_px" || quantity == "inlier_brier" ||
+         quantity == "failure_probability" || quantity == "brier" || quantity == "failure_of_sure";
+}
+
+// Of what only an estimator outside the program can do.
+bool IsOfOutside(const std::string& quantity) {
+  return quantity == StatusName(MotionStatus::kTimedOut) || quantity == StatusName(MotionStatus::kNoAnswer) ||
+         quantity == StatusName(MotionStatus::kUnreadableAnswer);
+}
+
+// No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
+// problem and not the estimator is to blame.
+bool IsImpossible(const ProblemRecord& problem, const FailureBounds& bounds) {
+  return problem.severity.crb_rotation_deg > bounds.max_rotation_error_deg ||
+         problem.severity.crb_direction_deg > bounds.max_direction_error_deg;
+}
+
+}  // namespace
+
+const std::vector<TrialQuantity>& TrialQuantities() {
+  static const std::vector<TrialQuantity> all = [] {
+    std::vector<TrialQuantity> quantities = OwnQuantities();
+    for (const TrialMeasure& score : TrialScores())
+      quantities.push_back(QuantityOf(score, SummaryRow::Kind::kScore));
+    for (const TrialMeasure& error : TrialErrors())
+      quantities.push_back(QuantityOf(error, SummaryRow::Kind::kMedian));
+    return quantities;
+  }();
+  return all;
+}
+
+const std::vector<ProblemQuantity>& ProblemQuantities() {
+  static const std::vector<ProblemQuantity> all = [] {
+    std::vector<ProblemQuantity> quantities = {
+        {"impossible", SummaryRow::Kind::kRate,
+         "Cramer-Rao bound beyond a failure bound, of measured problems",
+         [](const ProblemRecord& p, const FailureBounds& b) {
+           return If(!std::isnan(p.severity.crb_rotation_deg), IsImpossible(p, b));
+         }},
+        {"num_inliers_true", SummaryRow::Kind::kMean, "true matches",
+         [](const ProblemRecord& p, const FailureBounds&) { return If(true, p.num_inliers_true); }}};
+    Severity names;
+    VisitSeverity(names, [&](const std::string& name, const double&) {
+      quantities.push_back({name, SummaryRow::Kind::kMean, "severity of the problem (simulator/severity)",
+                            [name](const ProblemRecord& p, const FailureBounds&) {
+                              double value = Severity::kUnknown;
+                              VisitSeverity(p.severity, [&](const std::string& other, const double& field) {
+                                if (other == name) value = field;
+                              });
+                              return If(true, value);
+                            }});
+    });
+    return quantities;
+  }();
+  return all;
+}
+
+bool IsOfTimes(const std::string& quantity) { return quantity == "time_ms" || quantity == "mean_time_ms"; }
+
+void LeaveOutRows(bool with_times, Summary* summary) {
+  std::vector<SummaryRow>& rows = summary->rows;
+  const bool has_probabilities = std::ranges::any_of(
+      rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity) && row.n > 0; });
+  if (!has_probabilities)
+    std::erase_if(rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity); });
+  const bool has_silence = std::ranges::any_of(
+      rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity) && row.value > 0.0; });
+  if (!has_silence) std::erase_if(rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity); });
+  if (!with_times) std::erase_if(rows, [](const SummaryRow& row) { return IsOfTimes(row.quantity); });
+}
+
+}  // namespace rcme

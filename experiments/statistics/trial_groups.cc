@@ -1,0 +1,89 @@
+#include "experiments/statistics/trial_groups.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+constexpr size_t kNumGroups = 5;
+
+// The place of a number in VisitSeverity.
+size_t PlaceOf(const std::string& quantity) {
+  std::vector<std::string> names;
+  const Severity severity;
+  VisitSeverity(severity, [&](const char* name, double) { names.emplace_back(name); });
+  const auto found = std::ranges::find(names, quantity);
+  if (found == names.end()) {
+    throw InputError(fmt::format("fifths-of: no number of the problem is called '{}'; there are {}", quantity,
+                                 fmt::join(names, ", ")));
+  }
+  return static_cast<size_t>(found - names.begin());
+}
+
+double ValueAt(size_t place, const Severity& severity) {
+  double found = Severity::kUnknown;
+  size_t i = 0;
+  VisitSeverity(severity, [&](const char*, double value) {
+    if (i++ == place) found = value;
+  });
+  return found;
+}
+
+// The greatest values of the first four groups.
+std::vector<double> Bounds(std::vector<double> values) {
+  std::ranges::sort(values);
+  std::vector<double> bounds;
+  for (size_t group = 1; group < kNumGroups; ++group) {
+    bounds.push_back(values[(group * values.size() - 1) / kNumGroups]);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+TrialGroups GroupByCondition(const RunDescription& run) {
+  TrialGroups groups{run.factors, {}, [](const ProblemRecord& problem) { return size_t{problem.condition}; }};
+  for (const auto& condition : run.conditions) groups.levels.push_back(condition.levels);
+  return groups;
+}
+
+TrialGroups OneGroup() {
+  return {{}, {{}}, [](const ProblemRecord&) { return size_t{0}; }};
+}
+
+TrialGroups GroupByFifth(const ResultStore& store, const std::string& quantity) {
+  const size_t place = PlaceOf(quantity);
+  std::vector<double> values;
+  bool is_unknown_of_some = false;
+  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>&) {
+    const double value = ValueAt(place, problem.severity);
+    if (std::isnan(value)) {
+      is_unknown_of_some = true;
+    } else {
+      values.push_back(value);
+    }
+  });
+  if (values.empty()) throw InputError("fifths-of: " + quantity + " is unknown of all trials of this run");
+  const std::vector<double> bounds = Bounds(std::move(values));
+  TrialGroups groups{{"fifth", quantity}, {{"1", fmt::format("up to {:.3g}", bounds[0])}}, {}};
+  for (size_t i = 1; i < bounds.size(); ++i) {
+    groups.levels.push_back(
+        {std::to_string(i + 1), fmt::format("{:.3g} to {:.3g}", bounds[i - 1], bounds[i])});
+  }
+  groups.levels.push_back({std::to_string(kNumGroups), fmt::format("above {:.3g}", bounds.back())});
+  if (is_unknown_of_some) groups.levels.push_back({"unknown", "unknown"});
+  groups.group_of = [place, bounds](const ProblemRecord& problem) {
+    const double value = ValueAt(place, problem.severity);
+    if (std::isnan(value)) return kNumGroups;
+    return static_cast<size_t>(std::ranges::lower_bound(bounds, value) - bounds.begin());
+  };
+  return groups;
+}
+
+}  // namespace rcme

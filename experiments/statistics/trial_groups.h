@@ -1,0 +1,28 @@
+// How the trials of a run are put together for a summary.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/run/store/result_store.h"
+
+namespace rcme {
+
+struct TrialGroups {
+  std::vector<std::string> factor_names;
+  std::vector<std::vector<std::string>> levels;  // of every group, one per factor
+  std::function<size_t(const ProblemRecord&)> group_of;
+};
+
+enum class Pooling { kPerCondition, kPooled };
+
+TrialGroups GroupByCondition(const RunDescription& run);
+TrialGroups OneGroup();
+
+// Five groups with equally many trials, those with the least value of a number of the problem first
+// (VisitSeverity: "crb_direction_deg"); equal values are in one group, and the trials of which it is unknown
+// in a sixth. Reads the run once. Throws InputError if there is no such number, or it is unknown of all.
+TrialGroups GroupByFifth(const ResultStore& store, const std::string& quantity);
+
+}  // namespace rcme

@@ -1,0 +1,21 @@
+#include "experiments/core/text/duration.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace rcme {
+namespace {
+
+TEST(Duration, IsReadInHoursMinutesAndSeconds) {
+  EXPECT_EQ(ParseDuration("90s"), 90.0);
+  EXPECT_EQ(ParseDuration("55m"), 3300.0);
+  EXPECT_EQ(ParseDuration("1h30m"), 5400.0);
+  EXPECT_EQ(ParseDuration("1.5h"), 5400.0);
+  EXPECT_EQ(ParseDuration("0.25s"), 0.25);
+  for (const std::string wrong : {"", "55", "m", "5d", "1h30", "-5m", "0s", "nan s", "1e9h", " 5m", "5 m"})
+    EXPECT_EQ(ParseDuration(wrong), std::nullopt) << wrong;
+}
+
+}  // namespace
+}  // namespace rcme

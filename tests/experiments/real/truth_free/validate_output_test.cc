@@ -1,0 +1,278 @@
+// What is written of a set of pairs: every number of a report that is made by hand, in its place.
+#include "experiments/real/truth_free/validate_output.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
+
+SharedMemberRate CoverageOf(double rate, const Interval& interval) {
+  SharedMemberRate coverage;
+  coverage.rate = rate;
+  coverage.interval = interval;
+  return coverage;
+}
+
+// One that holds, one that fails by the data, one without data.
+std::vector<TruthFreeTest> TestsByHand() {
+  TruthFreeTest simulation, halves, closure;
+  simulation.name = kSimulationTest;
+  simulation.num_values = 24;
+  simulation.coverage = CoverageOf(0.96, {0.9, 0.99});
+  simulation.twin_coverage = CoverageOf(0.94, {0.8, 0.98});
+  simulation.ratio = {1.1, {0.9, 1.2}};
+  simulation.verdict = TruthFreeVerdict::kHolds;
+  halves.name = "spatial_halves";
+  halves.num_units = 8;
+  halves.num_values = 16;
+  halves.coverage = CoverageOf(0.75, {0.5, 0.9});
+  halves.twin_coverage = CoverageOf(0.9375, {0.81, 0.99});
+  halves.ratio = {2.1, {1.8, 2.5}};
+  halves.in_simulation = {1.05, {0.85, 1.25}};
+  halves.against_twins = {2.0, {1.5, 2.6}};
+  halves.verdict = TruthFreeVerdict::kTooSmall;
+  halves.cause = FaultCause::kData;
+  halves.units_needed = kNotKnown;
+  closure.name = "closure";
+  closure.degrees_of_freedom = 3;
+  closure.coverage = closure.twin_coverage = CoverageOf(kNotKnown, {0.0, 1.0});
+  closure.ratio = closure.in_simulation = closure.against_twins = {kNotKnown, {0.0, kNoBound}};
+  return {simulation, halves, closure};
+}
+
+// A fault too large, one too small, one that holds; p = 0.001 of there being none.
+CalibrationReport CalibrationByHand() {
+  CalibrationReport report;
+  report.num_pairs = 7;
+  report.p_value = 0.001;
+  report.dispersion = 1.5;
+  report.verdict = TruthFreeVerdict::kTooLarge;
+  FaultReport focal, x, y;
+  focal.fault = CameraFault::kFocalLength;
+  focal.joint = {0.0052, 0.0004, {0.0045, 0.006}, 6.5};
+  focal.alone = {0.005, 0.0003, {0.0044, 0.0056}, 6.0};
+  focal.twins = {kNotKnown, kNotKnown, {-kNoBound, kNoBound}, 0.0};
+  focal.verdict = TruthFreeVerdict::kTooLarge;
+  x.fault = CameraFault::kPrincipalPointX;
+  x.joint = {-3.0, 0.5, {-4.0, -2.0}, 5.0};
+  x.verdict = TruthFreeVerdict::kTooSmall;
+  y.fault = CameraFault::kPrincipalPointY;
+  y.joint = {0.1, 0.2, {-0.3, 0.5}, 5.0};
+  y.verdict = TruthFreeVerdict::kHolds;
+  report.faults = {focal, x, y};
+  return report;
+}
+
+SetReport SetReportByHand() {
+  SetReport report;
+  report.name = "fountain, east";
+  report.num_pairs = 10;
+  report.num_answered = 8;
+  report.num_loops = {{3, 2}, {4, 1}};
+  report.tests = TestsByHand();
+  report.covariances = {TruthFreeVerdict::kTooSmall, FaultCause::kData, {"spatial_halves", "closure"}};
+  report.assumed_sigma_px = 0.5;
+  report.sigma_px = {0.6, {0.55, 0.7}};
+  report.sigma_verdict = TruthFreeVerdict::kUndecided;
+  // The difference is beyond 0.05, below, both, not known.
+  report.correlations = {{0.0, 1.0, 120.0, 0.3, 0.1, {0.15, 0.25}},
+                         {1.0, 4.0, 200.0, 0.03, 0.01, {-0.02, 0.04}},
+                         {4.0, 16.0, 50.0, 0.2, 0.1, {0.0, 0.25}},
+                         {16.0, 64.0, 3.0, 0.5, kNotKnown, {kNotKnown, kNotKnown}}};
+  report.calibration = CalibrationByHand();
+  report.sizes = {6, {0.4, 0.05, {0.3, 0.5}, 5.5}, TruthFreeVerdict::kTooSmall};
+  report.advice = {"look at the lens"};
+  return report;
+}
+
+// Runs of spaces as one: what stands in the columns, whatever their widths.
+std::string TableOfSet(const SetReport& report) {
+  return std::regex_replace(ValidationAsTable({report}), std::regex(" +"), " ");
+}
+
+nlohmann::json JsonOfSet(const SetReport& report) {
+  return nlohmann::json::parse(ValidationAsJson({report})).at("sets").at(0);
+}
+
+std::string WordsOf(const ComparedMedians& ratio, TruthFreeVerdict verdict, FaultCause cause) {
+  TruthFreeTest test;
+  test.ratio = ratio;
+  test.verdict = verdict;
+  test.cause = cause;
+  test.num_units = 20;
+  test.units_needed = 20.0;
+  return VerdictInWords(test);
+}
+
+// Too large by the inverse, whose ends change places.
+TEST(VerdictInWords, ByHand) {
+  using enum TruthFreeVerdict;
+  EXPECT_EQ(WordsOf({1.1, {0.9, 1.2}}, kHolds, FaultCause::kNone), "holds: 1.1 [0.9, 1.2]");
+  EXPECT_EQ(WordsOf({1.1, {0.9, 1.2}}, kNoData, FaultCause::kNone), "no data");
+  EXPECT_EQ(WordsOf({2.1, {1.8, 2.5}}, kTooSmall, FaultCause::kData),
+            "too small by 2.1 [1.8, 2.5] in variance; the data: in simulation it is not");
+  EXPECT_EQ(WordsOf({2.1, {1.8, 2.5}}, kTooSmall, FaultCause::kBoth),
+            "too small by 2.1 [1.8, 2.5] in variance; in simulation too, and more so here");
+  EXPECT_EQ(
+      WordsOf({0.5, {0.4, 0.625}}, kTooLarge, FaultCause::kEstimator),
+      "too large by 2 [1.6, 2.5] in variance; the estimator's own covariance is too large, in simulation "
+      "too");
+}
+
+// Of 20 units: 20 would not decide it by their number, 21 would.
+TEST(VerdictInWords, SaysWhatWouldDecide) {
+  const ComparedMedians wide = {1.3, {0.9, 1.9}};
+  EXPECT_EQ(WordsOf(wide, TruthFreeVerdict::kUndecided, FaultCause::kNone),
+            "undecided: 1.3 [0.9, 1.9]; within 1.25 of one it would be by the approximation");
+  TruthFreeTest test;
+  test.ratio = wide;
+  test.verdict = TruthFreeVerdict::kUndecided;
+  test.num_units = 20;
+  test.units_needed = 21.0;
+  EXPECT_EQ(VerdictInWords(test), "undecided: 1.3 [0.9, 1.9]; some 21 in place of 20 would decide it");
+  test.units_needed = kNotKnown;
+  EXPECT_EQ(VerdictInWords(test), "undecided: 1.3 [0.9, 1.9]; it takes five at least");
+}
+
+TEST(ValidationAsCsv, HasARowOfEveryTest) {
+  const std::string set = "\"fountain, east\",10,8,";
+  EXPECT_EQ(ValidationAsCsv({SetReportByHand()}),
+            "set,pairs,answered,test,value,lower,upper,n,coverage,twin_coverage,verdict,cause\n" +  //
+                set + "covariances,,,,8,,,too small,data\n" +                                       //
+                set + "simulation,1.1,0.9,1.2,24,0.96,0.94,holds,\n" +                              //
+                set + "spatial_halves,2.1,1.8,2.5,16,0.75,0.9375,too small,data\n" +                //
+                set + "closure,,0,,0,,,no data,\n" +                                                //
+                set + "correlation_0_to_1_px,0.2,0.15,0.25,120,,,correlated,\n" +                   //
+                set + "correlation_1_to_4_px,0.02,-0.02,0.04,200,,,holds,\n" +                      //
+                set + "correlation_4_to_16_px,0.1,0,0.25,50,,,undecided,\n" +                       //
+                set + "correlation_16_to_64_px,,,,3,,,no data,\n" +                                 //
+                set + "calibration,0.001,,,7,,,wrong,\n" +                                          //
+                set + "focal_length,0.0052,0.0045,0.006,7,,,wrong,\n" +                             //
+                set + "principal_point_x,-3,-4,-2,7,,,wrong,\n" +                                   //
+                set + "principal_point_y,0.1,-0.3,0.5,7,,,holds,\n" +                               //
+                set + "noise_by_size,0.4,0.3,0.5,6,,,too small,\n" +                                //
+                set + "sigma_px,0.6,0.55,0.7,8,,,undecided,\n");
+}
+
+TEST(ValidationAsCsv, NamesTheCause) {
+  SetReport report = SetReportByHand();
+  report.tests[0].cause = FaultCause::kEstimator;
+  report.tests[1].cause = FaultCause::kBoth;
+  const std::string text = ValidationAsCsv({report});
+  EXPECT_THAT(text, HasSubstr(",0.96,0.94,holds,estimator\n"));
+  EXPECT_THAT(text, HasSubstr(",0.75,0.9375,too small,both\n"));
+}
+
+TEST(ValidationAsTable, BeginsWithTheSet) {
+  SetReport report = SetReportByHand();
+  EXPECT_THAT(TableOfSet(report),
+              testing::StartsWith(
+                  "fountain, east: 10 pairs, 8 answered, 3 loops of images (2 of 3, 1 of 4)\n"
+                  "covariances: too small; the data: in simulation it is not (spatial_halves, closure)\n"));
+  EXPECT_THAT(TableOfSet(report), HasSubstr("\n -> look at the lens\n"));
+  report.num_loops.clear();
+  report.covariances = {};
+  EXPECT_THAT(TableOfSet(report),
+              testing::StartsWith("fountain, east: 10 pairs, 8 answered, 0 loops of images\n"
+                                  "covariances: no data\n"));
+}
+
+// The simulation has no twins of its own; a correlation that is not known has no row.
+TEST(ValidationAsTable, HasARowOfEveryTest) {
+  const std::string text = TableOfSet(SetReportByHand());
+  EXPECT_THAT(text, HasSubstr("\nsimulation holds: 1.1 [0.9, 1.2] 24 96 % [90, 99]\n"));
+  EXPECT_THAT(
+      text, HasSubstr("\nspatial_halves too small by 2.1 [1.8, 2.5] in variance; the data: in simulation it "
+                      "is not 16 75 % [50, 90] 2 [1.5, 2.6] 94 % [81, 99]\n"));
+  EXPECT_THAT(text, HasSubstr("\nclosure no data 0 - -\n"));
+  EXPECT_THAT(text, HasSubstr("\nresiduals 0 to 1 px apart correlated: correlation 0.2 [0.15, 0.25] 120\n"));
+  EXPECT_THAT(text, HasSubstr("\nresiduals 1 to 4 px apart holds: correlation 0.02 [-0.02, 0.04] 200\n"));
+  EXPECT_THAT(text, HasSubstr("\nresiduals 4 to 16 px apart undecided: correlation 0.1 [0, 0.25] 50\n"));
+  EXPECT_THAT(text, Not(HasSubstr("residuals 16")));
+  EXPECT_THAT(text, HasSubstr("\ncalibration some fault (p = 0.001) 7\n"));
+  EXPECT_THAT(text, HasSubstr("\nfocal length 0.52 % [0.45, 0.6] too long 7\n"));
+  EXPECT_THAT(text, HasSubstr("\nprincipal point, y holds (within +-0.5 px) 7\n"));
+  EXPECT_THAT(text, HasSubstr("\nnoise by size grows by 0.4 [0.3, 0.5] of what is stated 6\n"));
+  EXPECT_THAT(text, HasSubstr("\nnoise sigma 0.6 [0.55, 0.7] px, assumed 0.5: undecided 8\n"));
+}
+
+TEST(ValidationAsTable, SaysWhatIsNominal) {
+  const std::string text = TableOfSet(SetReportByHand());
+  EXPECT_THAT(text, HasSubstr("within [1/1.5, 1.5],"));
+  EXPECT_THAT(text, HasSubstr("nominal below 0.05."));
+  EXPECT_THAT(text,
+              HasSubstr("Nominal: focal length 0.2 %, principal point, x 1 px, principal point, y 1 px, "
+                        "distortion k1 0.001, readout time 1 %, key points of image 2, x 0.1 px, key points "
+                        "of image 2, y 0.1 px.\n"));
+  EXPECT_THAT(text, HasSubstr("nominal within 0.25 of one.\n"));
+}
+
+TEST(ValidationAsJson, HasTheNumbersOfTheSet) {
+  const auto whole = nlohmann::ordered_json::parse(ValidationAsJson({SetReportByHand(), SetReport()}));
+  EXPECT_EQ(whole.begin().key(), "format");
+  EXPECT_EQ(whole["format"], "rcme validation 2");
+  EXPECT_EQ(whole["nominal_variance"], 1.5);
+  EXPECT_EQ(whole["nominal_correlation"], 0.05);
+  EXPECT_EQ(whole["sets"].size(), 2u);
+  nlohmann::json set = JsonOfSet(SetReportByHand());
+  for (const char* list : {"tests", "correlations", "camera_faults"}) {
+    EXPECT_GE(set.at(list).size(), 3u) << list;
+    set.erase(list);
+  }
+  EXPECT_EQ(set, nlohmann::json::parse(R"({"name": "fountain, east", "pairs": 10, "answered": 8,
+      "loops": {"3": 2, "4": 1}, "assumed_sigma_px": 0.5, "sigma_px": 0.6, "sigma_px_interval": [0.55, 0.7],
+      "sigma_verdict": "undecided",
+      "covariances": {"verdict": "too small", "cause": "data", "tests": ["spatial_halves", "closure"]},
+      "calibration": {"pairs": 7, "p_value": 0.001, "dispersion": 1.5, "verdict": "wrong"},
+      "noise_by_size": {"pairs": 6, "slope": {"value": 0.4, "interval": [0.3, 0.5], "effective_pairs": 5.5},
+                        "verdict": "too small"},
+      "advice": ["look at the lens"]})"));
+}
+
+// What is not known is null, an end that is not bounded too.
+TEST(ValidationAsJson, HasTheNumbersOfEveryTest) {
+  const nlohmann::json set = JsonOfSet(SetReportByHand());
+  ASSERT_EQ(set.at("tests").size(), 3u);
+  EXPECT_EQ(set.at("tests").at(1),
+            nlohmann::json::parse(R"({"test": "spatial_halves", "degrees_of_freedom": 5,
+      "n": 16, "coverage": 0.75, "coverage_interval": [0.5, 0.9], "twin_coverage": 0.9375, "ratio": 2.1,
+      "interval": [1.8, 2.5], "in_simulation": {"ratio": 1.05, "interval": [0.85, 1.25]},
+      "against_twins": {"ratio": 2.0, "interval": [1.5, 2.6]}, "verdict": "too small", "cause": "data",
+      "units": 8, "units_needed": null})"));
+  EXPECT_EQ(set.at("tests").at(2),
+            nlohmann::json::parse(R"({"test": "closure", "degrees_of_freedom": 3, "n": 0,
+      "coverage": null, "coverage_interval": [0.0, 1.0], "twin_coverage": null, "ratio": null,
+      "interval": [0.0, null], "in_simulation": {"ratio": null, "interval": [0.0, null]},
+      "against_twins": {"ratio": null, "interval": [0.0, null]}, "verdict": "no data", "cause": "", "units": 0,
+      "units_needed": 0.0})"));
+}
+
+TEST(ValidationAsJson, HasTheNumbersOfCorrelationsAndFaults) {
+  const nlohmann::json set = JsonOfSet(SetReportByHand());
+  ASSERT_EQ(set.at("correlations").size(), 4u);
+  EXPECT_EQ(set.at("correlations").at(1), nlohmann::json::parse(R"({"from_px": 1.0, "to_px": 4.0, "n": 200.0,
+      "correlation": 0.03, "twin_correlation": 0.01, "difference_interval": [-0.02, 0.04], "verdict": "holds"})"));
+  EXPECT_EQ(set.at("correlations").at(3), nlohmann::json::parse(R"({"from_px": 16.0, "to_px": 64.0, "n": 3.0,
+      "correlation": 0.5, "twin_correlation": null, "difference_interval": [null, null], "verdict": "no data"})"));
+  ASSERT_EQ(set.at("camera_faults").size(), 3u);
+  EXPECT_EQ(set.at("camera_faults").at(0),
+            nlohmann::json::parse(R"({"fault": "focal_length", "nominal": 0.002,
+      "beside_others": {"value": 0.0052, "interval": [0.0045, 0.006], "effective_pairs": 6.5},
+      "alone": {"value": 0.005, "interval": [0.0044, 0.0056], "effective_pairs": 6.0},
+      "twins": {"value": null, "interval": [null, null], "effective_pairs": 0.0}, "verdict": "wrong",
+      "in_words": "0.52 % [0.45, 0.6] too long"})"));
+}
+
+}  // namespace
+}  // namespace rcme
