@@ -19,7 +19,7 @@
 namespace rcme {
 namespace {
 
-enum class Part : char { kStep = 's', kResult = 'r' };
+enum class MessageKind : char { kStep = 's', kResult = 'r' };
 
 void WriteAll(int file, const void* bytes, size_t size) {
   const char* next = static_cast<const char*>(bytes);
@@ -33,9 +33,9 @@ void WriteAll(int file, const void* bytes, size_t size) {
 }
 
 // One letter, the length, the text.
-void Send(int file, Part part, const std::string& text) {
+void Send(int file, MessageKind kind, const std::string& text) {
   const auto size = static_cast<std::uint32_t>(text.size());
-  std::string bytes(1, static_cast<char>(part));
+  std::string bytes(1, static_cast<char>(kind));
   bytes.append(reinterpret_cast<const char*>(&size), sizeof(size));
   WriteAll(file, (bytes + text).data(), bytes.size() + text.size());
 }
@@ -44,9 +44,9 @@ void Send(int file, Part part, const std::string& text) {
   std::mutex mutex;
   const std::string result = work([&](const std::string& step) {
     const std::lock_guard lock(mutex);
-    Send(file, Part::kStep, step);
+    Send(file, MessageKind::kStep, step);
   });
-  Send(file, Part::kResult, result);
+  Send(file, MessageKind::kResult, result);
   _exit(0);
 }
 
@@ -82,7 +82,7 @@ class Receiver {
     for (; waiting_.size() >= kHead; waiting_.erase(0, kHead + size)) {
       std::memcpy(&size, waiting_.data() + 1, sizeof(size));
       if (waiting_.size() < kHead + size) return;
-      const bool is_result = waiting_[0] == static_cast<char>(Part::kResult);
+      const bool is_result = waiting_[0] == static_cast<char>(MessageKind::kResult);
       (is_result ? result : last_step) = waiting_.substr(kHead, size);
       has_result = has_result || is_result;
     }
