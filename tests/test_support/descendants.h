@@ -7,7 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,9 +17,11 @@ namespace rcme {
 // Their command lines, this process left out.
 inline std::vector<std::string> ProcessesNaming(const std::string& path) {
   namespace fs = std::filesystem;
+  // Empty for a process that ends meanwhile: `<<` takes the failed read for the end of the text.
   const auto read = [](const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
   };
   std::vector<std::string> found;
   for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
