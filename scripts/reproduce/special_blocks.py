@@ -36,7 +36,7 @@ def all_results(_):
     for recipe in read_recipes().values():
         entry = entries.get(recipe.name, {})
         minutes = f"{entry.get('cpu_minutes', recipe.cpu_minutes):g}"
-        body.append([recipe.name, f"[{recipe.folder}](results/{recipe.folder}/README.md)",
+        body.append([recipe.name, f"[{recipe.folder}]({recipe.folder}/README.md)",
                      minutes + (" (long)" if recipe.is_long() else ""), version_words(entry)])
     return markdown(["`scripts/results NAME`", "page", "CPU minutes, about", "made by commit"], body)
 
