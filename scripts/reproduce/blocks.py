@@ -1,13 +1,13 @@
 """The generated blocks of the pages.
 
-    <!-- begin generated: NAME
-    KIND ARGUMENT
-    key: value
-    -->
-    what is shown; written by `scripts/results --blocks`, never by hand
-    <!-- end generated: NAME -->
+A page shows a block between two comments, and the file of the same name with `.in` after it says what each is made of:
 
-So a page says itself what each of its tables is made of. Kinds:
+    README.md                              README.md.in
+    <!-- begin generated: NAME -->         === NAME
+    what is shown                          KIND ARGUMENT
+    <!-- end generated: NAME -->           key: value
+
+`scripts/results --blocks` writes what is shown; nobody types it. Kinds:
 
     rates TABLE ... the rows of one table or several; a row per level of `rows`, a column per level of `across` (default: estimator), each cell the
                     quantities of `cells`; further columns about the problem by `scene: quantity as Heading; ...`;
@@ -28,13 +28,24 @@ from recipes import ROOT, RESULTS, ResultError
 from special_blocks import SPECIAL
 from tables import levels_of, markdown, read_table, select, shown, the_row, words_of
 
-BEGIN = re.compile(r"<!-- begin generated: (\S+)\n(.*?)-->\n(.*?)<!-- end generated: (\S+) -->", re.DOTALL)
+BLOCK = re.compile(r"<!-- begin generated: (\S+) -->\n.*?<!-- end generated: (\S+) -->", re.DOTALL)
+TEMPLATE = re.compile(r"^=== (\S+)\n(.*?)(?=^=== |\Z)", re.DOTALL | re.MULTILINE)
 NUMBER = re.compile(r"\{([^{}]+)\}")
 KEY = re.compile(r"^([a-z]+): (.*)$")
 
 
 def pages():
-    return sorted([ROOT / "README.md", RESULTS / "README.md", *RESULTS.glob("*/README.md")])
+    return sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md"), RESULTS / "README.md", *RESULTS.glob("*/README.md")])
+
+
+def template_file(page):
+    return page.with_name(page.name + ".in")
+
+
+def templates(page):
+    """{name of a block: what it is made of} of a page."""
+    path = template_file(page)
+    return dict(TEMPLATE.findall(path.read_text(encoding="utf-8"))) if path.exists() else {}
 
 
 class Spec:
@@ -136,26 +147,28 @@ def render(spec):
 
 def rendered(page):
     """The page with every block as the committed tables give it."""
-    content = page.read_text(encoding="utf-8")
-    where = page.relative_to(ROOT)
-    if content.count("<!-- begin generated:") != len(BEGIN.findall(content)):
+    content, made_of = page.read_text(encoding="utf-8"), templates(page)
+    where, names = page.relative_to(ROOT), block_names(page)
+    if content.count("<!-- begin generated:") != len(names):
         raise ResultError(f"{where}: a block begins and does not end")
+    if sorted(names) != sorted(made_of):
+        raise ResultError(f"{where} has the blocks {sorted(names)}, {template_file(page).name} those of {sorted(made_of)}")
 
     def block(match):
         name = match[1]
-        if match[4] != name:
-            raise ResultError(f"{where}: block '{name}' ends as '{match[4]}'")
+        if match[2] != name:
+            raise ResultError(f"{where}: block '{name}' ends as '{match[2]}'")
         try:
-            shown_text = render(Spec(match[2]))
+            shown_text = render(Spec(made_of[name]))
         except (ResultError, KeyError, ValueError, StopIteration) as error:
             raise ResultError(f"{where}: block '{name}': {error or type(error).__name__}") from error
-        return f"<!-- begin generated: {name}\n{match[2]}-->\n{shown_text}\n<!-- end generated: {name} -->"
+        return f"<!-- begin generated: {name} -->\n{shown_text}\n<!-- end generated: {name} -->"
 
-    return BEGIN.sub(block, content)
+    return BLOCK.sub(block, content)
 
 
 def block_names(page):
-    return [match[0] for match in BEGIN.findall(page.read_text(encoding="utf-8"))]
+    return [match[0] for match in BLOCK.findall(page.read_text(encoding="utf-8"))]
 
 
 def write_blocks():
@@ -178,5 +191,5 @@ def unaccounted(recipes):
     """Committed files under results that no recipe makes, and files of recipes that are not there."""
     known = {target for recipe in recipes.values() for _, target, _ in recipe.pairs()}
     own = {RESULTS / name for name in ("results.toml", "made.json", "digests.json")}
-    there = {path for path in RESULTS.rglob("*") if path.is_file() and path.name != "README.md"}
+    there = {path for path in RESULTS.rglob("*") if path.is_file() and path.name not in ("README.md", "README.md.in")}
     return sorted(there - known - own), sorted(known - there)

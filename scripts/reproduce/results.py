@@ -9,7 +9,7 @@
   scripts/results --digests            stores the hashes of a few trials of each result, for the test results.digests
 
 A result is an entry of results/results.toml: commands, files, cost. Its numbers stand in the pages between
-"begin generated" and "end generated", with what they are made of; nothing there is typed by hand. Results do not depend
+"begin generated" and "end generated"; README.md.in beside a page says what they are made of; nothing there is typed by hand. Results do not depend
 on the number of threads or on the machine; what holds times (the benchmarks, the audit's figure of complexity) is made
 again, but not compared. Figures are compared byte by byte: another version of matplotlib draws other bytes.
 """
@@ -82,9 +82,9 @@ def do_blocks(is_check):
         print(f"{path.relative_to(ROOT)}: no result of results/results.toml makes this file")
     for path in absent:
         print(f"{path.relative_to(ROOT)}: is missing, though results/results.toml names it")
-    count = sum(len(blocks.block_names(page)) for page in blocks.pages())
+    counts = [len(blocks.block_names(page)) for page in blocks.pages()]
     differs = bool(stale or unknown or absent)
-    print(f"{count} blocks of {len(blocks.pages())} pages; {'differences' if differs else 'all equal'}")
+    print(f"{sum(counts)} blocks of {sum(map(bool, counts))} pages; {'differences' if differs else 'all equal'}")
     return 1 if differs else 0
 
 
