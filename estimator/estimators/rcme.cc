@@ -44,6 +44,7 @@ struct RcmePipeline {
   static bool InlierSetIsGood(double z, const RansacOptions& options, const Thresholds& thresholds) {
     return PassesQualityTest(z, thresholds.normal, options.quality_test);
   }
+  // The candidate of least mean entropy wins (eq::model_select_entropy).
   static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions& options) {
     return options.selection == Selection::kMeanEntropy
                ? a.mean_entropy < b.mean_entropy

@@ -12,7 +12,7 @@ struct alignas(64) EssentialBlock {
 };
 
 // Fills F, dF unless `outputs` is kNone, and is_model of the block, whose samples of five matches are in
-// place (eq::motion_estimate, eq::cov_p). There is no sample_statistic: the motion fits its sample.
+// place (eq::motion_estimate, eq. 5, eq::cov_p). There is no sample_statistic: the motion fits its sample.
 void InstantiateExactModels(const RayScale& ray_scale, const EssentialBlock& essentials,
                             RequestedOutputs outputs, HypothesisBlock* block);
 

@@ -1,5 +1,5 @@
-"""docs/equations.md says where the paper's equations are: every file it names exists and cites the equation, every claim
-it names is one of the audit's, and no label is cited in the code that it does not list. Needs nothing but this
+"""docs/equations.md says where the paper's equations are: every file it names exists and cites the equation, every test
+includes a file of its row, every claim is one of the audit's and stands in the file beside it, and no label is cited in the code that it does not list. Needs nothing but this
 repository; the claims are those of the program in the environment variable RCME, without which they are not checked."""
 
 import os
@@ -11,6 +11,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/equations.md"
+CLAIMS = "experiments/audit/claims/"
 ROOMS = ["parameters", "stats", "estimator", "simulator", "experiments", "plots", "tests"]
 LABEL = re.compile(r"\beq::?[A-Za-z][A-Za-z0-9_-]*")
 NUMBER = re.compile(r"(?<![A-Za-z0-9] )\beq\. (\d+)(?![\d.])")
@@ -41,7 +42,7 @@ def cited(text):
 def missing_citations(rows, read):
     """Of the rows of the first table, what does not hold, as sentences; `read` gives a file's text or None."""
     wrong = []
-    for number, label, _, reference, fast, _ in rows:
+    for number, label, _, reference, fast, *_ in rows:
         files = quoted(reference) + quoted(fast)
         if not quoted(reference) or (not quoted(fast) and fast not in {"same", "—"}):
             wrong.append(f"equation {number}: no file")
@@ -51,6 +52,35 @@ def missing_citations(rows, read):
                 wrong.append(f"equation {number}: {path} does not exist")
             elif quoted(label)[0] not in cited(text):
                 wrong.append(f"equation {number}: {path} does not cite {quoted(label)[0]}")
+    return wrong
+
+
+def tests_without_their_subject(rows, read):
+    """Of the rows of the first table, the tests that do not exist or include no file that the row names, as sentences."""
+    wrong = []
+    for number, _, _, reference, fast, tests, *_ in rows:
+        headers = [re.sub(r"\.cc$", ".h", path) for path in quoted(reference) + quoted(fast)]
+        if not quoted(tests):
+            wrong.append(f"equation {number}: no test")
+        for test in quoted(tests):
+            text = read(f"tests/estimator/{test}")
+            if text is None or not any(f'"{header}"' in text for header in headers):
+                wrong.append(f"equation {number}: {test} does not exist or includes none of {headers}")
+    return wrong
+
+
+def misplaced_claims(rows, read):
+    """Claims (a row's last cell but one) whose name none of the files of its last cell holds, and files that hold none."""
+    wrong = []
+    for row in rows:
+        idle = set(quoted(row[-1]))
+        for claim in quoted(row[-2]):
+            words = [f'"{claim}"', f'"{claim.split(".")[0]}.']
+            holders = {file for file in quoted(row[-1]) if any(word in (read(CLAIMS + file) or "") for word in words)}
+            idle -= holders
+            if not holders:
+                wrong.append(f"{claim} is in none of {quoted(row[-1])}")
+        wrong += [f"{row[0]}: {file} holds none of its claims" for file in sorted(idle)]
     return wrong
 
 
@@ -71,7 +101,7 @@ def claims_of_the_program(program):
 class Equations(unittest.TestCase):
     def setUp(self):
         self.text = PAGE.read_text(encoding="utf-8")
-        self.equations, self.parts = tables(self.text)
+        _, self.equations, self.parts = tables(self.text)
 
     def test_the_list_is_complete(self):
         count = int(re.search(r"(\d+) equations", self.text).group(1))
@@ -86,6 +116,20 @@ class Equations(unittest.TestCase):
         for row in self.parts:
             for path in quoted(row[2]):
                 self.assertIsNotNone(read_source(path), path)
+
+    def test_every_test_is_of_a_file_of_its_row(self):
+        self.assertEqual(tests_without_their_subject(self.equations, read_source), [])
+
+    def test_every_claim_is_in_the_file_beside_it(self):
+        self.assertEqual(misplaced_claims(self.equations + self.parts, read_source), [])
+
+    def test_a_wrong_test_or_file_of_a_claim_is_seen(self):
+        row = ["7", "`eq::cov_p`", "", "`a.cc`", "—", "`a_test.cc`, `b_test.cc`", "`f.x`, `g.y`", "`f.cc`, `h.cc`"]
+        texts = {"tests/estimator/a_test.cc": '#include "a.h"', "tests/estimator/b_test.cc": "", CLAIMS + "f.cc": '"f.x"'}
+        self.assertEqual(tests_without_their_subject([row], texts.get),
+                         ["equation 7: b_test.cc does not exist or includes none of ['a.h']"])
+        self.assertEqual(misplaced_claims([row], texts.get),
+                         ["g.y is in none of ['f.cc', 'h.cc']", "7: h.cc holds none of its claims"])
 
     def test_a_missing_file_or_citation_is_seen(self):
         row = ["7", "`eq::cov_p`", "", "`a.h`", "`b.h`", "—"]
@@ -105,11 +149,11 @@ class Equations(unittest.TestCase):
     def test_claims_are_those_of_the_audit(self):
         claims = claims_of_the_program(os.environ["RCME"])
         self.assertGreater(len(claims), 40)
-        named = {claim for row in self.equations + self.parts for claim in quoted(row[-1])}
+        named = {claim for row in self.equations + self.parts for claim in quoted(row[-2])}
         self.assertEqual(named, set(claims), "the claims that the page names, and those that there are")
         for row in self.equations:  # a claim that cites an equation stands in its row
             label = quoted(row[1])[0]
-            self.assertLessEqual({name for name, cites in claims.items() if cites == label}, set(quoted(row[5])), label)
+            self.assertLessEqual({name for name, cites in claims.items() if cites == label}, set(quoted(row[6])), label)
 
 
 if __name__ == "__main__":
