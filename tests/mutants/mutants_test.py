@@ -1,11 +1,14 @@
 #!/usr/bin/python3
 """Tests of the lists of mutants and of what is made of them; run as: /usr/bin/python3 tests/mutants/mutants_test.py"""
 
+import os
 import pathlib
+import subprocess
 import tempfile
 import unittest
 
 import entries
+import reach
 import results
 import weave
 from judge import Verdict, batches
@@ -78,6 +81,39 @@ class Weaving(Entries):
     def test_a_header_includes_behind_its_guard(self):
         self.assertEqual(weave.weave("// x\n#pragma once\nint a;\n", []),
                          "// x\n#pragma once\n" + weave.INCLUDE + "int a;\n")
+
+
+# Mutant 3 is reached by a process that is limited as an isolated call is and then killed, 5 by its parent, which is killed too.
+FORKING_PROGRAM = """#include "tests/mutants/selected_mutant.h"
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <csignal>
+int main() {
+  if (fork() == 0) {
+    const rlimit none{};
+    setrlimit(RLIMIT_NOFILE, &none);
+    setrlimit(RLIMIT_FSIZE, &none);
+    rcme::mutants::IsOn(3);
+    raise(SIGKILL);
+  }
+  int status = 0;
+  if (wait(&status) < 0 || !WIFSIGNALED(status) || WTERMSIG(status) != SIGKILL) return 1;
+  if (!rcme::mutants::IsOn(5)) return 2;
+  raise(SIGKILL);
+}
+"""
+
+
+class Tracing(unittest.TestCase):
+    def test_forked_and_killed_processes_count(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            program, trace = pathlib.Path(scratch) / "forking", pathlib.Path(scratch) / "trace"
+            subprocess.run([os.environ.get("CXX", "c++"), "-std=c++20", "-x", "c++", "-", "-I", entries.SOURCE, "-o", program],
+                           input=FORKING_PROGRAM, text=True, check=True)
+            run = subprocess.run([program], env=dict(os.environ, RCME_MUTANT="5", RCME_MUTANT_TRACE=str(trace)))
+            self.assertEqual(run.returncode, -9)
+            self.assertEqual(reach.numbers_reached(trace), {3, 5})
+            self.assertEqual(reach.numbers_reached(pathlib.Path(scratch) / "none"), set())
 
 
 class Judging(unittest.TestCase):

@@ -48,6 +48,11 @@ def files_reached(test, tree):
     return imported_files(test.program, tree / "plots")
 
 
+def numbers_reached(trace):
+    """The mutants in a trace of selected_mutant.h: byte i is 1 if mutant i was reached."""
+    return {number for number, byte in enumerate(trace.read_bytes()) if byte} if trace.exists() else set()
+
+
 def trace_one(test, tree):
     with tempfile.TemporaryDirectory() as scratch:
         trace = pathlib.Path(scratch) / "reached"
@@ -60,8 +65,7 @@ def trace_one(test, tree):
             raise BaselineError(f"{test.program} {test.name} fails without any mutant: {failure_of(output, code)}\n"
                                 + output[-3000:])
         cpu_s = usage.ru_utime + usage.ru_stime
-        reached = {int(number) for number in trace.read_text().split()} if trace.exists() else set()
-        return TracedTest(test, cpu_s, frozenset(reached | files_reached(test, tree)))
+        return TracedTest(test, cpu_s, frozenset(numbers_reached(trace) | files_reached(test, tree)))
 
 
 def trace_tests(tests, tree, jobs):

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
-#include <string>
 
 // Both forms of an expression stand side by side, so that some are longer than what warnings would have.
 #pragma GCC diagnostic ignored "-Wall"
@@ -17,39 +17,42 @@
 
 namespace rcme::mutants {
 
-// The environment: RCME_MUTANT=<number of the mutant that is on>, RCME_MUTANT_TRACE=<file that the numbers of
-// the reached ones are added to when the process ends>.
+// The environment: RCME_MUTANT=<number of the mutant that is on>, RCME_MUTANT_TRACE=<file whose byte i becomes 1 as
+// soon as mutant i is reached>. The file is mapped into memory when the program starts, so that it also receives what
+// is reached by forked processes, which may neither open nor write files, and by processes that are killed.
 class Selection {
  public:
   Selection() {
     if (const char* number = std::getenv("RCME_MUTANT")) selected_ = std::atoi(number);
-    if (const char* file = std::getenv("RCME_MUTANT_TRACE")) trace_file_ = file;
-  }
-  ~Selection() {
-    std::string lines;
-    for (std::size_t i = 0; i < reached_.size(); ++i) {
-      if (reached_[i]) lines += std::to_string(i) + "\n";
-    }
-    if (trace_file_.empty() || lines.empty()) return;
-    const int file = open(trace_file_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-    if (file < 0 || write(file, lines.data(), lines.size()) < 0) std::abort();
-    close(file);
+    if (const char* file = std::getenv("RCME_MUTANT_TRACE")) MapTrace(file);
   }
   bool IsOn(int number) {
-    if (!trace_file_.empty())
-      reached_[static_cast<std::size_t>(number)].store(true, std::memory_order_relaxed);
+    if (reached_) (*reached_)[static_cast<std::size_t>(number)].store(1, std::memory_order_relaxed);
     return number == selected_;
   }
 
  private:
+  using Reached = std::array<std::atomic<unsigned char>, 65536>;
+
+  void MapTrace(const char* path) {
+    const int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (file < 0 || ftruncate(file, sizeof(Reached)) != 0) std::abort();
+    void* mapped = mmap(nullptr, sizeof(Reached), PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    if (mapped == MAP_FAILED) std::abort();
+    close(file);
+    reached_ = static_cast<Reached*>(mapped);
+  }
+
   int selected_ = -1;
-  std::string trace_file_;
-  std::array<std::atomic<bool>, 65536> reached_{};
+  Reached* reached_ = nullptr;
 };
 
-inline bool IsOn(int number) {
+inline Selection& TheSelection() {
   static Selection selection;
-  return selection.IsOn(number);
+  return selection;
 }
+inline Selection& selection_at_start = TheSelection();
+
+inline bool IsOn(int number) { return TheSelection().IsOn(number); }
 
 }  // namespace rcme::mutants
