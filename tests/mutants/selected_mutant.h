@@ -17,9 +17,10 @@
 
 namespace rcme::mutants {
 
-// The environment: RCME_MUTANT=<number of the mutant that is on>, RCME_MUTANT_TRACE=<file whose byte i becomes 1 as
-// soon as mutant i is reached>. The file is mapped into memory when the program starts, so that it also receives what
-// is reached by forked processes, which may neither open nor write files, and by processes that are killed.
+// The environment: RCME_MUTANT=<number of the mutant that is on>, RCME_MUTANT_TRACE=<file whose byte i
+// becomes 1 as soon as mutant i is reached>. The file is mapped into memory when the program starts, so that
+// it also receives what is reached by forked processes, which may neither open nor write files, and by
+// processes that are killed.
 class Selection {
  public:
   Selection() {
