@@ -30,21 +30,29 @@ function(rcme_add_room name)
     target_precompile_headers(rcme_${name} PRIVATE <algorithm> <cmath> <functional> <map> <memory> <string> <vector>
                                                    ${ROOM_PRECOMPILED})
   endif()
-  foreach(folder ${ROOM_TOGETHER})
+  rcme_compile_together(rcme_${name} 9 ${ROOM_TOGETHER})
+  install(TARGETS rcme_${name} EXPORT rcmeTargets)
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rcme
+          FILES_MATCHING PATTERN "*.h")
+endfunction()
+
+# rcme_compile_together(TARGET SIZE FOLDER ...): the target's sources in each folder are compiled SIZE at a time.
+function(rcme_compile_together target size)
+  if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    return()
+  endif()
+  foreach(folder ${ARGN})
     file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cc)
     set(number 0)
     foreach(source ${sources})
-      math(EXPR group "${number} / 9")
+      math(EXPR group "${number} / ${size}")
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}/${group})
       math(EXPR number "${number} + 1")
     endforeach()
   endforeach()
-  if(ROOM_TOGETHER AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-    set_target_properties(rcme_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  if(ARGN)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
-  install(TARGETS rcme_${name} EXPORT rcmeTargets)
-  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rcme
-          FILES_MATCHING PATTERN "*.h")
 endfunction()
 
 # rcme_uses_simd(ROOM): the room has kernels in Highway, compiled for three instruction sets and chosen at run time: plain

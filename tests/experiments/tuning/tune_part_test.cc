@@ -21,7 +21,7 @@ namespace rcme {
 namespace {
 
 using Paths = std::vector<std::string>;
-using Json = nlohmann::ordered_json;
+using PartJson = nlohmann::ordered_json;
 
 std::string Bytes(const StudyPlan& plan, const TuneResult& result, const std::vector<EntropyRoc>& rocs) {
   return TuneAsTable(plan, result, rocs) + TuneAsJson(plan, SettingsOf(plan), result, rocs);
@@ -114,31 +114,31 @@ TEST_F(TuneParts, DamageIsNamed) {
   const TuningPieces work = PiecesOfTuning(plan_);
   const std::string path = PartsOf(work, 1).front();
   // Whether a change of the first piece of a group is found when it is read.
-  const auto is_refused = [&](size_t group, const std::function<void(Json*)>& change,
+  const auto is_refused = [&](size_t group, const std::function<void(PartJson*)>& change,
                               const std::string& word) {
-    const std::string changed = ChangedPart(path, [&](Json* part) {
-      for (Json& piece : part->at("pieces")) {
+    const std::string changed = ChangedPart(path, [&](PartJson* part) {
+      for (PartJson& piece : part->at("pieces")) {
         if (piece["group"] == group && piece["piece"] == 0) change(&piece["result"]);
       }
     });
     return ThrowsInputError([&] { BytesOf(work, MergeParts(work.pieces, {changed})); },
                             {changed, "damaged: block 0 of " + work.pieces.groups[group].name, word});
   };
-  const auto erase = [](Json* result) { result->erase(0); };
+  const auto erase = [](PartJson* result) { result->erase(0); };
   EXPECT_TRUE(is_refused(0, erase, "no list of 4"));
   EXPECT_TRUE(is_refused(
-      3, [](Json* r) { r->at(0).erase(1); }, "no list of 4"));
+      3, [](PartJson* r) { r->at(0).erase(1); }, "no list of 4"));
   EXPECT_TRUE(is_refused(
-      3, [](Json* r) { r->at(0).at(1) = 11; }, "a count of 11, not of 0 to 10"));
+      3, [](PartJson* r) { r->at(0).at(1) = 11; }, "a count of 11, not of 0 to 10"));
   EXPECT_TRUE(is_refused(
-      4, [](Json* r) { r->at(0).at(1) = -1; }, "a count of -1, not of 0 to 10"));
+      4, [](PartJson* r) { r->at(0).at(1) = -1; }, "a count of -1, not of 0 to 10"));
   EXPECT_TRUE(is_refused(
-      4, [](Json* r) { r->at(0).at(1) = "x"; }, "number"));
+      4, [](PartJson* r) { r->at(0).at(1) = "x"; }, "number"));
   // [failures, refusals, good, false refusals] of ten trials; the first is what a random damage made of [0,
   // 7, 3, 0].
-  const auto counts = [&](const Json& of_setting, const std::string& word) {
+  const auto counts = [&](const PartJson& of_setting, const std::string& word) {
     return is_refused(
-        3, [&](Json* r) { r->at(0) = of_setting; }, word);
+        3, [&](PartJson* r) { r->at(0) = of_setting; }, word);
   };
   EXPECT_TRUE(counts({0, 7, 3, 7}, "more false refusals than good trials"));
   EXPECT_TRUE(counts({6, 5, 0, 0}, "more failures and refusals than trials"));
@@ -147,23 +147,23 @@ TEST_F(TuneParts, DamageIsNamed) {
   EXPECT_TRUE(is_refused(6, erase, "no list of 2"));
   EXPECT_TRUE(is_refused(
       7,
-      [](Json* r) {
+      [](PartJson* r) {
         r->at(1).at(0) = {nullptr, nullptr, 1.0, 2.0};
       },
       "a trial has two winners"));
   EXPECT_TRUE(is_refused(
-      6, [](Json* r) { r->at(1).erase(0); }, "no list of 10"));
+      6, [](PartJson* r) { r->at(1).erase(0); }, "no list of 10"));
   EXPECT_TRUE(is_refused(
-      7, [](Json* r) { r->at(1).at(0) = 5; }, "no list of 4"));
+      7, [](PartJson* r) { r->at(1).at(0) = 5; }, "no list of 4"));
   EXPECT_TRUE(is_refused(8, erase, "no list of 3"));
   EXPECT_TRUE(is_refused(
-      9, [](Json* r) { r->at(2).erase(0); }, "no list of 7"));
+      9, [](PartJson* r) { r->at(2).erase(0); }, "no list of 7"));
   EXPECT_TRUE(is_refused(
-      9, [](Json* r) { r->at(2).at(6) = 11; }, "a count of 11, not of 0 to 10"));
+      9, [](PartJson* r) { r->at(2).at(6) = 11; }, "a count of 11, not of 0 to 10"));
   // [failures, refusals, either, both, first only, second only, neither] of ten trials.
-  const auto plain = [&](const Json& of_estimator, const std::string& word) {
+  const auto plain = [&](const PartJson& of_estimator, const std::string& word) {
     return is_refused(
-        9, [&](Json* r) { r->at(0) = {0, 0, 0, 0, 0, 0, 10}, r->at(1) = of_estimator; }, word);
+        9, [&](PartJson* r) { r->at(0) = {0, 0, 0, 0, 0, 0, 10}, r->at(1) = of_estimator; }, word);
   };
   EXPECT_TRUE(plain({1, 0, 0, 0, 0, 0, 10}, "failures and refusals are not their sum"));
   EXPECT_TRUE(plain({0, 0, 0, 0, 0, 0, 9}, "the pairs are not the trials"));

@@ -25,7 +25,7 @@ Eigen::Matrix4d Covariance(double axis_ratio, double axis_deg, double image_corr
 }
 
 // The p-value of the four whitened coordinates of all matches against a standard normal.
-double PValue(const std::vector<Eigen::Vector4d>& noise, const Eigen::Matrix4d& covariance) {
+double WhitenedPValue(const std::vector<Eigen::Vector4d>& noise, const Eigen::Matrix4d& covariance) {
   const Eigen::LLT<Eigen::Matrix4d> factor(covariance);
   std::vector<double> whitened;
   for (const Eigen::Vector4d& e : noise) {
@@ -49,8 +49,8 @@ TEST(AnisotropicNoise, HasTheCovarianceOfItsDefinition) {
                                               {"image_correlation", std::to_string(correlation)}});
     const std::vector<Eigen::Vector4d> noise = SampleNoise(*law, 20'000);
     const Eigen::Matrix4d expected = Covariance(ratio, deg, correlation);
-    EXPECT_GT(PValue(noise, expected), 1e-4);
-    EXPECT_LT(PValue(noise, 1.21 * expected), 1e-10) << "no power";
+    EXPECT_GT(WhitenedPValue(noise, expected), 1e-4);
+    EXPECT_LT(WhitenedPValue(noise, 1.21 * expected), 1e-10) << "no power";
     for (int i = 0; i < 4; ++i) {
       for (int j = i; j < 4; ++j) {
         const Moments product = MomentsOf(noise, [&](const Eigen::Vector4d& e) { return e(i) * e(j); });
@@ -79,7 +79,7 @@ TEST(AnisotropicNoise, FullCorrelationMovesBothImagesAlike) {
 
 TEST(AnisotropicNoise, WithEqualAxesItIsTheGaussianLaw) {
   const auto law = WithSettings(MakeAnisotropicNoise(), {{"sigma_px", "1"}, {"noise_axis_ratio", "1"}});
-  EXPECT_GT(PValue(SampleNoise(*law, 20'000), Eigen::Matrix4d::Identity()), 1e-4);
+  EXPECT_GT(WhitenedPValue(SampleNoise(*law, 20'000), Eigen::Matrix4d::Identity()), 1e-4);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ using Cdf = std::function<double(double)>;
 
 // The least of four Anderson-Darling tests, one a coordinate, of 20,000 matches: a false-alarm rate of 4e-4
 // where it is compared with 1e-4.
-double PValue(const NoiseModel& law, const Cdf& cdf) {
+double LawPValue(const NoiseModel& law, const Cdf& cdf) {
   const std::vector<Eigen::Vector4d> noise = SampleNoise(law, 20'000);
   double least = 1.0;
   for (int k = 0; k < 4; ++k) least = std::min(least, TestAndersonDarling(Coordinate(noise, k), cdf).p_value);
@@ -36,10 +36,10 @@ double StudentCdf(double dof, double e) {
 TEST(StudentNoise, IsStudentsTOfVarianceOne) {
   for (const auto& [text, dof] : {std::pair{"2.5", 2.5}, {"5", 5.0}, {"30", 30.0}}) {
     const auto law = WithSettings(MakeStudentNoise(), {{"sigma_px", "1"}, {"student_dof", text}});
-    EXPECT_GT(PValue(*law, [&](double e) { return StudentCdf(dof, e); }), 1e-4) << text;
+    EXPECT_GT(LawPValue(*law, [&](double e) { return StudentCdf(dof, e); }), 1e-4) << text;
     if (dof > 10.0) continue;  // next to normal
-    EXPECT_LT(PValue(*law, [&](double e) { return StudentCdf(0.8 * dof, e); }), 1e-4) << "no power";
-    EXPECT_LT(PValue(*law, NormalCdf), 1e-6) << "no power";
+    EXPECT_LT(LawPValue(*law, [&](double e) { return StudentCdf(0.8 * dof, e); }), 1e-4) << "no power";
+    EXPECT_LT(LawPValue(*law, NormalCdf), 1e-6) << "no power";
   }
 }
 
@@ -59,9 +59,9 @@ TEST(LaplaceNoise, IsLaplaceOfVarianceOneAndIndependent) {
       return e < 0.0 ? tail : 1.0 - tail;
     };
   };
-  EXPECT_GT(PValue(*law, cdf(1.0)), 1e-4);
-  EXPECT_LT(PValue(*law, cdf(1.1)), 1e-6) << "no power";
-  EXPECT_LT(PValue(*law, NormalCdf), 1e-6) << "no power";
+  EXPECT_GT(LawPValue(*law, cdf(1.0)), 1e-4);
+  EXPECT_LT(LawPValue(*law, cdf(1.1)), 1e-6) << "no power";
+  EXPECT_LT(LawPValue(*law, NormalCdf), 1e-6) << "no power";
   EXPECT_LT(std::abs(ZAgainst(JointSquares(*law), 1.0)), kNoiseZ);
 }
 
@@ -76,9 +76,9 @@ TEST(ContaminatedNoise, IsTheMixtureOfGoodAndBadMatches) {
       return (1.0 - share) * NormalCdf(e / good) + share * NormalCdf(e / (4.0 * good));
     };
   };
-  EXPECT_GT(PValue(*law, cdf(0.2)), 1e-4);
-  EXPECT_LT(PValue(*law, cdf(0.1)), 1e-6) << "no power";
-  EXPECT_LT(PValue(*law, NormalCdf), 1e-6) << "no power";
+  EXPECT_GT(LawPValue(*law, cdf(0.2)), 1e-4);
+  EXPECT_LT(LawPValue(*law, cdf(0.1)), 1e-6) << "no power";
+  EXPECT_LT(LawPValue(*law, NormalCdf), 1e-6) << "no power";
   // A match is bad as a whole: E s^4 = (0.8 + 0.2 * 256) / (0.8 + 0.2 * 16)^2.
   EXPECT_LT(std::abs(ZAgainst(JointSquares(*law), 52.0 / 16.0)), kNoiseZ);
   EXPECT_GT(ZAgainst(JointSquares(*law), 1.0), 2.0 * kNoiseZ) << "no power";
@@ -88,7 +88,7 @@ TEST(ContaminatedNoise, WithNoneOrAllBadItIsTheGaussianLaw) {
   for (const char* share : {"0", "1"}) {
     const auto law =
         WithSettings(MakeContaminatedNoise(), {{"sigma_px", "1"}, {"contaminated_share", share}});
-    EXPECT_GT(PValue(*law, NormalCdf), 1e-4);
+    EXPECT_GT(LawPValue(*law, NormalCdf), 1e-4);
   }
 }
 

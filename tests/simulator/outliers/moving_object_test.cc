@@ -53,7 +53,7 @@ Eigen::Matrix3d SmallRotation(const Eigen::Matrix3d& E, const Eigen::Matrix3d& e
   return best;
 }
 
-double UniformCdf(double u) { return std::clamp(u, 0.0, 1.0); }
+double UniformObjectCdf(double u) { return std::clamp(u, 0.0, 1.0); }
 
 const Settings kLargeObject = {{"object_size_m", "1"}, {"object_shift_m", "0.5"}};
 
@@ -97,9 +97,9 @@ TEST(MovingObject, TurnsByAnAngleUniformUpToTheBound) {
     shares.push_back(angle_rad * 180.0 / std::numbers::pi / 20.0);
   }
   EXPECT_LE(*std::ranges::max_element(shares), 1.0 + 1e-6);
-  EXPECT_GT(TestKolmogorovSmirnov(shares, UniformCdf).p_value, 1e-4);
+  EXPECT_GT(TestKolmogorovSmirnov(shares, UniformObjectCdf).p_value, 1e-4);
   for (double& share : shares) share *= share;
-  EXPECT_LT(TestKolmogorovSmirnov(shares, UniformCdf).p_value, 1e-10) << "no power";
+  EXPECT_LT(TestKolmogorovSmirnov(shares, UniformObjectCdf).p_value, 1e-10) << "no power";
 }
 
 // A camera that only turns sees an object that only shifts: E = [R shift]x R, whose left null vector is the
@@ -118,9 +118,9 @@ TEST(MovingObject, ShiftsInAUniformDirection) {
         scene.cam2_from_cam1_true.R.transpose() * Eigen::Vector3d(svd.matrixU().col(2));
     heights.push_back(std::abs(direction_in_cam1.z()));
   }
-  EXPECT_GT(TestKolmogorovSmirnov(heights, UniformCdf).p_value, 1e-4);
+  EXPECT_GT(TestKolmogorovSmirnov(heights, UniformObjectCdf).p_value, 1e-4);
   for (double& height : heights) height *= height;
-  EXPECT_LT(TestKolmogorovSmirnov(heights, UniformCdf).p_value, 1e-10) << "no power";
+  EXPECT_LT(TestKolmogorovSmirnov(heights, UniformObjectCdf).p_value, 1e-10) << "no power";
 }
 
 // A camera that does not move and a scene of one point straight ahead: a small object spreads normally around

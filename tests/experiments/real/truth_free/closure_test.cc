@@ -269,7 +269,7 @@ TEST(NormalizedClosure, IsThatOfTheHeader) {
 }
 
 // Answers to the pairs of a network whose twins are the pairs again: these close to what is their truth.
-std::vector<PairAnswers> AnswersOf(const Network& network) {
+std::vector<PairAnswers> NetworkAnswers(const Network& network) {
   std::vector<PairAnswers> answers;
   for (size_t i = 0; i < network.pairs.size(); ++i) {
     const Answered answered{network.pairs[i], network.answers[i]};
@@ -286,7 +286,7 @@ std::vector<Loop> LoopsOf(const Network& network) {
 TEST(ClosuresOf, AreOfTwinsAboutTheirOwnTruth) {
   const Network network = MakeNetwork(3, 0.0, 2);
   for (const LoopErrorOf error_of : {RotationClosure, DirectionClosure}) {
-    const std::vector<UnitValues> closures = ClosuresOf(AnswersOf(network), LoopsOf(network), error_of);
+    const std::vector<UnitValues> closures = ClosuresOf(NetworkAnswers(network), LoopsOf(network), error_of);
     ASSERT_EQ(closures.size(), 1u);
     const LoopError none = LoopError::Zero(error_of(network.loop).size());
     ASSERT_EQ(closures[0].observed.size(), 1u);
@@ -298,9 +298,9 @@ TEST(ClosuresOf, AreOfTwinsAboutTheirOwnTruth) {
 
 TEST(ClosuresOf, AreOfLoopsThatAreAnswered) {
   const Network three = MakeNetwork(3, 0.0, 2), four = MakeNetwork(4, 0.0, 2);
-  EXPECT_EQ(ClosuresOf(AnswersOf(four), LoopsOf(four), RotationClosure).size(), 1u);
-  EXPECT_EQ(ClosuresOf(AnswersOf(four), LoopsOf(four), DirectionClosure).size(), 0u);
-  std::vector<PairAnswers> answers = AnswersOf(three);
+  EXPECT_EQ(ClosuresOf(NetworkAnswers(four), LoopsOf(four), RotationClosure).size(), 1u);
+  EXPECT_EQ(ClosuresOf(NetworkAnswers(four), LoopsOf(four), DirectionClosure).size(), 0u);
+  std::vector<PairAnswers> answers = NetworkAnswers(three);
   answers[1].twins[0].estimate.status = MotionStatus::kNoCandidate;
   EXPECT_EQ(ClosuresOf(answers, LoopsOf(three), RotationClosure)[0].null.size(), 1u);
   answers[1].whole.estimate.status = MotionStatus::kNoCandidate;
