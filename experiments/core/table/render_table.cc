@@ -1,0 +1,261 @@
+#include "experiments/core/table/render_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/field_text.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+
+// How a format of people writes what is no letter or digit.
+struct Signs {
+  const char *minus, *infinity, *plus_minus, *unknown, *n_begin, *n_end;
+  bool has_units, has_notes;  // beside the numbers
+};
+constexpr Signs kPlainSigns{"-", "inf", "+-", "-", " (n ", ")", true, true};
+constexpr Signs kLatexSigns{"$-$", "$\\infty$", "$\\pm$", "--", " ($n = ", "$)", false, false};
+
+std::string FormatNumber(double x, const std::string& format, const Signs& signs) {
+  if (std::isnan(x)) return signs.unknown;
+  if (std::isinf(x)) return fmt::format("{}{}", x < 0.0 ? signs.minus : "", signs.infinity);
+  const std::string digits = fmt::format(fmt::runtime("{:" + format + "}"), x);
+  return digits.starts_with('-') ? signs.minus + digits.substr(1) : digits;
+}
+
+std::string FormatInterval(const Interval& interval, double scale, const std::string& format,
+                           const Signs& signs) {
+  if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper)) return "";
+  return fmt::format("[{}, {}]", FormatNumber(scale * interval.lower, format, signs),
+                     FormatNumber(scale * interval.upper, format, signs));
+}
+
+// What has a standard error and an interval is of weighted trials: it may be far below a hundredth.
+std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format, const Signs& signs) {
+  if (std::isnan(estimate.value)) return signs.unknown;
+  const bool has_error = !std::isnan(estimate.standard_error);
+  const bool is_weighted = has_error && !std::isnan(estimate.interval.lower);
+  std::string text = FormatNumber(format.scale * estimate.value, is_weighted ? ".3g" : format.value, signs);
+  if (signs.has_units && !format.unit.empty()) text += " " + format.unit;
+  if (has_error)
+    text += fmt::format(" {} {}", signs.plus_minus,
+                        FormatNumber(format.scale * estimate.standard_error, format.spread, signs));
+  const std::string interval =
+      FormatInterval(estimate.interval, format.scale, is_weighted ? format.spread : format.value, signs);
+  if (!interval.empty()) text += " " + interval;
+  if (estimate.n) text += fmt::format("{}{}{}", signs.n_begin, *estimate.n, signs.n_end);
+  return estimate.note.empty() || !signs.has_notes ? text : text + ": " + estimate.note;
+}
+
+std::string FormatValue(const Value& value, const Column& column, const Signs& signs) {
+  const NumberFormat& format = column.format;
+  return std::visit(
+      Overloaded{[](std::monostate) { return std::string(); }, [](const std::string& text) { return text; },
+                 [](std::int64_t count) { return fmt::format("{}", count); },
+                 [](bool flag) { return std::string(flag ? "yes" : "no"); },
+                 [&](double x) { return FormatEstimate({.value = x}, format, signs); },
+                 [&](const Interval& i) { return FormatInterval(i, format.scale, format.value, signs); },
+                 [&](const Estimate& e) { return FormatEstimate(e, format, signs); }},
+      value);
+}
+
+// The headings, then the rows.
+std::vector<std::vector<std::string>> FormatCells(const Table& table) {
+  std::vector<std::vector<std::string>> cells(1);
+  for (const Column& column : table.columns) cells[0].push_back(column.Heading());
+  for (const std::vector<Value>& row : table.rows) {
+    cells.emplace_back();
+    for (size_t c = 0; c < row.size(); ++c)
+      cells.back().push_back(FormatValue(row[c], table.columns[c], kPlainSigns));
+  }
+  return cells;
+}
+
+// Pads counts on the left, so that they end below each other.
+void AlignCounts(const Table& table, std::vector<std::vector<std::string>>* cells) {
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].type != ColumnType::kCount) continue;
+    size_t width = 0;
+    for (const auto& row : *cells) width = std::max(width, row[c].size());
+    for (auto& row : *cells) row[c].insert(0, width - row[c].size(), ' ');
+  }
+}
+
+// The columns of each block: the keys, and as many others as fit.
+std::vector<std::vector<size_t>> SplitIntoBlocks(const Table& table,
+                                                 const std::vector<std::vector<std::string>>& cells,
+                                                 size_t max_width) {
+  constexpr size_t kGap = 2;
+  std::vector<size_t> keys;
+  size_t keys_width = 0;
+  const auto width_of = [&](size_t c) {
+    return std::ranges::max_element(cells, {}, [c](const auto& row) { return row[c].size(); })->at(c).size() +
+           kGap;
+  };
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    if (!table.columns[c].is_key) continue;
+    keys.push_back(c);
+    keys_width += width_of(c);
+  }
+  std::vector<std::vector<size_t>> blocks = {keys};
+  size_t width = keys_width;
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].is_key) continue;
+    if (width + width_of(c) > max_width + kGap && blocks.back().size() > keys.size()) {
+      blocks.push_back(keys);
+      width = keys_width;
+    }
+    blocks.back().push_back(c);
+    width += width_of(c);
+  }
+  return blocks;
+}
+
+std::string RenderCsvValue(const Value& value, ColumnType type) {
+  return std::visit(
+      Overloaded{[&](std::monostate) { return std::string(type == ColumnType::kInterval ? "," : ""); },
+                 [](const std::string& text) { return CsvField(text); },
+                 [](std::int64_t count) { return fmt::format("{}", count); },
+                 [](bool flag) { return std::string(flag ? "yes" : "no"); },
+                 [](double x) { return CsvNumber(x); },
+                 [](const Interval& i) { return CsvFinite(i.lower) + "," + CsvFinite(i.upper); },
+                 [](const Estimate& e) { return CsvNumber(e.value); }},
+      value);
+}
+
+Json RenderJsonValue(const Value& value) {
+  return std::visit(
+      Overloaded{[](std::monostate) { return Json(); }, [](const std::string& text) { return Json(text); },
+                 [](std::int64_t count) { return Json(count); }, [](bool flag) { return Json(flag); },
+                 [](double x) { return JsonNumber(x); },
+                 [](const Interval& i) {
+                   return Json{JsonNumber(i.lower), JsonNumber(i.upper)};
+                 },
+                 [](const Estimate& e) { return JsonNumber(e.value); }},
+      value);
+}
+
+std::string JsonName(const Column& column) {
+  if (!column.json_name.empty()) return column.json_name;
+  return column.type == ColumnType::kInterval ? "interval" : column.name;
+}
+
+std::string RenderLatexHeading(const Column& column) {
+  const std::string heading = column.is_symbol ? "$" + column.Heading() + "$" : LatexText(column.Heading());
+  return column.format.unit.empty() ? heading
+                                    : fmt::format("{} ({})", heading, LatexText(column.format.unit));
+}
+
+bool HasSameLevels(const Table& table, const std::vector<Value>& row, const std::vector<Value>& before) {
+  for (size_t c = 0; c < row.size(); ++c) {
+    const auto format = [&](const Value& value) { return FormatValue(value, table.columns[c], kPlainSigns); };
+    if (table.columns[c].group == "levels" && format(row[c]) != format(before[c])) return false;
+  }
+  return true;
+}
+
+std::string RenderLatexRow(const Table& table, const std::vector<Value>& row, bool has_levels) {
+  std::vector<std::string> cells;
+  for (size_t c = 0; c < row.size(); ++c) {
+    const Column& column = table.columns[c];
+    const auto* text = std::get_if<std::string>(&row[c]);
+    if (column.group == "levels" && !has_levels) {
+      cells.emplace_back();
+    } else {
+      cells.push_back(text ? LatexText(*text) : FormatValue(row[c], column, kLatexSigns));
+    }
+  }
+  return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
+}
+
+}  // namespace
+
+std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format) {
+  return FormatEstimate(estimate, format, kPlainSigns);
+}
+
+std::string RenderText(const Table& table, size_t width) {
+  std::vector<std::vector<std::string>> cells = FormatCells(table);
+  AlignCounts(table, &cells);
+  std::string text;
+  for (const std::vector<size_t>& block : SplitIntoBlocks(table, cells, width)) {
+    std::vector<std::vector<std::string>> part;
+    for (const std::vector<std::string>& row : cells) {
+      part.emplace_back();
+      for (const size_t c : block) part.back().push_back(row[c]);
+    }
+    text += (text.empty() ? "" : "\n") + FormatColumns(part);
+  }
+  return text;
+}
+
+std::string RenderCsv(const Table& table) {
+  const auto render_line = [&](const auto& render_field) {
+    std::vector<std::string> fields;
+    for (size_t c = 0; c < table.columns.size(); ++c) {
+      if (!table.columns[c].name.empty()) fields.push_back(render_field(c));
+    }
+    return fmt::format("{}\n", fmt::join(fields, ","));
+  };
+  std::string text = render_line([&](size_t c) {
+    const Column& column = table.columns[c];
+    return column.type == ColumnType::kInterval ? column.name : CsvField(column.name);
+  });
+  for (const std::vector<Value>& row : table.rows)
+    text += render_line([&](size_t c) { return RenderCsvValue(row[c], table.columns[c].type); });
+  return text;
+}
+
+Json RenderJson(const Table& table) {
+  Json rows = Json::array();
+  for (const std::vector<Value>& row : table.rows) {
+    Json object = Json::object();
+    for (size_t c = 0; c < row.size(); ++c) {
+      const Column& column = table.columns[c];
+      if (column.json_name == kNotInJson || std::holds_alternative<std::monostate>(row[c])) continue;
+      (column.group.empty() ? object : object[column.group])[JsonName(column)] = RenderJsonValue(row[c]);
+    }
+    rows.push_back(std::move(object));
+  }
+  return rows;
+}
+
+std::string RenderLatex(const Table& table) {
+  std::string alignment, body;
+  std::vector<std::string> headings;
+  for (const Column& column : table.columns) {
+    alignment += column.type == ColumnType::kText ? 'l' : 'r';
+    headings.push_back(RenderLatexHeading(column));
+  }
+  for (size_t r = 0; r < table.rows.size(); ++r) {
+    const bool begins_group = r == 0 || !HasSameLevels(table, table.rows[r], table.rows[r - 1]);
+    if (begins_group && r > 0) body += "\\addlinespace\n";
+    body += RenderLatexRow(table, table.rows[r], begins_group);
+  }
+  return fmt::format(
+      "\\begin{{tabular}}{{{}}}\n\\toprule\n{} \\\\\n\\midrule\n{}\\bottomrule\n\\end{{tabular}}\n",
+      alignment, fmt::join(headings, " & "), body);
+}
+
+std::string RenderMarkdown(const Table& table) {
+  std::vector<std::vector<std::string>> cells = FormatCells(table);
+  for (std::vector<std::string>& row : cells) {
+    for (std::string& cell : row)
+      std::ranges::replace_if(
+          cell, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  }
+  return FormatMarkdown(cells);
+}
+
+}  // namespace rcme
