@@ -45,6 +45,7 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
     const std::string& event = TrialEvents()[v].name;
     const VarianceSplit split = counts_[v].scenes.Split();
     SummaryRow within = RowOf(cell, event + kWithin, SummaryRow::Kind::kShare);
+    within.is_of_split = true;
     within.n = std::isnan(split.within_share) ? 0 : split.num_scenes;  // nothing varies: there are no shares
     within.value = split.within_share;
     within.interval = split.within_share_interval;
@@ -54,6 +55,7 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
     between.value = 1.0 - within.value;
     between.interval = {1.0 - within.interval.upper, 1.0 - within.interval.lower};
     SummaryRow flips = RowOf(cell, event + kFlips, SummaryRow::Kind::kRate);
+    flips.is_of_split = true;
     flips.n = split.num_scenes;
     flips.value = static_cast<double>(split.num_mixed) / static_cast<double>(split.num_scenes);
     flips.interval = split.mixed_interval;

@@ -41,6 +41,7 @@ struct SummaryRow {
   Interval interval;            // all but means: 95 %; NaN where a median's would not hold
   double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of; of repeated scenes: scenes
+  bool is_of_split = false;     // what the scene and what the sampler decides (scene_split.h)
   std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
 };
 

@@ -1,0 +1,84 @@
+#include "experiments/statistics/quantity_table.h"
+
+#include <algorithm>
+#include <map>
+
+namespace rcme {
+namespace {
+
+// The numbers of one estimator in one condition.
+struct EstimatorRow {
+  std::vector<std::string> levels;
+  std::string estimator;
+  std::int64_t num_trials = 0;  // the greatest n: some quantities are of all trials
+  std::map<std::string, const SummaryRow*> quantities;
+};
+
+std::vector<EstimatorRow> GroupRows(const std::vector<SummaryRow>& rows) {
+  std::vector<EstimatorRow> groups;
+  const SummaryRow* last = nullptr;
+  for (const SummaryRow& row : rows) {
+    if (!last || row.condition != last->condition || row.estimator != last->estimator)
+      groups.push_back({row.levels, row.estimator, 0, {}});
+    groups.back().num_trials = std::max(groups.back().num_trials, row.n);
+    groups.back().quantities[row.quantity] = &row;
+    last = &row;
+  }
+  return groups;
+}
+
+NumberFormat FormatOf(SummaryRow::Kind kind) {
+  const bool is_number = kind == SummaryRow::Kind::kMean || kind == SummaryRow::Kind::kMedian;
+  return is_number ? kSignificant : kPercent;
+}
+
+Table MakeTableOf(const std::vector<SummaryRow>& rows, std::vector<ColumnOf<EstimatorRow>> columns,
+                  const std::vector<std::string>& quantities) {
+  using R = const EstimatorRow&;
+  columns.push_back({{.name = "n", .type = ColumnType::kCount, .is_key = true, .is_symbol = true},
+                     [](R r) { return r.num_trials; }});
+  for (const std::string& quantity : quantities) {
+    const auto row = std::ranges::find(rows, quantity, &SummaryRow::quantity);
+    if (row == rows.end()) continue;
+    columns.push_back({{quantity, ColumnType::kEstimate, FormatOf(row->kind)}, [quantity](R r) {
+                         const auto found = r.quantities.find(quantity);
+                         return found == r.quantities.end() ? Value(Estimate())
+                                                            : MakeEstimate(*found->second, r.num_trials);
+                       }});
+  }
+  return MakeTable(columns, GroupRows(rows));
+}
+
+std::vector<SummaryRow> SelectRows(const Summary& summary, bool is_of_problems) {
+  std::vector<SummaryRow> rows = summary.rows;
+  std::erase_if(rows,
+                [&](const SummaryRow& row) { return (row.estimator == kSceneLabel) != is_of_problems; });
+  return rows;
+}
+
+}  // namespace
+
+Estimate MakeEstimate(const SummaryRow& row, std::int64_t num_trials) {
+  if (row.n == 0) return {};
+  Estimate estimate{.value = row.value};
+  if (row.kind != SummaryRow::Kind::kMean) estimate.interval = row.interval;
+  if (row.kind == SummaryRow::Kind::kMean || row.interval_kind == IntervalKind::kWeighted)
+    estimate.standard_error = row.standard_error;
+  if (row.n != num_trials) estimate.n = row.n;
+  if (row.coverage_verdict) estimate.note = CoverageVerdictInWords(*row.coverage_verdict);
+  return estimate;
+}
+
+Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& quantities) {
+  std::vector<ColumnOf<EstimatorRow>> columns = LevelColumns<EstimatorRow>(summary.factor_names);
+  columns.push_back(
+      {{.name = "estimator", .is_key = true}, [](const EstimatorRow& row) { return row.estimator; }});
+  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/false), std::move(columns), quantities);
+}
+
+Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities) {
+  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/true),
+                     LevelColumns<EstimatorRow>(summary.factor_names), quantities);
+}
+
+}  // namespace rcme

@@ -1,0 +1,21 @@
+// A summary with a row per condition and estimator and a column per quantity.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/core/table/table.h"
+#include "experiments/statistics/summarize.h"
+
+namespace rcme {
+
+// With its n where that is not `num_trials`, and a coverage with its verdict.
+Estimate MakeEstimate(const SummaryRow& row, std::int64_t num_trials);
+
+// Those of the quantities of estimators that the summary has, in their order. Key columns: a column per
+// factor, the estimator, n (the trials of the condition).
+Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& quantities);
+// The same of the problems, without a column of estimators.
+Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities);
+
+}  // namespace rcme
