@@ -6,8 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/text/columns.h"
-#include "experiments/core/text/field_text.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
 
 namespace rcme {
@@ -39,69 +38,48 @@ Method MethodOf(const ComparisonRow& row) {
   return MethodOf(is_by_means ? ComparedKind::kScore : row.kind, row.is_anytime_valid);
 }
 
-// Of a person's table: "+1.20 [-0.30, +2.70]", in percentage points or degrees.
-std::string DifferenceInWords(const ComparisonRow& row) {
-  const double scale = row.kind == ComparedKind::kError ? 1.0 : 100.0;
-  const std::string value = row.kind == ComparedKind::kError ? fmt::format("{:+.3g}", row.difference)
-                                                             : fmt::format("{:+.2f}", scale * row.difference);
-  if (!std::isfinite(row.interval.lower) || !std::isfinite(row.interval.upper)) return value;
-  if (row.kind == ComparedKind::kError)
-    return fmt::format("{} [{:+.3g}, {:+.3g}]", value, row.interval.lower, row.interval.upper);
-  return fmt::format("{} [{:+.2f}, {:+.2f}]", value, scale * row.interval.lower, scale * row.interval.upper);
+// In percentage points or degrees.
+NumberFormat DifferenceFormat(ComparedKind kind) {
+  return kind == ComparedKind::kError ? NumberFormat{1.0, "", "+.3g"} : NumberFormat{100.0, "", "+.2f"};
 }
 
-// Names and numbers of the counts of a kind.
-std::vector<std::string> CountHeadings(ComparedKind kind, const std::string& reference) {
+// The counts of a kind: their headings and where they are.
+std::vector<std::pair<std::string, std::int64_t PairedCounts::*>> CountsOf(ComparedKind kind,
+                                                                           const std::string& reference) {
+  using P = PairedCounts;
   switch (kind) {
     case ComparedKind::kEvent:
-      return {"both", "estimator only", reference + " only", "neither"};
+      return {{"both", &P::both},
+              {"estimator only", &P::first_only},
+              {reference + " only", &P::second_only},
+              {"neither", &P::neither}};
     case ComparedKind::kError:
-      return {"greater", "less", "equal"};
+      return {{"greater", &P::first_only}, {"less", &P::second_only}, {"equal", &P::neither}};
     case ComparedKind::kScore:
       break;
   }
   return {};
-}
-std::vector<std::int64_t> Counts(const ComparisonRow& row) {
-  const PairedCounts& c = row.counts;
-  switch (row.kind) {
-    case ComparedKind::kEvent:
-      return {c.both, c.first_only, c.second_only, c.neither};
-    case ComparedKind::kError:
-      return {c.first_only, c.second_only, c.neither};
-    case ComparedKind::kScore:
-      break;
-  }
-  return {};
-}
-
-// One line of a person's table: levels, estimator, n, the counts, difference, p-values.
-std::vector<std::string> Cells(const ComparisonRow& row) {
-  std::vector<std::string> cells = row.levels;
-  cells.insert(cells.end(), {row.estimator, fmt::format("{}", row.n)});
-  for (const std::int64_t count : Counts(row)) cells.push_back(fmt::format("{}", count));
-  if (row.n == 0) {
-    cells.insert(cells.end(), {"-", "-", "-"});
-  } else {
-    cells.push_back(DifferenceInWords(row));
-    cells.push_back(fmt::format("{:.3g}", row.p_value));
-    cells.push_back(fmt::format("{:.3g}{}", row.holm_p_value, row.holm_p_value < 0.05 ? " *" : ""));
-  }
-  return cells;
 }
 
 std::string TableOf(const Compared& compared, const Comparison& comparison) {
-  const std::vector<std::string> counts = CountHeadings(compared.kind, comparison.reference);
-  std::vector<std::vector<std::string>> rows = {comparison.factor_names};
-  rows[0].insert(rows[0].end(), {"estimator", "n"});
-  rows[0].insert(rows[0].end(), counts.begin(), counts.end());
-  rows[0].insert(rows[0].end(),
-                 {compared.kind == ComparedKind::kError ? "median difference (deg)" : "difference (% points)",
-                  "p", "Holm p"});
-  for (const ComparisonRow& row : comparison.rows) {
-    if (row.event == compared.name) rows.push_back(Cells(row));
-  }
-  return fmt::format("\n{}: {}\n\n{}", compared.name, compared.doc, FormatColumns(rows));
+  using R = const ComparisonRow&;
+  const bool is_error = compared.kind == ComparedKind::kError;
+  auto columns = LevelColumns<ComparisonRow>(comparison.factor_names);
+  columns.push_back({{.name = "estimator", .is_key = true}, [](R r) { return r.estimator; }});
+  columns.push_back({{"n", ColumnType::kCount}, [](R r) { return r.n; }});
+  for (const auto& [heading, count] : CountsOf(compared.kind, comparison.reference))
+    columns.push_back({{heading, ColumnType::kCount}, [count](R r) { return r.counts.*count; }});
+  columns.push_back({{is_error ? "median difference (deg)" : "difference (% points)", ColumnType::kEstimate,
+                      DifferenceFormat(compared.kind)},
+                     [](R r) {
+                       return r.n > 0 ? Estimate{r.difference, r.interval} : Estimate();
+                     }});
+  columns.push_back({{"p", ColumnType::kNumber}, [](R r) { return r.p_value; }});
+  columns.push_back({{"Holm p", ColumnType::kNumber}, [](R r) { return r.holm_p_value; }});
+  columns.push_back({{" "}, [](R r) { return std::string(r.holm_p_value < 0.05 ? "*" : ""); }});
+  std::vector<ComparisonRow> rows = comparison.rows;
+  std::erase_if(rows, [&](R r) { return r.event != compared.name; });
+  return fmt::format("\n{}: {}\n\n{}", compared.name, compared.doc, RenderText(MakeTable(columns, rows)));
 }
 
 // What the numbers of a kind are; nothing where none is compared.
@@ -113,22 +91,54 @@ std::string Legend(ComparedKind kind, const Comparison& comparison) {
   switch (kind) {
     case ComparedKind::kEvent:
       return fmt::format(
-          "Events: counts of trials in which the event happened to both, to one only, to neither.\n"
-          "Difference: rate of the estimator minus rate of {}, {}",
+          "Events: trials in which the event happened to both, to one only, to neither.\n"
+          "Difference: rate of the estimator minus rate of {},\n{}",
           comparison.reference, tests);
     case ComparedKind::kScore:
-      return fmt::format("Scores: mean of the estimator minus mean of {}, {}", comparison.reference, tests);
+      return fmt::format("Scores: mean of the estimator minus mean of {},\n{}", comparison.reference, tests);
     case ComparedKind::kError:
       return fmt::format(
           "Errors: counts of trials in which the estimator's error is greater, less, equal (two refusals\n"
-          "are). Difference: median over the trials of its error minus that of {}, {}",
+          "are). Difference: median over the trials of its error minus that of {},\n{}",
           comparison.reference, tests);
   }
   return "";
 }
 
-std::string CsvCount(const ComparisonRow& row, std::int64_t count) {
-  return row.kind == ComparedKind::kScore ? "" : fmt::format("{}", count);
+// Of events and errors; a score has none.
+ColumnOf<ComparisonRow> CountColumn(const std::string& name, std::int64_t PairedCounts::*count) {
+  return {{name, ColumnType::kCount}, [count](const ComparisonRow& row) {
+            return row.kind == ComparedKind::kScore ? Value(std::nan("")) : Value(row.counts.*count);
+          }};
+}
+
+Table MakeRowTable(const Comparison& comparison) {
+  using R = const ComparisonRow&;
+  std::vector<ColumnOf<ComparisonRow>> columns = {
+      {{.name = "study", .json_name = kNotInJson}, [&](R) { return comparison.study; }},
+      {{"condition", ColumnType::kCount}, [](R r) { return std::int64_t{r.condition}; }}};
+  const auto levels = LevelColumns<ComparisonRow>(comparison.factor_names);
+  columns.insert(columns.end(), levels.begin(), levels.end());
+  const std::vector<ColumnOf<ComparisonRow>> others = {
+      {{"estimator"}, [](R r) { return r.estimator; }},
+      {{.name = "reference", .json_name = kNotInJson}, [&](R) { return comparison.reference; }},
+      {{"event"}, [](R r) { return r.event; }},
+      {{"n", ColumnType::kCount}, [](R r) { return r.n; }},
+      CountColumn("both", &PairedCounts::both),
+      CountColumn("estimator_only", &PairedCounts::first_only),
+      CountColumn("reference_only", &PairedCounts::second_only),
+      CountColumn("neither", &PairedCounts::neither),
+      {{"risk_difference", ColumnType::kNumber}, [](R r) { return r.difference; }},
+      {{"lower,upper", ColumnType::kInterval}, [](R r) { return r.interval; }},
+      {{"p_mcnemar", ColumnType::kNumber},
+       [](R r) { return MethodOf(r).test == "mcnemar" ? r.p_value : std::nan(""); }},
+      {{"p_holm", ColumnType::kNumber}, [](R r) { return r.holm_p_value; }},
+      {{"kind"}, [](R r) { return Name(r.kind); }},
+      {{"p_value", ColumnType::kNumber}, [](R r) { return r.p_value; }},
+      {{"test"}, [](R r) { return MethodOf(r).test; }},
+      {{.name = "interval", .json_name = "interval_kind"}, [](R r) { return MethodOf(r).interval; }}};
+  columns.insert(columns.end(), others.begin(), others.end());
+  return MakeTable(columns, comparison.rows);
 }
 
 }  // namespace
@@ -144,73 +154,25 @@ std::string ComparisonAsTable(const Comparison& comparison) {
     text += Legend(kind, comparison);
   if (!comparison.rows.empty() && comparison.rows.front().is_of_scenes) {
     text +=
-        "Scenes are repeated: n counts them; differences are of the means over a scene's trials, of errors "
-        "in "
-        "its first.\n";
+        "Scenes are repeated: n counts them; differences are of the means over a scene's\n"
+        "trials, of errors in its first.\n";
   }
   text += fmt::format(
-      "Holm p: adjusted for all {} tests of this comparison (what is compared, estimators, conditions); * "
-      "below 0.05.\n",
+      "Holm p: adjusted for all {} tests of this comparison (what is compared,\n"
+      "estimators, conditions); *: below 0.05.\n",
       std::ranges::count_if(comparison.rows, [](const ComparisonRow& row) { return row.n > 0; }));
   return text;
 }
 
-std::string ComparisonAsCsv(const Comparison& comparison) {
-  std::string text = "study,condition,";
-  for (const std::string& factor : comparison.factor_names) text += CsvField(factor) + ",";
-  text +=
-      "estimator,reference,event,n,both,estimator_only,reference_only,neither,risk_difference,lower,upper,"
-      "p_mcnemar,p_holm,kind,p_value,test,interval\n";
-  for (const ComparisonRow& row : comparison.rows) {
-    const PairedCounts& c = row.counts;
-    const Method method = MethodOf(row);
-    text += fmt::format("{},{},", CsvField(comparison.study), row.condition);
-    for (const std::string& level : row.levels) text += CsvField(level) + ",";
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", CsvField(row.estimator),
-                    CsvField(comparison.reference), row.event, row.n, CsvCount(row, c.both),
-                    CsvCount(row, c.first_only), CsvCount(row, c.second_only), CsvCount(row, c.neither),
-                    CsvNumber(row.difference), CsvFinite(row.interval.lower), CsvFinite(row.interval.upper),
-                    method.test == "mcnemar" ? CsvNumber(row.p_value) : "", CsvNumber(row.holm_p_value),
-                    Name(row.kind), CsvNumber(row.p_value), method.test, method.interval);
-  }
-  return text;
-}
+std::string ComparisonAsCsv(const Comparison& comparison) { return RenderCsv(MakeRowTable(comparison)); }
 
 std::string ComparisonAsJson(const Comparison& comparison) {
-  nlohmann::ordered_json json = {{"study", comparison.study},
-                                 {"reference", comparison.reference},
-                                 {"trials_done", comparison.num_trials_done},
-                                 {"trials_planned", comparison.num_trials_planned},
-                                 {"caution", comparison.caution},
-                                 {"rows", nlohmann::ordered_json::array()}};
-  for (const ComparisonRow& row : comparison.rows) {
-    const Method method = MethodOf(row);
-    nlohmann::ordered_json entry = {{"condition", row.condition}};
-    for (size_t f = 0; f < row.levels.size(); ++f) {
-      entry["levels"][comparison.factor_names[f]] = row.levels[f];
-    }
-    const auto count = [&](std::int64_t of_pairs) {
-      return row.kind == ComparedKind::kScore ? nlohmann::ordered_json() : nlohmann::ordered_json(of_pairs);
-    };
-    entry["estimator"] = row.estimator;
-    entry["event"] = row.event;
-    entry["kind"] = Name(row.kind);
-    entry["n"] = row.n;
-    entry["both"] = count(row.counts.both);
-    entry["estimator_only"] = count(row.counts.first_only);
-    entry["reference_only"] = count(row.counts.second_only);
-    entry["neither"] = count(row.counts.neither);
-    entry["risk_difference"] = JsonNumber(row.difference);
-    entry["interval"] = {JsonNumber(row.interval.lower), JsonNumber(row.interval.upper)};
-    entry["interval_kind"] = method.interval;
-    entry["p_mcnemar"] = method.test == "mcnemar" ? JsonNumber(row.p_value) : nlohmann::ordered_json();
-    entry["p_value"] = JsonNumber(row.p_value);
-    entry["test"] = method.test;
-    entry["p_holm"] = JsonNumber(row.holm_p_value);
-    json["rows"].push_back(std::move(entry));
-  }
-  return JsonText(kComparisonFormat, json);
+  return JsonText(kComparisonFormat, {{"study", comparison.study},
+                                      {"reference", comparison.reference},
+                                      {"trials_done", comparison.num_trials_done},
+                                      {"trials_planned", comparison.num_trials_planned},
+                                      {"caution", comparison.caution},
+                                      {"rows", RenderJson(MakeRowTable(comparison))}});
 }
 
 }  // namespace rcme

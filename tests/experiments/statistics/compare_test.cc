@@ -371,7 +371,8 @@ TEST_F(CompareMeasuresTest, RepeatedScenesAreComparedByTheirMeans) {
 TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
   const std::string table = ComparisonAsTable(ComparisonOf("run"));
-  EXPECT_TRUE(std::regex_search(table, std::regex("ours +21 +1 +1 +7 +12 "))) << table;  // n, both, ours only
+  EXPECT_TRUE(std::regex_search(table, std::regex("ours +21 +1 +1 +7 +12\\n")))
+      << table;  // n, both, ours only
   for (const char* part : {"Study small against standard: 21 of 12 trials done", "standard only",
                            "-28.57 [-51.72, -2.60]", "0.0703", "Tango", "McNemar", "all 3 tests"}) {
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
