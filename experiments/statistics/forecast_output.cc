@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
@@ -17,23 +18,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kMaxCurvePoints = 400;  // of a risk-coverage curve in a file
 
-// "0.0123 [0.0100, 0.0150]"; "-" where it is not known.
 std::string WithInterval(double value, const Interval& interval, int digits) {
-  if (std::isnan(value)) return "-";
-  if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper))
-    return fmt::format("{:.{}f}", value, digits);
-  return fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", value, digits, interval.lower, digits, interval.upper,
-                     digits);
+  return FormatEstimate({value, interval}, {1.0, "", fmt::format(".{}f", digits)});
 }
 std::string WithInterval(const ClusteredEstimate& estimate, int digits) {
   return WithInterval(estimate.value, estimate.interval, digits);
 }
 
-// In per cent: "12.34 % [10.10, 14.80]"; "-" of none.
 std::string Rate(std::int64_t count, std::int64_t n, const Interval& interval) {
-  if (n == 0) return "-";
-  return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * static_cast<double>(count) / static_cast<double>(n),
-                     100.0 * interval.lower, 100.0 * interval.upper);
+  return FormatEstimate({static_cast<double>(count) / static_cast<double>(n), interval}, kPercent);
 }
 
 std::vector<std::string> CellsOf(const ForecastMeasures& m) {

@@ -1,9 +1,8 @@
 #include "experiments/tuning/rate_output.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/render_table.h"
 #include "stats/intervals.h"
 
 namespace rcme {
@@ -13,10 +12,7 @@ double RateOf(const ErrorCount& count) {
 }
 
 std::string RateForTable(const ErrorCount& count) {
-  if (count.n == 0) return "-";
-  const Interval interval = ExactBinomialInterval(count.errors, count.n);
-  return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * RateOf(count), 100.0 * interval.lower,
-                     100.0 * interval.upper);
+  return FormatEstimate({RateOf(count), ExactBinomialInterval(count.errors, count.n)}, kPercent);
 }
 
 nlohmann::ordered_json RateAsJson(const ErrorCount& count) {

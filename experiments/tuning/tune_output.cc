@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/tuning/rate_output.h"
 #include "stats/intervals.h"
@@ -55,8 +56,7 @@ std::string EstimatorsAsTable(const std::vector<VerifiedEstimator>& estimators) 
         {e == 0 ? "tuned" : counts.spec.label, RateForTable(counts.failure), RateForTable(counts.refusal),
          RateForTable(counts.failure_or_refusal),
          e == 0 ? ""
-                : fmt::format("{:+.2f} % [{:+.2f}, {:+.2f}]", 100.0 * counts.against_first.RiskDifference(),
-                              100.0 * difference.lower, 100.0 * difference.upper),
+                : FormatEstimate({counts.against_first.RiskDifference(), difference}, {100.0, "%", "+.2f"}),
          e == 0 ? "" : fmt::format("{:.2g}", McNemarExactPValue(counts.against_first))});
   }
   return FormatColumns(rows);
@@ -66,8 +66,7 @@ std::string RocsAsTable(const StudyPlan& plan, const std::vector<EntropyRoc>& ro
   Rows rows = {{"estimator", "models", "area under the curve", "good", "bad"}};
   for (const EntropyRoc& roc : rocs) {
     rows.push_back({plan.study.estimators[roc.estimator].label, roc.population,
-                    fmt::format("{:.3f} [{:.3f}, {:.3f}]", roc.area.value, roc.area.interval.lower,
-                                roc.area.interval.upper),
+                    FormatEstimate({roc.area.value, roc.area.interval}, {1.0, "", ".3f"}),
                     fmt::format("{}", roc.good.size()), fmt::format("{}", roc.bad.size())});
   }
   return FormatColumns(rows);

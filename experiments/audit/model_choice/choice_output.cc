@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
@@ -32,8 +33,7 @@ Cell CellOf(const ConfusionMatrix& matrix, size_t kind, size_t answer) {
 
 std::string CellInWords(const Cell& cell) {
   if (cell.count == 0) return fmt::format("0 % [0, {:.2g}]", 100.0 * cell.interval.upper);
-  return fmt::format("{:.1f} % [{:.1f}, {:.1f}]", 100.0 * cell.value, 100.0 * cell.interval.lower,
-                     100.0 * cell.interval.upper);
+  return FormatEstimate({cell.value, cell.interval}, {100.0, "%", ".1f"});
 }
 
 std::string MatrixAsTable(const std::string& criterion, const ConfusionMatrix& matrix) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
@@ -27,7 +28,7 @@ constexpr CellQuantity kQuantities[] = {
 };
 
 std::string PercentText(double rate, const Interval& interval) {
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", 100.0 * rate, 100.0 * interval.lower, 100.0 * interval.upper);
+  return FormatEstimate({rate, interval}, {100.0, "", ".2f"});
 }
 
 std::string CellText(const SharedMemberRate& rate, bool is_of_subset) {

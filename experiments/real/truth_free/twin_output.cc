@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/real/truth_free/twin_quantities.h"
 
@@ -101,6 +101,34 @@ std::string ReportAsText(const TwinReport& report) {
   return text + missed + "\n";
 }
 
+// A row of the files.
+struct TwinRow {
+  const TwinReport* report;
+  const TwinComparison* comparison;
+};
+
+Table MakeRowTable(const std::vector<TwinReport>& reports) {
+  using R = const TwinRow&;
+  std::vector<TwinRow> rows;
+  for (const TwinReport& report : reports) {
+    for (const TwinComparison& comparison : report.comparisons) rows.push_back({&report, &comparison});
+  }
+  return MakeTable<TwinRow>(
+      {{{.name = "scene", .json_name = kNotInJson}, [](R r) { return r.report->scene; }},
+       {{.name = "pairs", .type = ColumnType::kCount, .json_name = kNotInJson},
+        [](R r) { return r.report->num_pairs; }},
+       {{"twin"}, [](R r) { return r.comparison->twin; }},
+       {{"quantity"}, [](R r) { return r.comparison->quantity; }},
+       {{"kind"}, [](R r) { return std::string(r.comparison->is_rate ? "rate" : "mean"); }},
+       {{"fitted", ColumnType::kFlag}, [](R r) { return r.comparison->is_fitted; }},
+       {{"observed", ColumnType::kNumber}, [](R r) { return r.comparison->observed; }},
+       {{"lower,upper", ColumnType::kInterval}, [](R r) { return r.comparison->joint; }},
+       {{"n", ColumnType::kCount}, [](R r) { return r.comparison->n; }},
+       {{"predicted", ColumnType::kNumber}, [](R r) { return r.comparison->predicted; }},
+       {{"within", ColumnType::kFlag}, [](R r) { return r.comparison->IsWithin(); }}},
+      rows);
+}
+
 }  // namespace
 
 std::string TwinsAsText(const std::vector<TwinReport>& reports) {
@@ -119,41 +147,18 @@ std::string TwinsAsText(const std::vector<TwinReport>& reports) {
   return text;
 }
 
-std::string TwinsAsCsv(const std::vector<TwinReport>& reports) {
-  std::string text = "scene,pairs,twin,quantity,kind,fitted,observed,lower,upper,n,predicted,within\n";
-  for (const TwinReport& report : reports) {
-    for (const TwinComparison& c : report.comparisons) {
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", CsvField(report.scene), report.num_pairs,
-                          c.twin, c.quantity, c.is_rate ? "rate" : "mean", c.is_fitted ? "yes" : "no",
-                          CsvNumber(c.observed), CsvFinite(c.joint.lower), CsvFinite(c.joint.upper), c.n,
-                          CsvNumber(c.predicted), c.IsWithin() ? "yes" : "no");
-    }
-  }
-  return text;
-}
+std::string TwinsAsCsv(const std::vector<TwinReport>& reports) { return RenderCsv(MakeRowTable(reports)); }
 
 std::string TwinsAsJson(const std::vector<TwinReport>& reports) {
   nlohmann::ordered_json json = {{"scenes", nlohmann::ordered_json::array()}};
   for (const TwinReport& report : reports) {
-    nlohmann::ordered_json scene = {{"name", report.scene},
-                                    {"pairs", report.num_pairs},
-                                    {"templates", report.fit.num_templates},
-                                    {"semi_real", JsonOf(report.semi_real)},
-                                    {"simulated", JsonOf(report.simulated)},
-                                    {"why_not_simulated", report.why_not_simulated},
-                                    {"comparisons", nlohmann::ordered_json::array()}};
-    for (const TwinComparison& c : report.comparisons) {
-      scene["comparisons"].push_back({{"twin", c.twin},
-                                      {"quantity", c.quantity},
-                                      {"kind", c.is_rate ? "rate" : "mean"},
-                                      {"fitted", c.is_fitted},
-                                      {"n", c.n},
-                                      {"observed", JsonNumber(c.observed)},
-                                      {"interval", {JsonNumber(c.joint.lower), JsonNumber(c.joint.upper)}},
-                                      {"predicted", JsonNumber(c.predicted)},
-                                      {"within", c.IsWithin()}});
-    }
-    json["scenes"].push_back(std::move(scene));
+    json["scenes"].push_back({{"name", report.scene},
+                              {"pairs", report.num_pairs},
+                              {"templates", report.fit.num_templates},
+                              {"semi_real", JsonOf(report.semi_real)},
+                              {"simulated", JsonOf(report.simulated)},
+                              {"why_not_simulated", report.why_not_simulated},
+                              {"comparisons", RenderJson(MakeRowTable({report}))}});
   }
   return JsonText(kTwinFormat, json);
 }
