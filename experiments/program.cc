@@ -13,14 +13,15 @@
 #include <new>
 #include <string_view>
 
-#include "experiments/core/text/message.h"
-#include "experiments/core/text/program_name.h"
-#include "experiments/core/files/scratch_folder.h"
-#include "experiments/core/files/shared_files.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/twin_commands.h"
+#include "experiments/core/files/scratch_folder.h"
+#include "experiments/core/files/shared_files.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/text/program_name.h"
+#include "experiments/core/work/runner.h"
+#include "experiments/core/work/stop_request.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -134,6 +135,10 @@ int RunProgram(int argc, const char* const* argv, const char* installed_share) {
     return 2;
   } catch (const EndWith& end) {
     return end.exit_code;
+  } catch (const ItemsAreMissing& missing) {
+    PrintMessage("{}\n", missing.message);
+    fmt::print("{}\n", missing.shards);
+    return kTryAgain;
   } catch (const Stopped& stopped) {
     PrintMessage("{}\n", stopped.what());
     return StopExitCode();

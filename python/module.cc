@@ -10,21 +10,22 @@
 #include <filesystem>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/statistics/comparison_output.h"
-#include "experiments/statistics/forecast_output.h"
-#include "experiments/statistics/summarize_counts.h"
-#include "experiments/statistics/summary_output.h"
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/program_name.h"
-#include "experiments/core/files/shared_files.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/audit/claims/audit_output.h"
+#include "experiments/audit/claims/audit_work.h"
 #include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/audit/claims/study_claims.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/files/shared_files.h"
+#include "experiments/core/text/program_name.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_file.h"
 #include "experiments/run/run_study.h"
+#include "experiments/statistics/comparison_output.h"
+#include "experiments/statistics/forecast_output.h"
+#include "experiments/statistics/summarize_counts.h"
+#include "experiments/statistics/summary_output.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
@@ -32,6 +33,7 @@
 #include "experiments/trial/trial.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
+#include "experiments/tuning/tuning_work.h"
 #include "parameters/input_error.h"
 #include "peers/outside_answer.h"
 #include "peers/peer_registry.h"
@@ -263,6 +265,12 @@ std::string ReliabilityJson(const std::string& run, const std::string& by) {
   return ForecastsAsJson(runs.front().Description().study, by, MeasureFailureForecasts(runs, by));
 }
 
+// Checks have threads of their own: one at a time.
+Audit AuditInMemory(const std::vector<Claim>& all, const AuditOptions& options) {
+  Runner runner = Runner::InMemory(PlanAuditChecks(PlanAudit(all, options)), 1);
+  return RunAudit(all, options, &runner);
+}
+
 std::string AuditJson(const StudySource& source, const Functions& functions,
                       const std::vector<std::string>& only, bool is_full, int threads) {
   const FunctionsOfRun of_run(FunctionsIn(functions));
@@ -273,7 +281,7 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   if (source.path.empty() && source.text.empty()) {
     options.seed = source.seed < 0 ? 1 : static_cast<std::uint64_t>(source.seed);
     options.conditions = ResolveCaseSettings({});
-    return Stoppable([&] { return AuditAsJson(RunAudit(AllClaims(EstimatorRegistry()), options)); });
+    return Stoppable([&] { return AuditAsJson(AuditInMemory(AllClaims(EstimatorRegistry()), options)); });
   }
   const Study study = StudyFrom(WithFunctions(source, functions));
   RequireCases(study);
@@ -282,7 +290,7 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   options.study = plan.study.name;
   options.study_identity = plan.identity;
   options.conditions = plan.study.data;
-  return Stoppable([&] { return AuditAsJson(RunAudit(StudyClaims(plan), options)); });
+  return Stoppable([&] { return AuditAsJson(AuditInMemory(StudyClaims(plan), options)); });
 }
 
 // The tuning as JSON, and the tuned estimator's file: empty where none is certified, with the reason why.
@@ -291,7 +299,12 @@ py::dict TuneStudy(const StudySource& source, int threads) {
   if (!study.tuning) throw InputError(source.Name() + ": has no block 'tune' (estimator, target, options)");
   const StudyPlan plan = PlanOf(study, source.Name());
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
-  const TuneResult result = Stoppable([&] { return Tune(plan, settings, Unreached::kVerifyAll, threads); });
+  const TuningWork work = PlanTuningWork(plan);
+  Runner runner = Runner::InMemory(work.items, threads);
+  const TuneResult result = Stoppable([&] {
+    GetTuningResults(plan, settings, work, Unreached::kVerifyAll, &runner);
+    return Tune(plan, settings, Unreached::kVerifyAll, CountsIn(plan, settings, work, runner.results()));
+  });
   std::string file;
   if (result.choice.setting) {
     EstimatorSpec spec = settings.settings[*result.choice.setting].spec;

@@ -4,11 +4,8 @@
 #include <utility>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/audit/claims/audit_output.h"
-#include "experiments/audit/claims/audit_part.h"
+#include "experiments/audit/claims/audit_work.h"
 #include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/audit/claims/study_claims.h"
@@ -19,6 +16,9 @@
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -52,17 +52,28 @@ std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* optio
 }
 
 // Of all shards. Where a round is missing, writes which.
-Audit Merged(const std::vector<Claim>& all, const AuditOptions& options, const AuditArguments& arguments) {
+Audit MergeAudit(const std::vector<Claim>& all, const AuditOptions& options,
+                 const AuditArguments& arguments) {
   MergedAudit merged = MergeAuditParts(all, options, arguments.shards.parts);
-  const PiecePlan pieces = PiecesOfAudit(merged.audit);
-  if (merged.missing.num_pieces > 0 && !arguments.round.empty()) {
+  const WorkPlan items = PlanAuditBlocks(merged.audit);
+  if (merged.missing.num_items > 0 && !arguments.round.empty()) {
     WriteRound(merged.audit, merged.round, arguments.round);
     PrintMessage("{}: the next round\n", arguments.round);
   }
-  RequireNoneMissing(pieces, merged.missing, merged.parts.num_shards);
-  PrintCosts(pieces, merged.parts);
+  RequireNoneMissing(items, merged.missing, merged.parts.num_shards);
+  PrintMessage("{}\n", DescribeCosts(items, merged.parts));
   PrintMessage("{:.4g} s of it for trials after those that a check took\n", merged.unneeded_seconds);
   return std::move(merged.audit);
+}
+
+// A check has threads of its own, so that the runner has one.
+constexpr int kChecksAtATime = 1;
+
+void RunAuditPart(const Audit& plan, const AuditArguments& arguments) {
+  Runner runner =
+      Runner::OfShard(PlanAuditBlocks(plan), arguments.shards.ThisShard(), arguments.out, kChecksAtATime);
+  GetAuditRound(plan, arguments.round.empty() ? FirstRound(plan) : ReadRound(plan, arguments.round), &runner);
+  PrintPartIsDone(runner.shard(), arguments.out);
 }
 
 void WriteAudit(const Audit& audit, const std::string& out) {
@@ -90,20 +101,17 @@ void RunAuditCommand(const AuditArguments& arguments) {
   if (!arguments.round.empty() && arguments.shards.shard.empty() && arguments.shards.parts.empty())
     throw InputError("--round: only with --shard or --merge");
   SelectClaims(all, options.only);
-  if (!arguments.shards.shard.empty()) {
-    const Shard shard = arguments.shards.ThisShard();
-    const Audit plan = PlanAudit(all, options);
-    RunAuditPart(plan, arguments.round.empty() ? FirstRound(plan) : ReadRound(plan, arguments.round), shard,
-                 arguments.out);
-    return PrintPartIsDone(shard, arguments.out);
-  }
+  if (!arguments.shards.shard.empty()) return RunAuditPart(PlanAudit(all, options), arguments);
   if (!arguments.shards.parts.empty()) {
-    const Audit audit = Merged(all, options, arguments);
+    const Audit audit = MergeAudit(all, options, arguments);
     MakeResultFolder(arguments.out);
     return WriteAudit(audit, arguments.out);
   }
   MakeResultFolder(arguments.out);
-  WriteAudit(RunAudit(all, options), arguments.out);
+  Runner runner = Runner::WithCheckpoint(PlanAuditChecks(PlanAudit(all, options)),
+                                         FindCheckpointInFolder(arguments.out), kChecksAtATime);
+  WriteAudit(RunAudit(all, options, &runner), arguments.out);
+  runner.RemoveCheckpoint();
 }
 
 }  // namespace
@@ -135,6 +143,10 @@ void AddAuditCommand(CLI::App& app) {
       "  rcme audit study.yaml --out audit                        all conditions; says the time beforehand\n"
       "  rcme audit study.yaml --set outlier_ratio=0.3 --out audit    one level of a factor\n"
       "  rcme audit study.yaml --only estimator --out audit       only what the study's estimators report\n"
+      "\n"
+      "Stopped (Ctrl-C, SIGTERM, --max-time) or killed, the same command goes on: the checks that are "
+      "decided\n"
+      "are kept in DIR/unfinished.part until the end.\n"
       "\n"
       "On many machines each runs a share of every check's trials; the parts give the same bytes as one run. "
       "It goes\n"

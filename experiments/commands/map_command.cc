@@ -5,18 +5,18 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/work/for_each_index.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/progress.h"
-#include "experiments/core/work/stop_request.h"
+#include "experiments/audit/validity/map_work.h"
+#include "experiments/audit/validity/study_samples.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
-#include "experiments/audit/validity/map_part.h"
-#include "experiments/audit/validity/study_samples.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/for_each_index.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 
 namespace rcme {
 namespace {
@@ -53,7 +53,6 @@ MapWork WorkOnBuiltInScene(const MapArguments& arguments) {
   reference.num_draws = kDrawsPerSample;
   reference.num_samples = std::max(1, arguments.trials / kDrawsPerSample);
   reference.seed = work.map.seed;
-  reference.num_threads = arguments.threads;
   return work;
 }
 
@@ -63,41 +62,31 @@ void WriteTable(const MapArguments& arguments, const std::string& name, const st
   fmt::print("{}\n", path);
 }
 
-// Where `parts` are null the tables are computed.
-void WriteTables(const MapArguments& arguments, const MapWork& work, const PiecePlan& pieces,
-                 const MergedParts* parts) {
-  WriteTable(arguments, "validity_map.csv",
-             parts ? ValidityMapCsv(work.map, TrialsIn(work, pieces, *parts)) : ValidityMapCsv(work.map));
-  if (!work.reference) return;
-  WriteTable(arguments, "validity_reference.csv",
-             parts ? ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, *parts))
-                   : ValidityReferenceCsv(*work.reference));
-}
-
 void Map(const MapArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
   MapWork work = arguments.study.empty() ? WorkOnBuiltInScene(arguments) : WorkOnStudy(arguments);
   work.map.trials = arguments.trials;
-  work.map.num_threads = arguments.threads;
-  const PiecePlan pieces = PiecesOfMap(work);
-  if (!arguments.shards.shard.empty()) {
-    const Shard shard = arguments.shards.ThisShard();
-    RunMapPart(work, shard, arguments.out);
-    return PrintPartIsDone(shard, arguments.out);
+  const bool is_part = !arguments.shards.shard.empty(), is_merge = !arguments.shards.parts.empty();
+  if (!is_part && !is_merge) MakeResultFolder(arguments.out);  // minutes before the first table is written
+  Runner runner = MakeRunner(PlanMapWork(work), arguments.shards, arguments.out,
+                             FindCheckpointInFolder(arguments.out), arguments.threads);
+  if (!is_part && !is_merge) {
+    PrintMessage("map: {} conditions, {} cells; about {} on {} threads\n", work.map.conditions.size(),
+                 NumCells(work.map), DurationInWords(SecondsOfWork(work.map) / NumThreads(arguments.threads)),
+                 NumThreads(arguments.threads));
   }
-  if (!arguments.shards.parts.empty()) {
-    const MergedParts merged = MergeParts(pieces, arguments.shards.parts);
-    RequireNoneMissing(pieces, MissingIn(pieces, merged, 0, pieces.groups.size()), merged.num_shards);
-    PrintCosts(pieces, merged);
-    MakeResultFolder(arguments.out);
-    return WriteTables(arguments, work, pieces, &merged);
+  GetMapResults(work, &runner);
+  if (is_part) return PrintPartIsDone(runner.shard(), arguments.out);
+  PrintCosts(runner);
+  MakeResultFolder(arguments.out);
+  WriteTable(arguments, "validity_map.csv",
+             ValidityMapCsv(work.map, TrialsIn(work, runner.plan(), runner.results())));
+  if (work.reference) {
+    WriteTable(arguments, "validity_reference.csv",
+               ValidityReferenceCsv(*work.reference, CountsIn(work, runner.plan(), runner.results())));
   }
-  MakeResultFolder(arguments.out);  // minutes before the first table is written
-  PrintMessage("map: {} conditions, {} cells; about {} on {} threads\n", work.map.conditions.size(),
-               NumCells(work.map), DurationInWords(SecondsOfWork(work.map)),
-               NumThreads(work.map.num_threads));
-  WriteTables(arguments, work, pieces, nullptr);
+  runner.RemoveCheckpoint();
 }
 
 }  // namespace
@@ -125,6 +114,9 @@ void AddMapCommand(CLI::App& app) {
       "its conditions and at its own noise level beside the map's eight; there is no reference table then. A "
       "cell\n"
       "for which no trial has enough true matches, or a direction of translation, has n = 0.\n"
+      "\n"
+      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part until the "
+      "end.\n"
       "\n"
       "Example:\n"
       "  rcme map --out map\n"

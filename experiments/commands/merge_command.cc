@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <memory>
 
-#include "experiments/statistics/merge_counts.h"
-#include "experiments/statistics/summarize_counts.h"
+#include "experiments/commands/commands.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
-#include "experiments/core/work/stop_request.h"
-#include "experiments/commands/commands.h"
-#include "experiments/core/work/divided_work.h"
-#include "experiments/run/store/merge_results.h"
+#include "experiments/core/work/runner.h"
 #include "experiments/core/work/shard.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/run/store/merge_results.h"
+#include "experiments/statistics/merge_counts.h"
+#include "experiments/statistics/summarize_counts.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -64,7 +64,7 @@ void JoinTheParts(const MergeArguments& arguments) {
   }
   CheckIsNoInput(arguments.out, arguments.parts);
   const Part joined = JoinParts(arguments.parts);
-  WritePart(arguments.out, joined);
+  WritePart(arguments.out, joined, joined.results);
   PrintMessage("{} parts of a {}, {} pieces -> {}\n", arguments.parts.size(), joined.work,
                joined.results.size(), arguments.out);
 }

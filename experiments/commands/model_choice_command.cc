@@ -3,18 +3,20 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/work/stop_request.h"
+#include "experiments/audit/model_choice/choice_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/audit/model_choice/choice_output.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 
 namespace rcme {
 namespace {
 
 struct ModelChoiceArguments {
-  std::string study, out;
+  std::string study, out, max_time;
   StudyChanges changes;
   std::vector<std::string> by;
   int trials = 0;  // 0: the study's own
@@ -23,16 +25,20 @@ struct ModelChoiceArguments {
 
 void RunModelChoice(const ModelChoiceArguments& arguments) {
   const StopOnSignals stop;
+  StartTimeLimit(arguments.max_time);
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = arguments.trials;
   const StudyPlan plan = PlanOf(study, arguments.study, PlanEstimators::kNotMade);
   MakeResultFolder(arguments.out);
-  const ChoiceCounts counts = CountChoices(plan, arguments.by, arguments.threads);
+  Runner runner =
+      Runner::WithCheckpoint(PlanChoices(plan), FindCheckpointInFolder(arguments.out), arguments.threads);
+  const ChoiceCounts counts = CountChoices(plan, arguments.by, &runner);
   const std::filesystem::path folder(arguments.out);
   const std::string table = ChoicesAsTable(plan, counts);
   WriteFileWhole((folder / "model_choice.txt").string(), table);
   WriteFileWhole((folder / "model_choice.csv").string(), ChoicesAsCsv(plan, counts));
   WriteFileWhole((folder / "model_choice.json").string(), ChoicesAsJson(plan, counts));
+  runner.RemoveCheckpoint();
   fmt::print("{}", table);
 }
 
@@ -53,6 +59,7 @@ void AddModelChoiceCommand(CLI::App& app) {
       "sigma\n"
       "  general              at most 75 % of them, whichever homography\n"
       "  borderline           between these, with parallax of 5 to 20 %, or fewer than eight right matches\n"
+      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part.\n"
       "\n"
       "Examples:\n"
       "  rcme model-choice studies/model_choice.yaml --out choice\n"
@@ -75,6 +82,7 @@ void AddModelChoiceCommand(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_option("--trials", arguments->trials, "trials per condition; default: the study's")
       ->transform(WholeNumberIn(1, 100'000'000));
+  AddTimeLimit(command, "blocks of trials", &arguments->max_time);
   AddStudyOptions(command, &arguments->changes);
   command
       ->add_option("--threads", arguments->threads,

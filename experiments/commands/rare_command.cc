@@ -3,19 +3,21 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
+#include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/rare/rare_output.h"
 
 namespace rcme {
 namespace {
 
 struct RareArguments {
-  std::string study, out, method = "splitting";
+  std::string study, out, max_time, method = "splitting";
   StudyChanges changes;
   RareEffort splitting;
   StratifiedEffort stratified;
@@ -26,20 +28,15 @@ struct RareTexts {
   std::string table, csv, json;
 };
 
-RareTexts Split(const StudyPlan& plan, const RareArguments& arguments) {
-  Progress progress("replicates", static_cast<std::int64_t>(plan.conditions.size() * plan.estimators.size()) *
-                                      (arguments.splitting.num_replicates + 1));
-  const std::vector<RareCell> cells =
-      SplitFailures(plan, plan.study.seed, arguments.splitting, arguments.threads, &progress);
+RareTexts Split(const StudyPlan& plan, const RareArguments& arguments, Runner* runner) {
+  const std::vector<RareCell> cells = SplitFailures(plan, plan.study.seed, arguments.splitting, runner);
   std::vector<RareRow> rows;
   for (const RareCell& cell : cells) rows.push_back(RowOf(cell));
   return {RareAsTable(plan, cells), RareAsCsv(plan, rows), RareAsJson(plan, arguments.splitting, cells)};
 }
 
-RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments) {
-  Progress progress("trials", std::ssize(plan.conditions) * std::int64_t{arguments.stratified.num_trials});
-  const std::vector<StratifiedCell> cells =
-      StratifyFailures(plan, arguments.stratified, arguments.threads, &progress);
+RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments, Runner* runner) {
+  const std::vector<StratifiedCell> cells = StratifyFailures(plan, arguments.stratified, runner);
   std::vector<RareRow> rows;
   for (const StratifiedCell& cell : cells) rows.push_back(RowOf(cell));
   return {StratifiedAsTable(plan, cells), RareAsCsv(plan, rows),
@@ -48,15 +45,21 @@ RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments) {
 
 void RunRare(const RareArguments& arguments) {
   const StopOnSignals stop;
+  StartTimeLimit(arguments.max_time);
   const bool is_splitting = arguments.method == "splitting";
   const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
   CheckProcessEstimators(plan.study.estimators);
   MakeResultFolder(arguments.out);
-  const RareTexts texts = is_splitting ? Split(plan, arguments) : Stratify(plan, arguments);
+  Runner runner =
+      Runner::WithCheckpoint(is_splitting ? PlanSplitting(plan, plan.study.seed, arguments.splitting)
+                                          : PlanStrata(plan, arguments.stratified),
+                             FindCheckpointInFolder(arguments.out), arguments.threads);
+  const RareTexts texts = is_splitting ? Split(plan, arguments, &runner) : Stratify(plan, arguments, &runner);
   const std::filesystem::path folder(arguments.out);
   WriteFileWhole((folder / "rare.txt").string(), texts.table);
   WriteFileWhole((folder / "rare.csv").string(), texts.csv);
   WriteFileWhole((folder / "rare.json").string(), texts.json);
+  runner.RemoveCheckpoint();
   fmt::print("{}", texts.table);
 }
 
@@ -83,7 +86,8 @@ void AddRareCommand(CLI::App& app) {
       "              hold the failures\n"
       "Where the number of outliers drives failures: `rcme run` with tilted_to. A rate that cannot be "
       "trusted says\n"
-      "so and why. Nothing is kept until the end.\n"
+      "so and why. Stopped or killed, the same command goes on: what is done is kept in "
+      "OUT/unfinished.part.\n"
       "\n"
       "Examples:\n"
       "  rcme rare studies/rare_noise.yaml --out rare\n"
@@ -97,6 +101,7 @@ void AddRareCommand(CLI::App& app) {
   command
       ->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json; made if it is missing")
       ->required();
+  AddTimeLimit(command, "replicates, or blocks of trials", &arguments->max_time);
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   command->add_option("--method", arguments->method, "splitting (default) or stratified")

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/stop_request.h"
-#include "experiments/commands/commands.h"
+#include <filesystem>
+
 #include "experiments/commands/time_limit.h"
+#include "experiments/core/text/message.h"
 
 namespace rcme {
 
@@ -25,21 +25,33 @@ ShardOptions AddShardOptions(CLI::App* command, const std::string& pieces, Shard
                                                "shards that have them (3,17-19) and ends with exit code 75",
                                                pieces))
                       ->excludes(options.shard);
-  AddTimeLimit(command, pieces, &arguments->max_time)->needs(options.shard);
+  AddTimeLimit(command, pieces, &arguments->max_time);
   return options;
 }
 
-void RequireNoneMissing(const PiecePlan& plan, const MissingPieces& missing, std::uint32_t num_shards) {
-  if (missing.num_pieces == 0) return;
-  const std::string shards = ArrayText(missing.shards);
-  PrintMessage("{} {}s are missing, of the shards {} of {}; no result was written\n", missing.num_pieces,
-               plan.piece_name, shards, num_shards);
-  fmt::print("{}\n", shards);
-  throw EndWith{kTryAgain};
+std::string FindCheckpointInFolder(const std::string& out) {
+  return (std::filesystem::path(out) / "unfinished.part").string();
 }
 
-void PrintCosts(const PiecePlan& plan, const MergedParts& merged) {
-  PrintMessage("{}\n", CostsInWords(plan, merged));
+std::string FindCheckpointBeside(const std::string& out) {
+  const bool is_device = std::filesystem::exists(out) && !std::filesystem::is_regular_file(out);
+  return is_device ? "" : out + ".unfinished.part";
+}
+
+Runner MakeRunner(const WorkPlan& plan, const ShardArguments& arguments, const std::string& out,
+                  const std::string& checkpoint, int num_threads) {
+  if (!arguments.shard.empty()) return Runner::OfShard(plan, arguments.ThisShard(), out, num_threads);
+  if (!arguments.parts.empty()) return Runner::FromParts(plan, arguments.parts);
+  return MakeRunner(plan, checkpoint, num_threads);
+}
+
+Runner MakeRunner(const WorkPlan& plan, const std::string& checkpoint, int num_threads) {
+  return checkpoint.empty() ? Runner::InMemory(plan, num_threads)
+                            : Runner::WithCheckpoint(plan, checkpoint, num_threads);
+}
+
+void PrintCosts(const Runner& runner) {
+  if (runner.ReadsParts()) PrintMessage("{}\n", DescribeCosts(runner.plan(), runner.results()));
 }
 
 void PrintPartIsDone(const Shard& shard, const std::string& path) {

@@ -1,12 +1,11 @@
-// What the commands have in common whose work is divided into pieces (core/work/piece_plan.h): audit, tune,
-// transfer, map.
+// What the commands have in common whose work is a list of items (core/work/work_plan.h).
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-#include "experiments/core/work/divided_work.h"
+#include "experiments/core/work/runner.h"
 
 namespace rcme {
 
@@ -23,12 +22,20 @@ struct ShardOptions {
 };
 ShardOptions AddShardOptions(CLI::App* command, const std::string& pieces, ShardArguments* arguments);
 
-// Where pieces are missing, says so, prints the shards that have them for the shell, and ends the command
-// with exit code 75.
-void RequireNoneMissing(const PiecePlan& plan, const MissingPieces& missing, std::uint32_t num_shards);
+// Where a command that was stopped keeps its results: in the folder `out`, or beside the file. Nothing (no
+// checkpoint) where `out` is a device or a pipe.
+std::string FindCheckpointInFolder(const std::string& out);
+std::string FindCheckpointBeside(const std::string& out);
 
-// Once nothing is missing: what the pieces took, on standard error.
-void PrintCosts(const PiecePlan& plan, const MergedParts& merged);
+// The runner that the options ask for: of a shard, whose part is `out`, of parts, or with a checkpoint.
+Runner MakeRunner(const WorkPlan& plan, const ShardArguments& arguments, const std::string& out,
+                  const std::string& checkpoint, int num_threads);
+
+// With the checkpoint, or in memory where there is none.
+Runner MakeRunner(const WorkPlan& plan, const std::string& checkpoint, int num_threads);
+
+// Once nothing is missing of parts: what the items took, on standard error.
+void PrintCosts(const Runner& runner);
 
 // The last word of a command that has done its part.
 void PrintPartIsDone(const Shard& shard, const std::string& path);

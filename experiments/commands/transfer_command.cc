@@ -2,17 +2,16 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/commands/tuning_source.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/tuning/transfer_output.h"
-#include "experiments/tuning/tune_part.h"
+#include "experiments/tuning/tuning_work.h"
 
 namespace rcme {
 namespace {
@@ -22,39 +21,34 @@ struct TransferArguments : TuningArguments {
   ShardArguments shards;
 };
 
-TransferResult TransferFromParts(const TransferArguments& arguments, const StudyPlan& plan,
-                                 const SettingPlan& settings) {
-  const TuningPieces work = PiecesOfTransfer(plan);
-  const MergedParts merged = MergeParts(work.pieces, arguments.shards.parts);
-  RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, 0, work.num_first), merged.num_shards);
-  PrintCosts(work.pieces, merged);
-  return MeasureTransfer(plan, settings, arguments.by, CountsOf(plan, settings, work, merged));
-}
-
 void RunTransfer(const TransferArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
   const StudyPlan plan = TuningPlanOf(arguments);
   if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
-  if (!arguments.shards.shard.empty()) {
-    FamiliesOf(plan, arguments.by);  // or no merge will do
-    const Shard shard = arguments.shards.ThisShard();
-    RunTuningPart(plan, settings, PiecesOfTransfer(plan), {}, shard, arguments.threads, arguments.out);
-    return PrintPartIsDone(shard, arguments.out);
+  FamiliesOf(plan, arguments.by);  // refuses before any trial
+  const TuningWork work = PlanTransferWork(plan);
+  const bool is_part = !arguments.shards.shard.empty();
+  if (!is_part && arguments.shards.parts.empty()) MakeResultFolder(arguments.out);
+  Runner runner = MakeRunner(work.items, arguments.shards, arguments.out,
+                             FindCheckpointInFolder(arguments.out), arguments.threads);
+  if (is_part) {
+    GetTuningShard(plan, settings, work, {}, &runner);
+    return PrintPartIsDone(runner.shard(), arguments.out);
   }
-  const bool is_merge = !arguments.shards.parts.empty();
-  std::optional<TransferResult> merged;  // before a folder is made for what may be refused
-  if (is_merge) merged = TransferFromParts(arguments, plan, settings);
-  MakeResultFolder(arguments.out);
+  GetTuningResults(plan, settings, work, Unreached::kVerifyAll, &runner);
+  PrintCosts(runner);
   const TransferResult result =
-      is_merge ? *merged : MeasureTransfer(plan, settings, arguments.by, arguments.threads);
+      MeasureTransfer(plan, settings, arguments.by, CountsIn(plan, settings, work, runner.results()));
+  MakeResultFolder(arguments.out);
   const std::filesystem::path folder(arguments.out);
   const std::string table = TransferAsTable(plan, result), json = (folder / "transfer.json").string();
   WriteFileWhole((folder / "transfer.txt").string(), table);
   WriteFileWhole(json, TransferAsJson(plan, settings, result));
   fmt::print("{}", table);
   DrawFigures("transfer", {json, "--out", (folder / "transfer").string()});
+  runner.RemoveCheckpoint();
 }
 
 }  // namespace
@@ -70,6 +64,8 @@ void AddTransferCommand(CLI::App& app) {
       "matrix, at the price of one tuning. A cell holds (its whole exact 95 % interval is within the "
       "target),\n"
       "is violated, or undecided.\n"
+      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part until the "
+      "end.\n"
       "\n"
       "Examples:\n"
       "  rcme transfer studies/transfer_mu.yaml --out transfer\n"

@@ -3,19 +3,19 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/commands/tuning_source.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
-#include "experiments/tuning/tune_part.h"
+#include "experiments/tuning/tuning_work.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -29,57 +29,19 @@ struct TuneArguments : TuningArguments {
 };
 
 // One shard's part; of its second round where there is one to do.
-void RunPart(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings) {
-  const TuningPieces work = PiecesOfTuning(plan);
-  const Shard shard = arguments.shards.ThisShard();
-  const MergedParts merged = MergeParts(work.pieces, arguments.merged);
-  const MissingPieces missing =
-      RunTuningPart(plan, settings, work, merged, shard, arguments.threads, arguments.out);
-  if (missing.num_pieces == 0) return PrintPartIsDone(shard, arguments.out);
+void RunPart(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,
+             const TuningWork& work, Runner* runner) {
+  const WorkResults merged = MergeParts(work.items, arguments.merged);
+  const MissingItems missing = GetTuningShard(plan, settings, work, merged, runner);
+  if (missing.num_items == 0) return PrintPartIsDone(runner->shard(), arguments.out);
   if (!arguments.merged.empty()) {
     PrintMessage("--merged: {} {}s of the first round are missing, of the shards {} of {}\n",
-                 missing.num_pieces, work.pieces.piece_name, ArrayText(missing.shards), merged.num_shards);
+                 missing.num_items, work.items.item_name, ArrayText(missing.shards), merged.num_shards);
   }
   PrintMessage(
       "the first round of shard {} is done; when those of all are: the same command, --merged PARTS\n",
-      shard.Text());
+      runner->shard().Text());
   throw EndWith{kTryAgain};
-}
-
-// The tuning that the parts of all shards give.
-struct Tuned {
-  TuneResult result;
-  std::vector<EntropyRoc> rocs;
-};
-
-Tuned TuneFromParts(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,
-                    Unreached unreached) {
-  const TuningPieces work = PiecesOfTuning(plan);
-  const MergedParts merged = MergeParts(work.pieces, arguments.shards.parts);
-  RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, 0, work.num_first), merged.num_shards);
-  const TuningSource source = CountsOf(plan, settings, work, merged);
-  if (ChooseFrom(plan, settings, source).setting) {
-    const size_t end = work.pieces.groups.size();
-    RequireNoneMissing(work.pieces, MissingIn(work.pieces, merged, work.num_first, end), merged.num_shards);
-  }
-  PrintCosts(work.pieces, merged);
-  Tuned tuned{Tune(plan, settings, unreached, source), {}};
-  if (!tuned.result.verified.empty()) tuned.rocs = RocsOf(plan, EntropiesIn(plan, work, merged));
-  return tuned;
-}
-
-std::vector<EntropyRoc> MeasureRocs(const StudyPlan& plan, int num_threads) {
-  const TrialRange trials = TuningTrials(*plan.study.tuning).verify;
-  Progress progress("trials for the curves",
-                    static_cast<std::int64_t>(plan.conditions.size()) * (trials.end - trials.first));
-  return MeasureEntropyRocs(plan, trials, num_threads, &progress);
-}
-
-Tuned TuneHere(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,
-               Unreached unreached) {
-  Tuned tuned{Tune(plan, settings, unreached, arguments.threads), {}};
-  if (!tuned.result.verified.empty()) tuned.rocs = MeasureRocs(plan, arguments.threads);
-  return tuned;
 }
 
 void WriteFigures(const std::string& folder, const std::string& json) {
@@ -118,18 +80,25 @@ void RunTune(const TuneArguments& arguments) {
   if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
   CheckIsNoInput(arguments.out, {arguments.study});
   CheckIsNoInput(arguments.out, arguments.shards.parts);
-  if (!arguments.shards.shard.empty()) return RunPart(arguments, plan, settings);
-  CheckCanBeWritten(arguments.out);  // minutes before it is
+  const TuningWork work = PlanTuningWork(plan);
+  const bool is_part = !arguments.shards.shard.empty();
+  if (!is_part) CheckCanBeWritten(arguments.out);  // minutes before it is
+  Runner runner = MakeRunner(work.items, arguments.shards, arguments.out, FindCheckpointBeside(arguments.out),
+                             arguments.threads);
+  if (is_part) return RunPart(arguments, plan, settings, work, &runner);
   if (!arguments.figures.empty()) MakeResultFolder(arguments.figures);
   const Unreached unreached = arguments.figures.empty() ? Unreached::kStop : Unreached::kVerifyAll;
-  const auto [result, rocs] = arguments.shards.parts.empty()
-                                  ? TuneHere(arguments, plan, settings, unreached)
-                                  : TuneFromParts(arguments, plan, settings, unreached);
+  GetTuningResults(plan, settings, work, unreached, &runner);
+  PrintCosts(runner);
+  const TuneResult result = Tune(plan, settings, unreached, CountsIn(plan, settings, work, runner.results()));
+  std::vector<EntropyRoc> rocs;
+  if (!result.verified.empty()) rocs = RocsOf(plan, EntropiesIn(plan, work, runner.results()));
   fmt::print("{}", TuneAsTable(plan, result, rocs));
   if (result.choice.setting) WriteEstimator(arguments, plan, settings, result);
   if (!arguments.figures.empty()) {
     WriteFigures(arguments.figures, TuneAsJson(plan, settings, result, rocs));
   }
+  runner.RemoveCheckpoint();
   if (!result.choice.setting) throw InputError(fmt::format("{}: {}", arguments.study, result.choice.why));
 }
 
@@ -157,6 +126,9 @@ void AddTuneCommand(CLI::App& app) {
       "Where no setting is certified, nothing is written: the message says what is nearest, or how many "
       "trials\n"
       "would do (exit code 2).\n"
+      "\n"
+      "Stopped (Ctrl-C, SIGTERM, --max-time) or killed, the same command goes on: what is done is kept in\n"
+      "OUT.unfinished.part until the end.\n"
       "\n"
       "On many machines each does a share of the trials; the parts give the bytes of one tuning, in two "
       "rounds\n"

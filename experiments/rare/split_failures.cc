@@ -1,48 +1,125 @@
 #include "experiments/rare/split_failures.h"
 
-#include "experiments/core/work/for_each_index.h"
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
 
 namespace rcme {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 
 // The pilot has the number 0, replicates count from 1.
 RandomStream StreamOf(std::uint64_t seed, const Condition& condition, std::uint32_t number) {
   return RandomStream({seed, condition.stream_key, number, kSplittingPurpose});
 }
 
-}  // namespace
+Json NumbersAsJson(const std::vector<double>& numbers) {
+  Json json = Json::array();
+  for (const double x : numbers) json.push_back(NumberAsJson(x));
+  return json;
+}
 
-std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort,
-                                    int num_threads, Progress* progress) {
+std::vector<double> NumbersFrom(const Json& json) {
+  std::vector<double> numbers;
+  for (const Json& x : json) numbers.push_back(NumberFrom(x));
+  return numbers;
+}
+
+std::string PilotAsJson(const SplittingPilot& pilot) {
+  return Json::array({static_cast<int>(pilot.end), NumbersAsJson(pilot.levels.levels),
+                      NumbersAsJson(pilot.levels.steps), NumberAsJson(pilot.last_level), pilot.num_values})
+      .dump();
+}
+
+SplittingPilot PilotFrom(const Json& json) {
+  RequireSize(json, 5);
+  const auto last = static_cast<std::int64_t>(PilotEnd::kTooRare);
+  return {static_cast<PilotEnd>(CountFrom(json[0], last)),
+          {NumbersFrom(json[1]), NumbersFrom(json[2])},
+          NumberFrom(json[3]),
+          CountFrom(json[4], kMost)};
+}
+
+std::string ReplicateAsJson(const SplittingReplicate& r) {
+  return Json::array({NumberAsJson(r.estimate), NumbersAsJson(r.shares), NumbersAsJson(r.acceptance),
+                      r.num_drawn, r.num_drawn_events, r.num_ancestors, r.num_values})
+      .dump();
+}
+
+SplittingReplicate ReplicateFrom(const Json& json) {
+  RequireSize(json, 7);
+  return {NumberFrom(json[0]),       NumbersFrom(json[1]),
+          NumbersFrom(json[2]),      CountFrom(json[3], kMost),
+          CountFrom(json[4], kMost), static_cast<int>(CountFrom(json[5], std::numeric_limits<int>::max())),
+          CountFrom(json[6], kMost)};
+}
+
+// Every estimator in every condition, without results.
+std::vector<RareCell> MakeCells(const StudyPlan& plan) {
   std::vector<RareCell> cells;
-  std::vector<FailingMotion> systems;  // all made first: bad input ends it before any work
   for (size_t c = 0; c < plan.conditions.size(); ++c) {
     for (size_t e = 0; e < plan.estimators.size(); ++e) {
       RareCell& cell = cells.emplace_back();
       cell.condition = c;
       cell.estimator = e;
-      systems.emplace_back(plan, plan.conditions[c], e);
     }
   }
-  ForEachIndex(std::ssize(cells), num_threads, [&](std::int64_t index) {
-    RareCell& cell = cells[static_cast<size_t>(index)];
-    RandomStream rng = StreamOf(seed, plan.conditions[cell.condition], 0);
-    cell.pilot = FindLevels(systems[static_cast<size_t>(index)], effort.splitting, rng);
-    if (cell.pilot.end == PilotEnd::kReached)
-      cell.replicates.resize(static_cast<size_t>(effort.num_replicates));
-    else
-      progress->Advance(effort.num_replicates);
-    progress->Advance(1);
+  return cells;
+}
+
+}  // namespace
+
+WorkPlan PlanSplitting(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort) {
+  WorkPlan work{"splitting",
+                "replicate",
+                fmt::format("seed: {}\nparticles: {}\nmoves: {}\nkept share: {}\nreplicates: {}\n{}", seed,
+                            effort.splitting.num_particles, effort.splitting.num_moves,
+                            effort.splitting.kept_share, effort.num_replicates, plan.identity),
+                {}};
+  for (const auto& [name, num_items] : {std::pair<const char*, int>{"pilot", 1},
+                                        std::pair<const char*, int>{"replicates", effort.num_replicates}}) {
+    for (const RareCell& cell : MakeCells(plan)) {
+      work.groups.push_back({fmt::format("{} of condition {} and estimator {}", name, cell.condition,
+                                         plan.study.estimators[cell.estimator].label),
+                             static_cast<size_t>(num_items)});
+    }
+  }
+  return work;
+}
+
+std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort,
+                                    Runner* runner) {
+  std::vector<RareCell> cells = MakeCells(plan);
+  std::vector<FailingMotion> systems;  // all made first: bad input ends it before any work
+  for (const RareCell& cell : cells)
+    systems.emplace_back(plan, plan.conditions[cell.condition], cell.estimator);
+  const WorkPlan& work = runner->plan();
+  const size_t num_cells = cells.size();
+  runner->Get(ListItems(work, {}, 0, num_cells), [&](const ItemPlace& place) {
+    RandomStream rng = StreamOf(seed, plan.conditions[cells[place.group].condition], 0);
+    return PilotAsJson(FindLevels(systems[place.group], effort.splitting, rng));
   });
-  ForEachIndex(std::ssize(cells) * effort.num_replicates, num_threads, [&](std::int64_t index) {
-    const auto c = static_cast<size_t>(index / effort.num_replicates);
-    const auto r = static_cast<size_t>(index % effort.num_replicates);
-    RareCell& cell = cells[c];
-    if (cell.replicates.empty()) return;
-    RandomStream rng = StreamOf(seed, plan.conditions[cell.condition], 1 + static_cast<std::uint32_t>(r));
-    cell.replicates[r] = Split(systems[c], effort.splitting, cell.pilot.levels, rng);
-    progress->Advance(1);
+  ReadResults(work, runner->results(), 0, num_cells, [&](const ItemPlace& place, const std::string& json) {
+    cells[place.group].pilot = PilotFrom(ParsePiece(json));
   });
+  std::vector<ItemPlace> replicates = ListItems(work, {}, num_cells, 2 * num_cells);
+  std::erase_if(replicates, [&](const ItemPlace& place) {
+    return cells[place.group - num_cells].pilot.end != PilotEnd::kReached;
+  });
+  runner->Get(replicates, [&](const ItemPlace& place) {
+    const size_t c = place.group - num_cells;
+    RandomStream rng =
+        StreamOf(seed, plan.conditions[cells[c].condition], 1 + static_cast<std::uint32_t>(place.item));
+    return ReplicateAsJson(Split(systems[c], effort.splitting, cells[c].pilot.levels, rng));
+  });
+  ReadResults(work, runner->results(), num_cells, 2 * num_cells,
+              [&](const ItemPlace& place, const std::string& json) {
+                cells[place.group - num_cells].replicates.push_back(ReplicateFrom(ParsePiece(json)));
+              });
   for (RareCell& cell : cells) cell.rate = RateOf(cell.pilot, cell.replicates);
   return cells;
 }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "experiments/core/work/progress.h"
+#include "experiments/core/work/runner.h"
 #include "experiments/rare/failing_motion.h"
 #include "stats/splitting_rate.h"
 
@@ -22,11 +22,13 @@ struct RareCell {
   SplittingRate rate;
 };
 
+// The runner's work: each cell's pilot, then its replicates.
+WorkPlan PlanSplitting(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort);
+
 // The rate of failure (HasFailed) of every estimator in every condition, the estimators of the first
 // condition first. A replicate is a pure function of (study, seed, condition, estimator, effort, its number),
-// `seed` in the place of the study's. Throws InputError as FailingMotion does; a request to stop ends it as
-// Stopped.
+// `seed` in the place of the study's. Throws InputError as FailingMotion does, and as Runner::Get.
 std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort,
-                                    int num_threads, Progress* progress);
+                                    Runner* runner);
 
 }  // namespace rcme

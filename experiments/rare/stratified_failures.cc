@@ -3,23 +3,27 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <stdexcept>
 
-#include "experiments/core/work/for_each_index.h"
 #include "experiments/audit/claims/cramer_rao.h"
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/rare/failing_motion.h"
 #include "experiments/trial/trial.h"
+#include "experiments/trial/trial_range.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // Of the streams that decide which trials are run, beside the purposes of a trial's streams (StreamPurpose).
 constexpr std::uint32_t kThinningPurpose = 101;
 // The pilot's trials: far beyond those of any run.
 constexpr std::uint32_t kFirstPilotTrial = 4'000'000'000, kNumPilotTrials = 1000;
-constexpr std::uint8_t kNotRun = 0x80;
+constexpr std::uint32_t kTrialsOfItem = 100;
 
 double TailOf(double bound_deg, double variance) {
   return std::erfc(bound_deg * std::numbers::pi / 180.0 / std::sqrt(2.0 * variance));
@@ -67,48 +71,74 @@ class Strata {
   double log_hard_ = 0.0;
 };
 
-// The cells of one condition.
-std::vector<StratifiedCell> CellsOf(const StudyPlan& plan, const Condition& condition,
-                                    const StratifiedEffort& effort, int num_threads, Progress* progress) {
-  const Strata strata(plan, condition, effort.run_share);
-  const size_t num_estimators = plan.estimators.size();
-  std::vector<std::uint8_t> stratum(effort.num_trials), has_failed(effort.num_trials * num_estimators);
-  std::vector<double> weight(effort.num_trials, 1.0);
-  ForEachIndex(effort.num_trials, num_threads, [&](std::int64_t index) {
-    const auto i = static_cast<size_t>(index);
-    const auto trial = static_cast<std::uint32_t>(index);
-    const int k = strata.StratumOf(trial);
-    stratum[i] = static_cast<std::uint8_t>(k);
-    if (strata.IsRun(trial, k)) {
-      const TrialResult result = RunTrial(plan, condition, trial);
-      weight[i] = std::ldexp(result.problem.weight, k);
-      for (size_t e = 0; e < num_estimators; ++e)
-        has_failed[i * num_estimators + e] = HasFailed(result.records[e], plan.study.failure);
-    } else {
-      stratum[i] |= kNotRun;
-    }
-    progress->Advance(1);
-  });
-  std::vector<StratifiedCell> cells(num_estimators);
-  for (size_t e = 0; e < num_estimators; ++e) {
-    StratifiedCell& cell = cells[e];
-    cell.condition = condition.index;
-    cell.estimator = e;
-    WeightedEvents events;
-    for (size_t i = 0; i < stratum.size(); ++i) {
-      StratumCount& count = cell.strata[stratum[i] & ~kNotRun];
-      ++count.num_trials;
-      if ((stratum[i] & kNotRun) != 0) continue;
-      ++count.num_run;
-      count.num_failed += has_failed[i * num_estimators + e];
-      events.Add(weight[i], has_failed[i * num_estimators + e] != 0);
-    }
-    cell.num_run = events.num_trials;
-    events.num_trials = effort.num_trials;  // what is not run counts nothing, but was drawn
-    cell.rate = EstimateWeightedRate(events);
-  }
-  return cells;
+TrialRange FindTrialsOf(const StratifiedEffort& effort, const ItemPlace& place) {
+  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
+  return {first, std::min(first + kTrialsOfItem, effort.num_trials)};
 }
+
+// Runs some trials: for each its stratum, a character 0, ..., 6 for one that is run, a, ..., g for another;
+// of each that is run its weight; and for each estimator a character a trial, 1 where it failed.
+std::string RunBlock(const StudyPlan& plan, const Condition& condition, const Strata& strata,
+                     TrialRange trials) {
+  std::string chosen;
+  Json weights = Json::array();
+  std::vector<std::string> has_failed(plan.estimators.size());
+  for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
+    const int k = strata.StratumOf(trial);
+    const bool is_run = strata.IsRun(trial, k);
+    chosen += static_cast<char>((is_run ? '0' : 'a') + k);
+    if (!is_run) continue;
+    const TrialResult result = RunTrial(plan, condition, trial);
+    weights.push_back(NumberAsJson(std::ldexp(result.problem.weight, k)));
+    for (size_t e = 0; e < has_failed.size(); ++e)
+      has_failed[e] += HasFailed(result.records[e], plan.study.failure) ? '1' : '0';
+  }
+  return Json::array({chosen, weights, has_failed}).dump();
+}
+
+// What the trials of one condition say of each estimator.
+class StrataSum {
+ public:
+  explicit StrataSum(size_t num_estimators) : strata_(num_estimators), events_(num_estimators) {}
+
+  // What RunBlock has made of so many trials.
+  void Add(const Json& json, size_t num_trials) {
+    RequireSize(json, 3);
+    const std::string chosen = json[0].get<std::string>();
+    const auto is_stratum = [](char c, char first) { return c >= first && c < first + kNumStrata; };
+    const auto has_failed = json[2].get<std::vector<std::string>>();
+    if (chosen.size() != num_trials || has_failed.size() != events_.size())
+      throw std::invalid_argument("it has other trials or estimators");
+    size_t num_run = 0;
+    for (const char c : chosen) {
+      const bool is_run = is_stratum(c, '0');
+      if (!is_run && !is_stratum(c, 'a')) throw std::invalid_argument("a stratum that is none");
+      const auto k = static_cast<size_t>(c - (is_run ? '0' : 'a'));
+      for (size_t e = 0; e < events_.size(); ++e) {
+        StratumCount& count = strata_[e][k];
+        ++count.num_trials;
+        if (!is_run) continue;
+        const bool failed = has_failed[e].at(num_run) == '1';
+        ++count.num_run;
+        count.num_failed += failed;
+        events_[e].Add(NumberFrom(json[1].at(num_run)), failed);
+      }
+      num_run += is_run;
+    }
+  }
+
+  StratifiedCell Take(size_t condition, size_t estimator, std::int64_t num_trials) const {
+    StratifiedCell cell{condition, estimator, strata_[estimator], events_[estimator].num_trials, {}};
+    WeightedEvents events = events_[estimator];
+    events.num_trials = num_trials;  // what is not run counts nothing, but was drawn
+    cell.rate = EstimateWeightedRate(events);
+    return cell;
+  }
+
+ private:
+  std::vector<std::array<StratumCount, kNumStrata>> strata_;  // per estimator, as events_
+  std::vector<WeightedEvents> events_;
+};
 
 }  // namespace
 
@@ -121,15 +151,38 @@ double FailureChanceOfBound(const Matrix5d& bound, const FailureBounds& bounds) 
                   TailOf(bounds.max_direction_error_deg, direction));
 }
 
-std::vector<StratifiedCell> StratifyFailures(const StudyPlan& plan, const StratifiedEffort& effort,
-                                             int num_threads, Progress* progress) {
+WorkPlan PlanStrata(const StudyPlan& plan, const StratifiedEffort& effort) {
   RequireDrawnScenes(plan.study);
   if (plan.study.repeats_per_scene > 1)
     throw InputError("rare: repeats_per_scene: trials that share a scene are not independent; leave it out");
+  WorkPlan work{
+      "stratification",
+      "block",
+      fmt::format("trials: {}\nrun share: {}\n{}", effort.num_trials, effort.run_share, plan.identity),
+      {}};
+  const size_t num_blocks = (effort.num_trials + kTrialsOfItem - 1) / kTrialsOfItem;
+  for (const Condition& condition : plan.conditions)
+    work.groups.push_back({fmt::format("condition {}", condition.index), num_blocks});
+  return work;
+}
+
+std::vector<StratifiedCell> StratifyFailures(const StudyPlan& plan, const StratifiedEffort& effort,
+                                             Runner* runner) {
+  const WorkPlan& work = runner->plan();
+  std::vector<Strata> strata;
+  for (const Condition& condition : plan.conditions) strata.emplace_back(plan, condition, effort.run_share);
+  runner->Get(ListItems(work, {}), [&](const ItemPlace& place) {
+    return RunBlock(plan, plan.conditions[place.group], strata[place.group], FindTrialsOf(effort, place));
+  });
   std::vector<StratifiedCell> cells;
-  for (const Condition& condition : plan.conditions) {
-    const std::vector<StratifiedCell> more = CellsOf(plan, condition, effort, num_threads, progress);
-    cells.insert(cells.end(), more.begin(), more.end());
+  for (size_t c = 0; c < plan.conditions.size(); ++c) {
+    StrataSum sum(plan.estimators.size());
+    ReadResults(work, runner->results(), c, c + 1, [&](const ItemPlace& place, const std::string& json) {
+      const TrialRange trials = FindTrialsOf(effort, place);
+      sum.Add(ParsePiece(json), trials.end - trials.first);
+    });
+    for (size_t e = 0; e < plan.estimators.size(); ++e)
+      cells.push_back(sum.Take(plan.conditions[c].index, e, effort.num_trials));
   }
   return cells;
 }

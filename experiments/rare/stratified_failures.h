@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "experiments/core/work/progress.h"
+#include "experiments/core/work/runner.h"
 #include "experiments/study/study_plan.h"
 #include "stats/weighted_rate.h"
 
@@ -49,9 +49,12 @@ struct StratifiedCell {
 // The greatest of the two probabilities above, from a bound (5x5, [rotation, direction], rad^2).
 double FailureChanceOfBound(const Matrix5d& bound, const FailureBounds& bounds);
 
-// Trials 0, ..., num_trials - 1 of every condition, as `rcme run` would draw them. Throws InputError: match
-// files; repeated scenes.
+// The runner's work: an item is a hundred trials of a condition. Throws InputError: match files; repeated
+// scenes.
+WorkPlan PlanStrata(const StudyPlan& plan, const StratifiedEffort& effort);
+
+// Trials 0, ..., num_trials - 1 of every condition, as `rcme run` would draw them. Throws as Runner::Get.
 std::vector<StratifiedCell> StratifyFailures(const StudyPlan& plan, const StratifiedEffort& effort,
-                                             int num_threads, Progress* progress);
+                                             Runner* runner);
 
 }  // namespace rcme

@@ -102,22 +102,19 @@ void AddRoc(size_t estimator, const std::string& population, const std::vector<T
 
 }  // namespace
 
-EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials, int num_threads,
-                                   Progress* progress) {
+EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials) {
   const auto estimators = WithoutQualityTest(plan);
   const std::vector<TrialsOfCondition> all = TrialsOfEach(plan, trials);
   EntropiesOfTrials entropies(estimators.size(),
                               std::vector<TrialEntropies>(static_cast<size_t>(NumTrials(all))));
-  ForEachTrial(all, num_threads, progress,
-               [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
-                 const StreamName name = NameOfTrial(plan, condition, trial);
-                 const TrialData data = condition.source->Make(name);
-                 for (size_t e = 0; e < estimators.size(); ++e) {
-                   if (!estimators[e]) continue;
-                   entropies[e][static_cast<size_t>(index)] =
-                       EntropiesOf(*estimators[e], data, name, plan.study.failure);
-                 }
-               });
+  ForEachTrial(all, 1, nullptr, [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
+    const StreamName name = NameOfTrial(plan, condition, trial);
+    const TrialData data = condition.source->Make(name);
+    for (size_t e = 0; e < estimators.size(); ++e) {
+      if (!estimators[e]) continue;
+      entropies[e][static_cast<size_t>(index)] = EntropiesOf(*estimators[e], data, name, plan.study.failure);
+    }
+  });
   return entropies;
 }
 
@@ -132,11 +129,6 @@ std::vector<EntropyRoc> RocsOf(const StudyPlan& plan, const EntropiesOfTrials& e
            &rocs);
   }
   return rocs;
-}
-
-std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange trials, int num_threads,
-                                           Progress* progress) {
-  return RocsOf(plan, MeasureEntropies(plan, trials, num_threads, progress));
 }
 
 }  // namespace rcme

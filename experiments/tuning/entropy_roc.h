@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/core/work/progress.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 #include "stats/area_under_curve.h"
@@ -31,17 +30,12 @@ struct TrialEntropies {
 };
 
 // [estimator][trial], the conditions one after the other; nothing of estimators whose loop cannot be taken
-// apart. Advances `progress`, if there is one, by one per trial.
+// apart.
 using EntropiesOfTrials = std::vector<std::vector<TrialEntropies>>;
-EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials, int num_threads,
-                                   Progress* progress);
+EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials);
 
 // For every estimator of the plan that has entropies; without those where no good or no bad one was seen. The
 // trials are the same of every condition.
 std::vector<EntropyRoc> RocsOf(const StudyPlan& plan, const EntropiesOfTrials& entropies);
-
-// Both.
-std::vector<EntropyRoc> MeasureEntropyRocs(const StudyPlan& plan, TrialRange trials, int num_threads,
-                                           Progress* progress);
 
 }  // namespace rcme

@@ -93,12 +93,4 @@ TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& setting
   return result;
 }
 
-TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
-                               int num_threads) {
-  FamiliesOf(plan, by);  // before any trial
-  const std::int64_t per_condition = TuningTrials(*plan.study.tuning).verify.end;
-  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
-  return MeasureTransfer(plan, settings, by, ComputedCounts(plan, settings, num_threads, &progress));
-}
-
 }  // namespace rcme

@@ -30,7 +30,5 @@ std::vector<Family> FamiliesOf(const StudyPlan& plan, const std::string& by);
 // trials, so the matrix takes no more estimation than one tuning. Throws as FamiliesOf and CountOutcomes.
 TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
                                const TuningSource& source);
-TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
-                               int num_threads);
 
 }  // namespace rcme

@@ -67,17 +67,6 @@ StudyPlan PlanWithTuned(const StudyPlan& plan, const SettingPlan& settings, size
   return with;
 }
 
-TuningSource ComputedCounts(const StudyPlan& plan, const SettingPlan& settings, int num_threads,
-                            Progress* progress) {
-  return {[&plan, &settings, num_threads, progress](TrialRange trials) {
-            return CountOutcomes(plan, settings, trials, num_threads, progress);
-          },
-          [&plan, &settings, num_threads, progress](size_t tuned) {
-            return VerifyEstimators(PlanWithTuned(plan, settings, tuned),
-                                    TuningTrials(*plan.study.tuning).verify, num_threads, progress);
-          }};
-}
-
 TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached,
                 const TuningSource& source) {
   const Tuning& tuning = *plan.study.tuning;
@@ -96,14 +85,6 @@ TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached un
   result.estimators = source.verify(tuned);
   CheckAgreement(result.estimators.front(), result.verified[tuned]);
   return result;
-}
-
-TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached, int num_threads) {
-  const Tuning& tuning = *plan.study.tuning;
-  CheckTrialsSuffice(tuning, plan.conditions.size());
-  const std::int64_t per_condition = tuning.explore + tuning.calibrate + 2LL * tuning.verify;
-  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
-  return Tune(plan, settings, unreached, ComputedCounts(plan, settings, num_threads, &progress));
 }
 
 Choice ChooseFrom(const StudyPlan& plan, const SettingPlan& settings, const TuningSource& source) {

@@ -16,15 +16,12 @@ struct TuningTrials {
   explicit TuningTrials(const Tuning& tuning);
 };
 
-// Where a tuning takes the outcomes of its trials from: they are computed (ComputedCounts), or shards have
-// computed them (tune_part.h).
+// Where a tuning takes the outcomes of its trials from (tuning_work.h).
 struct TuningSource {
   std::function<SettingCounts(TrialRange)> count;  // all settings
   // Plain calls, on the trials for verification, of the tuned setting and the study's estimators.
   std::function<std::vector<VerifiedEstimator>(size_t tuned)> verify;
 };
-TuningSource ComputedCounts(const StudyPlan& plan, const SettingPlan& settings, int num_threads,
-                            Progress* progress);
 
 // The plan of the study with the tuned estimator before its own.
 StudyPlan PlanWithTuned(const StudyPlan& plan, const SettingPlan& settings, size_t tuned);
@@ -45,7 +42,6 @@ enum class Unreached { kStop, kVerifyAll };
 // trials for the target.
 TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached,
                 const TuningSource& source);
-TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached unreached, int num_threads);
 
 // The first steps alone: what exploration and calibration choose.
 Choice ChooseFrom(const StudyPlan& plan, const SettingPlan& settings, const TuningSource& source);

@@ -1,7 +1,5 @@
 #include "experiments/tuning/verify_setting.h"
 
-#include <mutex>
-
 #include "experiments/run/for_each_trial.h"
 #include "experiments/trial/trial.h"
 
@@ -24,16 +22,12 @@ void AddTrial(const std::vector<TrialRecord>& records, const FailureBounds& boun
 
 }  // namespace
 
-std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials, int num_threads,
-                                                Progress* progress) {
+std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials) {
   std::vector<VerifiedEstimator> verified;
   for (const EstimatorSpec& spec : plan.study.estimators) verified.push_back({spec, {}, {}, {}, {}});
-  std::mutex mutex;  // of `verified`; sums do not depend on the order of the trials
-  ForEachTrial(TrialsOfEach(plan, trials), num_threads, progress,
+  ForEachTrial(TrialsOfEach(plan, trials), 1, nullptr,
                [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
-                 const std::vector<TrialRecord> records = RunTrial(plan, condition, trial).records;
-                 const std::lock_guard lock(mutex);
-                 AddTrial(records, plan.study.failure, &verified);
+                 AddTrial(RunTrial(plan, condition, trial).records, plan.study.failure, &verified);
                });
   return verified;
 }

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/core/work/progress.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 #include "stats/paired.h"
@@ -20,9 +19,7 @@ struct VerifiedEstimator {
   PairedCounts against_first;
 };
 
-// Every estimator of the plan in these trials of every condition, in the plan's order. Advances `progress` by
-// one per trial.
-std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials, int num_threads,
-                                                Progress* progress);
+// Every estimator of the plan in these trials of every condition, in the plan's order.
+std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials);
 
 }  // namespace rcme

@@ -5,8 +5,9 @@
 
 SIGKILL, SIGTERM or SIGINT comes at a random moment, half of them in the last fifth of the time a call takes, when files are
 written. After it every file that is there has the bytes that a call left in peace gives, or those it had before; a result
-file of `rcme run` and `import`, which grows under its name, is sound to `rcme check`, or has not begun. At the end of a command's share it is
-called once more: then everything is there and nothing temporary is left."""
+file of `rcme run` and `import`, which grows under its name, is sound to `rcme check`, or has not begun. A command that keeps unfinished work goes
+on with it: what the checkpoint held is in the next one, with the time that it took, so that nothing kept is computed twice. At the end of a command's
+share it is called once more: then everything is there and nothing temporary is left."""
 
 import argparse
 import json
@@ -30,7 +31,8 @@ STUDY = {
              "verify": 33, "options": {"mu": [1, 2, 3, 6]}},
 }
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT]
-TEMPORARY = re.compile(r"\.rcme-[^/]*\.part$|-journal$|\.journal$")
+CHECKPOINT = "unfinished.part"
+TEMPORARY = re.compile(r"\.rcme-[^/]*\.part$|-journal$|\.journal$|unfinished\.part$")
 OLD = b"what was there before\n"
 
 
@@ -70,11 +72,12 @@ class Inputs:
 class Command:
     """A command with an output in a folder of its own."""
 
-    def __init__(self, name, arguments, grows=False, codes=(0,), may_differ=False, is_new=False):
+    def __init__(self, name, arguments, grows=False, codes=(0,), may_differ=False, is_new=False, resumes=False):
         self.name, self.arguments, self.codes = name, arguments, codes
         self.grows = grows  # a result file, sound at every moment
         self.may_differ = may_differ  # times are in it: other bytes from call to call, but as many lines
         self.is_new = is_new  # it replaces nothing
+        self.resumes = resumes  # it keeps unfinished work in a checkpoint
 
 
 def commands(inputs):
@@ -82,6 +85,8 @@ def commands(inputs):
     tuning = ["tune", study, *base]
     return [
         Command("run", lambda out: ["run", study, "--out", out / "run.sqlite", *base], grows=True),
+        Command("run_until", lambda out: ["run", study, "--until", "ci=0.1", "--max-trials", "150", "--out", out / "run.sqlite", *base],
+                grows=True),
         Command("run_counts", lambda out: ["run", study, "--keep", "counts", "--out", out / "run.sqlite", *base], grows=True),
         Command("import", lambda out: ["import", inputs.answers, "--study", inputs.exported / "study.yaml", "--label", "mine",
                                        "--out", out / "run.sqlite", *base], grows=True),
@@ -96,21 +101,22 @@ def commands(inputs):
         Command("plot", lambda out: ["plot", "failure_rate", inputs.summary, "--x", "outlier_ratio", "--out", out / "figure"]),
         Command("show", lambda out: ["show", run, "--condition", "0", "--trial", "1", "--out", out / "trial", "--json",
                                      out / "trial.json"]),
-        Command("audit", lambda out: ["audit", "--only", "sample_test.power", *base, "--out", out]),
+        Command("audit", lambda out: ["audit", "--only", "sample_test.power", *base, "--out", out], resumes=True),
         Command("audit_shard", lambda out: ["audit", "--only", "sample_test.power", *base, "--shard", "1/2", "--out",
                                             out / "part.json"], may_differ=True, is_new=True),
-        Command("tune", lambda out: [*tuning, "--out", out / "tuned.yaml", "--figures", out / "figures"]),
+        Command("tune", lambda out: [*tuning, "--out", out / "tuned.yaml", "--figures", out / "figures"], resumes=True),
         Command("tune_shard", lambda out: [*tuning, "--shard", "1/2", "--out", out / "part.json"], codes=(75,),
                 may_differ=True, is_new=True),
-        Command("transfer", lambda out: ["transfer", study, *base, "--out", out]),
-        Command("map", lambda out: ["map", "--trials", "2", *base, "--out", out]),
+        Command("transfer", lambda out: ["transfer", study, *base, "--out", out], resumes=True),
+        Command("map", lambda out: ["map", "--trials", "2", *base, "--out", out], resumes=True),
         Command("map_shard", lambda out: ["map", "--trials", "2", *base, "--shard", "1/2", "--out", out / "part.json"],
                 may_differ=True, is_new=True),
         Command("rare", lambda out: ["rare", study, "--set", "outlier_ratio=0.4", "--replicates", "4", "--particles", "20", "--moves", "2",
-                                     *base, "--out", out], may_differ=True),
+                                     *base, "--out", out], resumes=True),
+        Command("rare_stratified", lambda out: ["rare", study, "--method", "stratified", "--trials", "1000", *base, "--out", out], resumes=True),
         Command("budget", lambda out: ["budget", study, "--time-ms", "0.2", "--calls", "1", "--out", out / "study.yaml"],
                 may_differ=True),
-        Command("model_choice", lambda out: ["model-choice", "model_choice", "--trials", "2", *base, "--out", out]),
+        Command("model_choice", lambda out: ["model-choice", "model_choice", "--trials", "2", *base, "--out", out], resumes=True),
         Command("paper_table", lambda out: ["paper-table", run, "--out", out], codes=(0, 2)),
         Command("export", lambda out: ["export", study, "--trials", "20", "--out", out]),
         Command("pairs", lambda out: ["pairs", inputs.pairs, "--layout", "matches", "--gate", "off", "--out", out], is_new=True),
@@ -126,6 +132,16 @@ def files_in(folder):
             if path.is_file() and not TEMPORARY.search(path.name)}
 
 
+def kept_in(folder):
+    """What the checkpoint holds: the whole line of every item, its time in it, without the checksum."""
+    kept = {}
+    for path in folder.rglob("*" + CHECKPOINT):
+        for line in path.read_text().splitlines()[1:]:
+            item = json.loads(line)
+            kept[item["group"], item["piece"]] = item["seconds"], item["result"]
+    return kept
+
+
 class Victim:
     """One command, called in peace first, then killed again and again in another folder."""
 
@@ -137,7 +153,7 @@ class Victim:
         self.duration = time.monotonic() - begin
         assert ended.returncode in command.codes, f"{command.name}: {ended.returncode}: {ended.stderr}"
         self.expected = files_in(self.whole)
-        self.num_cut = self.num_ended = 0
+        self.num_cut = self.num_ended = self.num_resumed = 0
         self.begin_again()
 
     def start(self, out):
@@ -151,6 +167,7 @@ class Victim:
         return subprocess.CompletedProcess([], process.returncode, err, err)
 
     def begin_again(self):
+        self.kept = {}
         shutil.rmtree(self.cut, ignore_errors=True)
         self.cut.mkdir()
         if self.command.grows or self.command.is_new:
@@ -193,6 +210,8 @@ class Victim:
         was_cut = process.returncode not in self.command.codes
         self.num_cut, self.num_ended = self.num_cut + was_cut, self.num_ended + (not was_cut)
         halves = [f"{self.command.name}: {sent.name} after {moment:.3f} s: {name}" for name in self.halves()]
+        if was_cut and self.command.resumes and not halves:
+            return self.go_on(f"{self.command.name}: {sent.name} after {moment:.3f} s")
         if not was_cut or halves or not self.command.grows:
             leftover = [path for path in self.cut.rglob("*") if path.is_file() and TEMPORARY.search(path.name)]
             self.begin_again()
@@ -201,6 +220,14 @@ class Victim:
                     path.parent.mkdir(parents=True, exist_ok=True)
                     path.write_bytes(b"half of it")
         return halves
+
+    def go_on(self, when):
+        """What the checkpoint has lost, or computed once more."""
+        kept = kept_in(self.cut)
+        lost = [item for item, result in self.kept.items() if kept.get(item) != result]
+        self.num_resumed += bool(self.kept)
+        self.kept = kept
+        return [f"{when}: {len(lost)} items that were kept are lost or were computed again"] if lost else []
 
     def finish(self):
         """What is wrong after one more call that is left in peace."""
@@ -229,9 +256,9 @@ def main():
             halves += victims[number % len(victims)].send(chance)
         for victim in victims:
             wrong += victim.finish()
-    print("| command | signals that cut it | that came after its end |\n|---|---|---|")
+    print("| command | signals that cut it | that came after its end | that cut a call with kept work |\n|---|---|---|---|")
     for victim in victims:
-        print(f"| {victim.command.name} | {victim.num_cut} | {victim.num_ended} |")
+        print(f"| {victim.command.name} | {victim.num_cut} | {victim.num_ended} | {victim.num_resumed} |")
     print("\n".join(halves + wrong))
     print(f"{arguments.signals} signals: {len(halves)} half files; {len(wrong)} things wrong after a last call")
     sys.exit(bool(halves or wrong))

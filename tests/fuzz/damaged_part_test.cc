@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "experiments/audit/claims/audit_output.h"
-#include "experiments/audit/claims/audit_part.h"
+#include "experiments/audit/claims/audit_work.h"
+#include "experiments/audit/validity/map_work.h"
 #include "experiments/tuning/transfer.h"
 #include "experiments/tuning/transfer_output.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
-#include "experiments/tuning/tune_part.h"
-#include "experiments/audit/validity/map_part.h"
+#include "experiments/tuning/tuning_work.h"
 #include "parameters/input_error.h"
 #include "tests/test_support/changed_part.h"
 #include "tests/test_support/temp_folder.h"
@@ -53,19 +53,24 @@ class DamagedParts : public testing::Test {
     return paths;
   }
 
+  void TuningPart(const TuningWork& work, const WorkResults& merged, std::uint32_t n,
+                  const Paths& paths) const {
+    Runner runner = Runner::OfShard(work.items, {n, kNumShards}, paths[n - 1], 1);
+    GetTuningShard(plan_, settings_, work, merged, &runner);
+  }
+
   DividedTables Tuning() const {
-    const TuningPieces work = PiecesOfTuning(plan_);
+    const TuningWork work = PlanTuningWork(plan_);
     const Paths paths = PathsOf("tuning");
     for (int round = 0; round < 2; ++round) {
-      const MergedParts merged = round == 0 ? MergedParts{} : MergeParts(work.pieces, paths);
-      for (std::uint32_t n = 1; n <= kNumShards; ++n)
-        RunTuningPart(plan_, settings_, work, merged, {n, kNumShards}, 1, paths[n - 1]);
+      const WorkResults merged = round == 0 ? WorkResults{} : MergeParts(work.items, paths);
+      for (std::uint32_t n = 1; n <= kNumShards; ++n) TuningPart(work, merged, n, paths);
     }
     const auto tables = [this, work, paths] {
-      const MergedParts merged = MergeParts(work.pieces, paths);
-      RequireWhole(work.pieces, merged);
+      const WorkResults merged = MergeParts(work.items, paths);
+      RequireWhole(work.items, merged);
       const TuneResult result =
-          Tune(plan_, settings_, Unreached::kStop, CountsOf(plan_, settings_, work, merged));
+          Tune(plan_, settings_, Unreached::kStop, CountsIn(plan_, settings_, work, merged));
       const auto rocs = RocsOf(plan_, EntropiesIn(plan_, work, merged));
       return TuneAsTable(plan_, result, rocs) + TuneAsJson(plan_, settings_, result, rocs);
     };
@@ -73,15 +78,14 @@ class DamagedParts : public testing::Test {
   }
 
   DividedTables Transfer() const {
-    const TuningPieces work = PiecesOfTransfer(plan_);
+    const TuningWork work = PlanTransferWork(plan_);
     const Paths paths = PathsOf("transfer");
-    for (std::uint32_t n = 1; n <= kNumShards; ++n)
-      RunTuningPart(plan_, settings_, work, {}, {n, kNumShards}, 1, paths[n - 1]);
+    for (std::uint32_t n = 1; n <= kNumShards; ++n) TuningPart(work, {}, n, paths);
     const auto tables = [this, work, paths] {
-      const MergedParts merged = MergeParts(work.pieces, paths);
-      RequireWhole(work.pieces, merged);
+      const WorkResults merged = MergeParts(work.items, paths);
+      RequireWhole(work.items, merged);
       const TransferResult result =
-          MeasureTransfer(plan_, settings_, "", CountsOf(plan_, settings_, work, merged));
+          MeasureTransfer(plan_, settings_, "", CountsIn(plan_, settings_, work, merged));
       return TransferAsTable(plan_, result) + TransferAsJson(plan_, settings_, result);
     };
     return {"transfer", paths, tables};
@@ -108,11 +112,13 @@ class DamagedParts : public testing::Test {
   DividedTables Audit() const {
     const Paths paths = PathsOf("audit");
     const rcme::Audit plan = PlanAudit(Claims(), {});
-    for (std::uint32_t n = 1; n <= kNumShards; ++n)
-      RunAuditPart(plan, FirstRound(plan), {n, kNumShards}, paths[n - 1]);
+    for (std::uint32_t n = 1; n <= kNumShards; ++n) {
+      Runner runner = Runner::OfShard(PlanAuditBlocks(plan), {n, kNumShards}, paths[n - 1], 1);
+      GetAuditRound(plan, FirstRound(plan), &runner);
+    }
     const auto tables = [paths] {
       const MergedAudit merged = MergeAuditParts(Claims(), {}, paths);
-      if (merged.missing.num_pieces > 0) throw InputError("blocks are missing");
+      if (merged.missing.num_items > 0) throw InputError("blocks are missing");
       return AuditAsJson(merged.audit) + AuditAsTable(merged.audit);
     };
     return {"audit", paths, tables};
@@ -124,7 +130,6 @@ class DamagedParts : public testing::Test {
     work.map.sigmas_px = {0.5, 1.0};
     work.map.nums_points = {8};
     work.map.conditions = AtBaselines({0.5});
-    work.map.num_threads = 1;
     work.reference.emplace();
     work.reference->sigmas_px = {0.5};
     work.reference->nums_points = {8};
@@ -132,10 +137,13 @@ class DamagedParts : public testing::Test {
     work.reference->num_draws = 10;
     work.reference->num_noises = 20;
     const Paths paths = PathsOf("map");
-    for (std::uint32_t n = 1; n <= kNumShards; ++n) RunMapPart(work, {n, kNumShards}, paths[n - 1]);
+    for (std::uint32_t n = 1; n <= kNumShards; ++n) {
+      Runner runner = Runner::OfShard(PlanMapWork(work), {n, kNumShards}, paths[n - 1], 1);
+      GetMapResults(work, &runner);
+    }
     const auto tables = [work, paths] {
-      const PiecePlan pieces = PiecesOfMap(work);
-      const MergedParts merged = MergeParts(pieces, paths);
+      const WorkPlan pieces = PlanMapWork(work);
+      const WorkResults merged = MergeParts(pieces, paths);
       RequireWhole(pieces, merged);
       return ValidityMapCsv(work.map, TrialsIn(work, pieces, merged)) +
              ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, merged));
@@ -143,8 +151,8 @@ class DamagedParts : public testing::Test {
     return {"map", paths, tables};
   }
 
-  static void RequireWhole(const PiecePlan& pieces, const MergedParts& merged) {
-    if (MissingIn(pieces, merged, 0, pieces.groups.size()).num_pieces > 0)
+  static void RequireWhole(const WorkPlan& pieces, const WorkResults& merged) {
+    if (FindMissingIn(pieces, merged, 0, pieces.groups.size()).num_items > 0)
       throw InputError("pieces are missing");
   }
 

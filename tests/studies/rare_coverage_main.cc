@@ -11,11 +11,12 @@
 #include <exception>
 #include <string>
 
-#include "experiments/core/files/file_output.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/rare/split_failures.h"
 #include "stats/intervals.h"
 #include "stats/moments.h"
+#include "tests/test_support/in_memory.h"
 
 namespace rcme {
 namespace {
@@ -35,10 +36,9 @@ void Repeat(const StudyPlan& plan, double known_rate, const std::string& folder,
   std::string rows = "seed,value,lower,upper,trusted,calls\n";
   Coverage of_all, of_trusted;
   Moments estimates, calls;
-  Progress progress("replicates", static_cast<std::int64_t>(num_repeats) * (kEffort.num_replicates + 1));
   for (int repeat = 0; repeat < num_repeats; ++repeat) {
     const std::uint64_t seed = plan.study.seed + static_cast<std::uint64_t>(repeat);
-    const SplittingRate rate = SplitFailures(plan, seed, kEffort, 1, &progress).at(0).rate;
+    const SplittingRate rate = SplitInMemory(plan, seed, kEffort, 1).at(0).rate;
     const bool holds = rate.interval.Contains(known_rate);
     of_all.Add(holds);
     if (rate.IsTrusted()) of_trusted.Add(holds);

@@ -7,8 +7,6 @@
 #include <cmath>
 
 #include "experiments/core/work/for_each_index.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/progress.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -102,29 +100,12 @@ void JudgeClaims(Audit* audit) {
   for (size_t i = 0; i < audit->claims.size(); ++i) JudgeClaim(audit->claims[i], &audit->results[i]);
 }
 
-Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options) {
-  Audit audit = PlanAudit(all, options);
-  const std::vector<CheckPlace> places = PlacesOf(audit);
-  const int num_threads = NumThreads(options.num_threads);
-  std::vector<double> work;
-  double total_work = 0.0;
-  for (const CheckPlace& place : places) {
-    work.push_back(WorkOf(CheckAt(audit, place), RunOf(audit, place), num_threads));
-    total_work += work.back();
-  }
-  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
-               audit.claims.size(), places.size(), DurationInWords(total_work), num_threads);
-  Progress progress("s of work", static_cast<std::int64_t>(total_work) + 1);
-  double done_work = 0.0;
-  for (size_t i = 0; i < places.size(); ++i) {
-    const CheckPlace& place = places[i];
-    audit.results[place.claim].checks[place.check] = DecideCheck(CheckAt(audit, place), RunOf(audit, place));
-    const auto seconds_before = static_cast<std::int64_t>(done_work);
-    done_work += work[i];
-    progress.Advance(static_cast<std::int64_t>(done_work) - seconds_before);
-  }
-  JudgeClaims(&audit);
-  return audit;
+std::vector<double> EstimateSeconds(const Audit& plan) {
+  const int num_threads = NumThreads(plan.options.num_threads);
+  std::vector<double> seconds;
+  for (const CheckPlace& place : PlacesOf(plan))
+    seconds.push_back(WorkOf(CheckAt(plan, place), RunOf(plan, place), num_threads));
+  return seconds;
 }
 
 }  // namespace rcme

@@ -52,9 +52,7 @@ CheckRun RunOf(const Audit& plan, const CheckPlace& place);
 // The verdicts of the claims from those of their checks, of which there is one in audit->results for each.
 void JudgeClaims(Audit* audit);
 
-// Decides the selected claims of `all`, each target at confidence 1 - kAuditErrorRate / num_targets
-// (Bonferroni), and shows progress. A claim's result does not depend on which others are run: its random
-// streams are named by its id.
-Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options);
+// For each of PlacesOf the seconds on the audit's threads that the check takes if no verdict stops it.
+std::vector<double> EstimateSeconds(const Audit& plan);
 
 }  // namespace rcme

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -66,6 +67,15 @@ void RequireInRange(const Target& target, const std::vector<Outcome>& outcomes) 
   }
 }
 
+Json VerdictAsJson(const std::optional<Verdict>& verdict) {
+  return verdict ? Json(static_cast<int>(*verdict)) : Json();
+}
+
+std::optional<Verdict> VerdictFrom(const Json& json) {
+  if (json.is_null()) return std::nullopt;
+  return static_cast<Verdict>(CountFrom(json, static_cast<std::int64_t>(Verdict::kUndecided)));
+}
+
 }  // namespace
 
 std::vector<size_t> StatisticsOf(const Check& check) {
@@ -97,6 +107,47 @@ std::vector<Outcome> OutcomesFrom(const Check& check, const std::string& text, s
   }
   for (const Target& target : check.targets) RequireInRange(target, outcomes);
   return outcomes;
+}
+
+std::string CheckResultAsJson(const CheckResult& result) {
+  Json targets = Json::array(), fifths = Json::array();
+  for (const TargetResult& target : result.targets) {
+    targets.push_back({NumberAsJson(target.measured), NumberAsJson(target.interval.lower),
+                       NumberAsJson(target.interval.upper), target.n, VerdictAsJson(target.verdict),
+                       NumberAsJson(target.trials_to_decide)});
+  }
+  for (const DifficultyFifth& fifth : result.fifths) {
+    fifths.push_back({NumberAsJson(fifth.easiest), NumberAsJson(fifth.hardest), NumberAsJson(fifth.measured),
+                      NumberAsJson(fifth.interval.lower), NumberAsJson(fifth.interval.upper), fifth.n});
+  }
+  Json json =
+      Json::array({result.num_trials, targets, VerdictAsJson(result.verdict), fifths, result.not_possible});
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+CheckResult CheckResultFrom(const Check& check, const std::string& text) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const Json json = ParsePiece(text);
+  RequireSize(json, 5);
+  CheckResult result{CountFrom(json[0], kMost), {}, VerdictFrom(json[2]), {}, json[4].get<std::string>()};
+  if (!json[1].empty()) RequireSize(json[1], check.targets.size());
+  for (const Json& target : json[1]) {
+    RequireSize(target, 6);
+    result.targets.push_back({NumberFrom(target[0]),
+                              {NumberFrom(target[1]), NumberFrom(target[2])},
+                              CountFrom(target[3], kMost),
+                              VerdictFrom(target[4]),
+                              NumberFrom(target[5])});
+  }
+  for (const Json& fifth : json[3]) {
+    RequireSize(fifth, 6);
+    result.fifths.push_back({NumberFrom(fifth[0]),
+                             NumberFrom(fifth[1]),
+                             NumberFrom(fifth[2]),
+                             {NumberFrom(fifth[3]), NumberFrom(fifth[4])},
+                             CountFrom(fifth[5], kMost)});
+  }
+  return result;
 }
 
 }  // namespace rcme

@@ -1,10 +1,10 @@
-// Outcomes of a check's trials as text and back, every number to its last bit.
+// Outcomes of a check's trials, and what they say of it, as text and back, every number to its last bit.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "experiments/audit/claims/claim.h"
+#include "experiments/audit/claims/claim_verdict.h"
 
 namespace rcme {
 
@@ -17,5 +17,10 @@ std::string OutcomesAsJson(const Check& check, const std::vector<Outcome>& outco
 
 // Of `num_trials` trials; other statistics are NaN. Throws std::exception for what is no such list.
 std::vector<Outcome> OutcomesFrom(const Check& check, const std::string& text, size_t num_trials);
+
+// A JSON list: trials, targets, verdict, fifths, why it is not possible.
+std::string CheckResultAsJson(const CheckResult& result);
+// Of that check. Throws std::exception for what is no such list.
+CheckResult CheckResultFrom(const Check& check, const std::string& text);
 
 }  // namespace rcme

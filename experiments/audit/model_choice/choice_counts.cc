@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 
-#include "experiments/run/for_each_trial.h"
+#include "experiments/trial/trial_range.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -71,12 +72,48 @@ ChoiceGroup& GroupWith(const std::vector<std::string>& levels, std::vector<Choic
   return groups->back();
 }
 
-// Counters of a matrix that several threads add to.
-using SharedMatrix = std::array<std::array<std::atomic<std::int64_t>, kNumAnswers>, kTrueKinds.size()>;
+// A matrix per criterion, in the order of CriterionNames().
+using Matrices = std::vector<ConfusionMatrix>;
 
-void Add(const SharedMatrix& from, ConfusionMatrix* to) {
-  for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
-    for (size_t answer = 0; answer < kNumAnswers; ++answer) (*to)[kind][answer] += from[kind][answer];
+constexpr std::uint32_t kTrialsOfItem = 10;
+
+TrialRange FindTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
+  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
+  return {first, std::min(first + kTrialsOfItem, static_cast<std::uint32_t>(plan.study.trials))};
+}
+
+Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRange trials) {
+  const std::vector<ModelChoiceOptions> criteria = EveryCriterion();
+  Matrices matrices(criteria.size(), ConfusionMatrix{});
+  for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
+    const StreamName name = NameOfTrial(plan, condition, trial);
+    const TrialData data = condition.source->Make(name);
+    if (data.weight != 1.0)
+      throw InputError("model-choice: tilted_to: trials with weights have no plain rates");
+    const auto kind = static_cast<size_t>(KindOfTrial(condition.source->SceneOf(name).value(), data, name));
+    RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
+    const std::vector<ModelChoice> choices = ChooseModels(data.problem, criteria, rng);
+    for (size_t c = 0; c < choices.size(); ++c) ++matrices[c][kind][AnswerOf(choices[c])];
+  }
+  return matrices;
+}
+
+// Adds the matrices of so many trials. What no trials can have given is damage, whatever the checksums say.
+void AddMatrices(const nlohmann::ordered_json& json, std::int64_t num_trials, Matrices* sum) {
+  RequireSize(json, sum->size());
+  for (size_t c = 0; c < sum->size(); ++c) {
+    RequireSize(json[c], kTrueKinds.size());
+    std::int64_t n = 0;
+    for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
+      RequireSize(json[c][kind], kNumAnswers);
+      for (size_t answer = 0; answer < kNumAnswers; ++answer) {
+        const std::int64_t count = CountFrom(json[c][kind][answer], num_trials);
+        n += count;
+        (*sum)[c][kind][answer] += count;
+      }
+    }
+    if (n != num_trials)
+      throw std::invalid_argument(fmt::format("it counts {} trials, not {}", n, num_trials));
   }
 }
 
@@ -87,36 +124,31 @@ const std::string& AnswerName(size_t answer) {
   return answer < kSceneVerdicts.size() ? Name(kSceneVerdicts[answer]) : none;
 }
 
-ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>& by, int num_threads) {
+WorkPlan PlanChoices(const StudyPlan& plan) {
   CheckCanBeScored(plan);
+  WorkPlan work{"model choice", "block", fmt::format("trials: {}\n{}", plan.study.trials, plan.identity), {}};
+  const auto num_blocks = (static_cast<size_t>(plan.study.trials) + kTrialsOfItem - 1) / kTrialsOfItem;
+  for (const Condition& condition : plan.conditions)
+    work.groups.push_back({fmt::format("condition {}", condition.index), num_blocks});
+  return work;
+}
+
+ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>& by, Runner* runner) {
   ChoiceCounts counts{by, {}};
   const std::vector<size_t> places = PlacesOf(by, plan.factor_names);
-  const std::vector<ModelChoiceOptions> criteria = EveryCriterion();
-  std::vector<SharedMatrix> shared(plan.conditions.size() * criteria.size());  // all zero
-  const TrialRange trials{0, static_cast<std::uint32_t>(plan.study.trials)};
-  const std::vector<TrialsOfCondition> work = TrialsOfEach(plan, trials);
-  Progress progress("trials", NumTrials(work));
-  ForEachTrial(work, num_threads, &progress,
-               [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
-                 const StreamName name = NameOfTrial(plan, condition, trial);
-                 const TrialData data = condition.source->Make(name);
-                 if (data.weight != 1.0) {
-                   throw InputError("model-choice: tilted_to: trials with weights have no plain rates");
-                 }
-                 const auto kind =
-                     static_cast<size_t>(KindOfTrial(condition.source->SceneOf(name).value(), data, name));
-                 RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
-                 const std::vector<ModelChoice> choices = ChooseModels(data.problem, criteria, rng);
-                 const auto place = static_cast<size_t>(index / trials.end);
-                 for (size_t c = 0; c < choices.size(); ++c) {
-                   ++shared[place * criteria.size() + c][kind][AnswerOf(choices[c])];
-                 }
-               });
-  for (size_t place = 0; place < plan.conditions.size(); ++place) {
+  runner->Get(ListItems(runner->plan(), {}), [&](const ItemPlace& place) {
+    const Condition& condition = plan.conditions[place.group];
+    return nlohmann::ordered_json(CountTrials(plan, condition, FindTrialsOf(plan, place))).dump();
+  });
+  for (size_t c = 0; c < plan.conditions.size(); ++c) {
     std::vector<std::string> levels;
-    for (const size_t f : places) levels.push_back(plan.conditions[place].levels[f]);
+    for (const size_t f : places) levels.push_back(plan.conditions[c].levels[f]);
     ChoiceGroup& group = GroupWith(levels, &counts.groups);
-    for (size_t c = 0; c < criteria.size(); ++c) Add(shared[place * criteria.size() + c], &group.matrices[c]);
+    ReadResults(runner->plan(), runner->results(), c, c + 1,
+                [&](const ItemPlace& place, const std::string& json) {
+                  const TrialRange trials = FindTrialsOf(plan, place);
+                  AddMatrices(ParsePiece(json), trials.end - trials.first, &group.matrices);
+                });
   }
   return counts;
 }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/core/work/progress.h"
 #include "experiments/audit/model_choice/true_kind.h"
+#include "experiments/core/work/runner.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {
@@ -37,8 +37,12 @@ struct ChoiceCounts {
 // condition. The verdicts draw from the estimators' stream; the truth meets them here for the first time. The
 // groups are those of the factors `by`, in the order of the conditions; without any there is one.
 //
-// Throws InputError: `by` names what is no factor; a condition whose scenes nobody knows (real pairs), whose
-// trials have weights, or which meets its scenes again and again; conditions that share their scenes.
-ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>& by, int num_threads);
+// Throws as Runner::Get; InputError: `by` names what is no factor; a condition whose scenes nobody knows
+// (real pairs), whose trials have weights, or which meets its scenes again and again; conditions that share
+// their scenes.
+ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>& by, Runner* runner);
+
+// The runner's work: an item is ten trials of a condition. Throws InputError for such a condition.
+WorkPlan PlanChoices(const StudyPlan& plan);
 
 }  // namespace rcme

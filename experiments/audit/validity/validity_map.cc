@@ -13,7 +13,6 @@
 #include "estimator/point_consistency.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "experiments/core/text/field_text.h"
-#include "experiments/core/work/for_each_index.h"
 #include "experiments/trial/covariance_score.h"
 #include "stats/accuracy.h"
 #include "stats/distributions.h"
@@ -194,8 +193,7 @@ double SecondsOfWork(const ValidityMapOptions& options) {
     }
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  return elapsed.count() / kNumTimed * static_cast<double>(options.sigmas_px.size()) * options.trials /
-         NumThreads(options.num_threads);
+  return elapsed.count() / kNumTimed * static_cast<double>(options.sigmas_px.size()) * options.trials;
 }
 
 std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell) {
@@ -206,20 +204,14 @@ std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell) {
 }
 
 std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,
-                                           TrialRange trials, Progress* progress) {
+                                           TrialRange trials) {
   const CellPlace place = PlaceOf(options, cell);
   const MapSampler draw = options.conditions[place.condition].sampler(options.nums_points[place.num_points],
                                                                       options.sigmas_px[place.sigma_px]);
-  std::vector<std::optional<ValidityTrial>> all(trials.end - trials.first);
-  ForEachIndex(static_cast<std::int64_t>(all.size()), options.num_threads, [&](std::int64_t i) {
-    const std::optional<MapSample> sample =
-        draw({options.seed, cell, trials.first + static_cast<std::uint32_t>(i)});
-    if (sample) all[static_cast<size_t>(i)] = RunValidityTrial(*sample);
-    if (progress) progress->Advance(1);
-  });
   std::vector<ValidityTrial> with_sample;
-  for (const std::optional<ValidityTrial>& trial : all) {
-    if (trial) with_sample.push_back(*trial);
+  for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
+    if (const std::optional<MapSample> sample = draw({options.seed, cell, trial}))
+      with_sample.push_back(RunValidityTrial(*sample));
   }
   return with_sample;
 }
@@ -240,13 +232,6 @@ std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell
     for (const Cell& each : cells) text += RowsOf(each, median_parallax_deg);
   }
   return text;
-}
-
-std::string ValidityMapCsv(const ValidityMapOptions& options) {
-  Progress progress("trials of the map", NumCells(options) * options.trials);
-  const TrialRange all{0, static_cast<std::uint32_t>(options.trials)};
-  return ValidityMapCsv(options,
-                        [&](std::uint32_t cell) { return RunTrialsOfCell(options, cell, all, &progress); });
 }
 
 }  // namespace rcme

@@ -10,9 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/core/work/progress.h"
-#include "experiments/trial/trial_range.h"
 #include "experiments/audit/validity/sample_family.h"
+#include "experiments/trial/trial_range.h"
 
 namespace rcme {
 
@@ -40,7 +39,6 @@ struct ValidityMapOptions {
   std::vector<MapCondition> conditions = AtBaselines({0.1, 0.5, 1.5});
   int trials = 10'000;  // per cell
   std::uint64_t seed = 1;
-  int num_threads = 0;  // 0: one per core
 };
 
 // One sample, estimated once. What could not be computed stays infinite, which no region covers, and a sample
@@ -62,20 +60,18 @@ ValidityTrial RunValidityTrial(const MapSample& sample);
 std::int64_t NumCells(const ValidityMapOptions& options);
 std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell);
 
-// Those of these trials of a cell that have a sample, in their order. Advances `progress`, if there is one,
-// by one per trial.
+// Those of these trials of a cell that have a sample, in their order.
 std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,
-                                           TrialRange trials, Progress* progress);
+                                           TrialRange trials);
 
-// How long the map will take on its threads, by a few trials of each condition and number of points.
+// How long the map will take on one thread, by a few trials of each condition and number of points.
 double SecondsOfWork(const ValidityMapOptions& options);
 
 // validity_map.csv: one row per cell, conditioning group and quantity, with exact 95 % intervals. The groups
 // of a cell are all its trials, and their lower, middle and upper third in order of either conditioning. A
 // trial without a sample does not count in n; a cell in which none has one is a row with n = 0.
-// `trials_of` has all trials of a cell that have a sample; without it they are computed.
+// `trials_of` has all trials of a cell that have a sample.
 using TrialsOfCell = std::function<std::vector<ValidityTrial>(std::uint32_t cell)>;
 std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell& trials_of);
-std::string ValidityMapCsv(const ValidityMapOptions& options);
 
 }  // namespace rcme

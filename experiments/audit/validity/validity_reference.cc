@@ -4,9 +4,8 @@
 
 #include <limits>
 
-#include "experiments/core/work/for_each_index.h"
-#include "experiments/trial/covariance_score.h"
 #include "experiments/audit/validity/sample_family.h"
+#include "experiments/trial/covariance_score.h"
 #include "stats/consistency.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
@@ -129,24 +128,12 @@ std::int64_t NumCells(const ValidityReferenceOptions& options) {
   return static_cast<std::int64_t>(options.nums_points.size() * options.sigmas_px.size());
 }
 
-CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_t cell, TrialRange samples,
-                           Progress* progress) {
+CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_t cell,
+                           std::uint32_t sample) {
   const size_t num_sigmas = options.sigmas_px.size();
   const SampleFamily family(options.nums_points[cell / num_sigmas], options.baseline_m,
                             options.sigmas_px[cell % num_sigmas]);
-  std::vector<CoveredCounts> per_sample(samples.end - samples.first);
-  ForEachIndex(static_cast<std::int64_t>(per_sample.size()), options.num_threads, [&](std::int64_t i) {
-    const StreamName name{options.seed, kFirstCell + cell, samples.first + static_cast<std::uint32_t>(i)};
-    per_sample[static_cast<size_t>(i)] = RunSample(family, name, options);
-    if (progress) progress->Advance(1);
-  });
-  CoveredCounts sum{};
-  for (const CoveredCounts& counts : per_sample) {
-    for (size_t q = 0; q < sum.size(); ++q) {
-      for (size_t c = 0; c < sum[q].size(); ++c) sum[q][c] += counts[q][c];
-    }
-  }
-  return sum;
+  return RunSample(family, {options.seed, kFirstCell + cell, sample}, options);
 }
 
 std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of) {
@@ -170,13 +157,6 @@ std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const 
     }
   }
   return text;
-}
-
-std::string ValidityReferenceCsv(const ValidityReferenceOptions& options) {
-  Progress progress("samples of the reference", NumCells(options) * options.num_samples);
-  const TrialRange all{0, static_cast<std::uint32_t>(options.num_samples)};
-  return ValidityReferenceCsv(
-      options, [&](std::uint32_t cell) { return CountCovered(options, cell, all, &progress); });
 }
 
 }  // namespace rcme

@@ -20,7 +20,6 @@
 #include <string>
 #include <vector>
 
-#include "experiments/core/work/progress.h"
 #include "experiments/trial/trial_range.h"
 
 namespace rcme {
@@ -33,7 +32,6 @@ struct ValidityReferenceOptions {
   int num_draws = 100;     // fresh draws of noise per sample
   int num_noises = 2'000;  // draws for each Monte-Carlo covariance
   std::uint64_t seed = 1;
-  int num_threads = 0;  // 0: one per core
 };
 
 // How often a region covered, [f or pose][covariance].
@@ -41,15 +39,13 @@ using CoveredCounts = std::array<std::array<std::int64_t, 4>, 2>;
 
 // A cell is a number of points with a noise level, which varies faster.
 std::int64_t NumCells(const ValidityReferenceOptions& options);
-// Over these samples of a cell. Advances `progress`, if there is one, by one per sample.
-CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_t cell, TrialRange samples,
-                           Progress* progress);
+// Of one sample of a cell.
+CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_t cell, std::uint32_t sample);
 
 // validity_reference.csv: one row per cell, quantity and covariance. n is num_samples x num_draws; the exact
 // 95 % interval is of the mean coverage over these very samples, not over all that the family could give.
-// `counts_of` has those of all samples of a cell; without it they are computed.
+// `counts_of` has those of all samples of a cell.
 using CountsOfCell = std::function<CoveredCounts(std::uint32_t cell)>;
 std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of);
-std::string ValidityReferenceCsv(const ValidityReferenceOptions& options);
 
 }  // namespace rcme

@@ -9,10 +9,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/json_output.h"
-#include "experiments/core/files/regular_file.h"
 #include "experiments/core/files/checksum.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/files/regular_file.h"
+#include "experiments/core/text/json_output.h"
 #include "parameters/input_error.h"
 #include "parameters/text_lines.h"
 
@@ -24,23 +24,23 @@ using Json = nlohmann::ordered_json;
 constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksumKey = "\"checksum\": \"";
 constexpr int kMaxPieceDepth = 8;       // of lists within lists; the deepest piece has three
 constexpr size_t kMaxFirstValues = 64;  // of the first line, which has ten
-constexpr const char* kAgain = "remove the file and run its shard again";
+constexpr const char* kAgain = "remove the file and run the command again";
 
 std::string QuotedAsJson(const std::string& text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string FirstLine(const Part& part) {
+std::string FirstLine(const Part& part, size_t num_items) {
   return fmt::format(
       "\"work\": {}, \"program\": {}, \"instruction_set\": {}, \"shard\": {}, \"num_shards\": {}, "
       "\"num_pieces\": {}, \"identity\": {}}}",
       QuotedAsJson(part.work), QuotedAsJson(part.origin.program), QuotedAsJson(part.origin.instruction_set),
-      part.shard.number, part.shard.count, part.results.size(), QuotedAsJson(part.identity));
+      part.shard.number, part.shard.count, num_items, QuotedAsJson(part.identity));
 }
 
-std::string PieceLine(const PiecePlace& place, const PieceResult& result) {
+std::string PieceLine(const ItemPlace& place, const ItemResult& result) {
   return fmt::format("\"group\": {}, \"piece\": {}, \"seconds\": {:.6f}, \"result\": {}}}", place.group,
-                     place.piece, result.seconds, result.json);
+                     place.item, result.seconds, result.json);
 }
 
 // Of a line's text behind its checksum; `of_first`: the first line's checksum, empty for that itself.
@@ -151,17 +151,17 @@ class PartReader {
       lines_.Fail(fmt::format("the piece is too long; at most {} bytes are allowed", kMaxPieceBytes));
     if (!line.Skip("{")) FailDamaged("the line is no piece");
     RequireChecksum(&line);
-    PiecePlace place;
-    PieceResult result;
+    ItemPlace place;
+    ItemResult result;
     const bool has_form = line.Skip("\"group\": ") && line.Read(&place.group) && line.Skip(", \"piece\": ") &&
-                          line.Read(&place.piece) && line.Skip(", \"seconds\": ") &&
+                          line.Read(&place.item) && line.Skip(", \"seconds\": ") &&
                           line.Read(&result.seconds) && line.Skip(", \"result\": ") &&
                           line.rest().ends_with('}');
     if (!has_form || !(result.seconds >= 0.0) || std::isinf(result.seconds))
       FailDamaged("the line is no piece");
     if (!part_.results.empty() && !(part_.results.rbegin()->first < place))
       FailDamaged(
-          fmt::format("piece {} of group {} is there twice, or out of order", place.piece, place.group));
+          fmt::format("piece {} of group {} is there twice, or out of order", place.item, place.group));
     result.json = line.rest().substr(0, line.rest().size() - 1);
     part_.results.emplace_hint(part_.results.end(), place, std::move(result));
   }
@@ -211,22 +211,22 @@ void RequireSize(const Json& json, size_t size) {
     throw std::invalid_argument(fmt::format("it is no list of {}", size));
 }
 
-std::string PartAsText(const Part& part) {
-  const std::string first = FirstLine(part), checksum = LineChecksum("", first);
+std::string PartAsText(const Part& part, const ItemResults& results) {
+  const std::string first = FirstLine(part, results.size()), checksum = LineChecksum("", first);
   std::string text =
       fmt::format("{{\"format\": \"{}\", {}{}\", {}\n", kPartFormat, kChecksumKey, checksum, first);
-  for (const auto& [place, result] : part.results) {
+  for (const auto& [place, result] : results) {
     const std::string line = PieceLine(place, result);
     text += fmt::format("{{{}{}\", {}\n", kChecksumKey, LineChecksum(checksum, line), line);
   }
   return text;
 }
 
-void WritePart(const std::string& path, const Part& part) {
-  const std::string text = PartAsText(part);
+void WritePart(const std::string& path, const Part& part, const ItemResults& results) {
+  const std::string text = PartAsText(part, results);
   if (text.size() > kMaxPartBytes)
-    throw InputError(fmt::format("{}: the part has more than {} MiB; divide the work into more shards", path,
-                                 kMaxPartBytes >> 20));
+    throw PartIsTooLong(fmt::format("{}: the part has more than {} MiB; divide the work into more shards",
+                                    path, kMaxPartBytes >> 20));
   WriteFileWhole(path, text);
 }
 

@@ -1,6 +1,7 @@
-// The file of one shard's part of a work, or of several that were put together: what each piece gave, every
-// number to its last bit, and of which work it is. Lines of JSON: the first describes the part and counts its
-// pieces, each of the others is one piece, ordered by group and number.
+// The file that keeps results of a work (core/work/work_plan.h): a shard's part, several parts that were put
+// together, or the checkpoint of a command that was stopped. It holds what each item gave, every number to
+// its last bit, and of which work it is. Lines of JSON: the first describes the part and counts its items,
+// which it calls pieces; each of the others is one item, ordered by group and number.
 //
 // Every line begins with a checksum (CRC-32) of what follows it, a piece's also of the first line's checksum,
 // so that no line of another part, or of another state of this one, passes. Like those of result files it is
@@ -12,21 +13,23 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/core/work/piece_plan.h"
 #include "experiments/core/text/program_name.h"
+#include "experiments/core/work/work_plan.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 
-struct PieceResult {
-  std::string json;  // what the piece gave: the text of a JSON value on one line, equal where the results are
-  double seconds = 0.0;  // of processor time; what the piece gave does not depend on it
+struct ItemResult {
+  std::string json;  // what the item gave: the text of a JSON value on one line, equal where the results are
+  double seconds = 0.0;  // of processor time; what the item gave does not depend on it
 };
+using ItemResults = std::map<ItemPlace, ItemResult>;
 
 struct Part {
-  std::string work, identity;  // as PiecePlan, the latter as IdentityOf
+  std::string work, identity;  // as WorkPlan, the latter as DescribeIdentity
   Shard shard;                 // number 0: of several
   TrialOrigin origin;
-  std::map<PiecePlace, PieceResult> results;  // of the pieces that are done
+  ItemResults results;  // of the items that are done
 };
 
 // Of a file. The first line of the largest study (100,000 conditions) has some 60 MB, the largest piece (a
@@ -51,10 +54,14 @@ std::int64_t CountFrom(const nlohmann::ordered_json& json, std::int64_t most);
 // Throws std::invalid_argument where `json` is no list of so many.
 void RequireSize(const nlohmann::ordered_json& json, size_t size);
 
-std::string PartAsText(const Part& part);
+// With these results in place of its own.
+std::string PartAsText(const Part& part, const ItemResults& results);
 
-// Throws InputError where it cannot be written, or would be too long to be read.
-void WritePart(const std::string& path, const Part& part);
+// Throws InputError where it cannot be written, PartIsTooLong where it could not be read again.
+class PartIsTooLong : public InputError {
+  using InputError::InputError;
+};
+void WritePart(const std::string& path, const Part& part, const ItemResults& results);
 
 // Throws InputError that names the path, the line and what is wrong for a file that is no such part, is
 // damaged, or is longer than a part can be. Memory is that of what is kept, and a line.

@@ -7,6 +7,7 @@
 #include "experiments/rare/rare_output.h"
 #include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 
 namespace rcme {
 namespace {
@@ -128,8 +129,7 @@ TEST(SplitFailures, SaysWhatItCannotTake) {
 TEST(StratifyFailures, RunsAllTrialsWhereAllAreWanted) {
   // Then it is the plain count of the plain trials.
   const StudyPlan plan = FrequentFailures();
-  Progress progress("trials", 1000);
-  const StratifiedCell cell = StratifyFailures(plan, {.num_trials = 1000, .run_share = 1.0}, 1, &progress)[0];
+  const StratifiedCell cell = StratifyInMemory(plan, {.num_trials = 1000, .run_share = 1.0}, 1)[0];
   EXPECT_EQ(cell.num_run, 1000);
   EXPECT_EQ(cell.strata[0].num_failed, CountFailures(plan, 1000));
   EXPECT_DOUBLE_EQ(cell.rate.estimate, static_cast<double>(cell.strata[0].num_failed) / 1000.0);
@@ -141,9 +141,7 @@ TEST(StratifyFailures, IsUnbiasedAndRunsTheHardOnes) {
   Study other = plan.study;
   other.seed = 6;
   const double plain = static_cast<double>(CountFailures(MakePlan(other), 6000)) / 6000.0;
-  Progress progress("trials", 20'000);
-  const StratifiedCell cell =
-      StratifyFailures(plan, {.num_trials = 20'000, .run_share = 0.2}, 1, &progress)[0];
+  const StratifiedCell cell = StratifyInMemory(plan, {.num_trials = 20'000, .run_share = 0.2}, 1)[0];
   const double z = (cell.rate.estimate - plain) /
                    std::sqrt(plain / 6000.0 + cell.rate.standard_error * cell.rate.standard_error);
   EXPECT_LT(std::abs(z), 3.89) << cell.rate.estimate << " for " << plain;

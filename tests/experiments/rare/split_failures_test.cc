@@ -9,6 +9,7 @@
 #include "experiments/study/study_file.h"
 #include "stats/splitting.h"
 #include "tests/test_support/error_terminal.h"
+#include "tests/test_support/in_memory.h"
 
 namespace rcme {
 namespace {
@@ -29,8 +30,7 @@ StudyPlan TwoConditions(
 const RareEffort kEffort{{.num_particles = 20, .num_moves = 1, .kept_share = 0.2}, 4};
 
 std::vector<RareCell> SplitBy(std::uint64_t seed, int num_threads) {
-  Progress progress("replicates", 10);
-  return SplitFailures(TwoConditions(), seed, kEffort, num_threads, &progress);
+  return SplitInMemory(TwoConditions(), seed, kEffort, num_threads);
 }
 
 // What a replicate went through.
@@ -90,21 +90,12 @@ TEST(SplitFailures, DrawsFromTheStreamsOfItsConditions) {
   }
 }
 
-// No motion is off by more than 180 deg, so that no levels lead to failure: the replicates that are not run
-// count as done. (A terminal shows progress from one second on.)
-TEST(SplitFailures, ProgressComesToItsEndWithoutLevels) {
-  ErrorTerminal terminal;
-  if (!terminal.is_there()) GTEST_SKIP() << "needs a pseudo terminal";
+// No motion is off by more than 180 deg, so that no levels lead to failure and no replicate is run.
+TEST(SplitFailures, RunsNoReplicateWithoutLevels) {
   const StudyPlan plan = TwoConditions("{max_rotation_error_deg: 180, max_direction_error_deg: 180}");
-  std::vector<RareCell> cells;
-  {
-    Progress progress("replicates", 10);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
-    cells = SplitFailures(plan, 1, kEffort, 1, &progress);
-  }
-  const std::string shown = terminal.Read();
-  for (const RareCell& cell : cells) EXPECT_TRUE(cell.replicates.empty());
-  EXPECT_NE(shown.find("10 / 10 replicates (100 %)"), std::string::npos) << shown;
+  Runner runner = Runner::InMemory(PlanSplitting(plan, 1, kEffort), 1);
+  for (const RareCell& cell : SplitFailures(plan, 1, kEffort, &runner)) EXPECT_TRUE(cell.replicates.empty());
+  EXPECT_EQ(runner.results().results.size(), 2u);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 
 namespace rcme {
 namespace {
@@ -28,18 +29,15 @@ StudyPlan EasyAndHard(const std::string& more = "") {
 // open: 4,000 trials, standard errors 0.01 and 0.005.
 TEST(StratifyFailures, RunsTheShareThatWasAskedFor) {
   for (const double share : {0.1, 0.3}) {
-    Progress progress("trials", 4000);
     const StratifiedCell cell =
-        StratifyFailures(EasyAndHard(), {.num_trials = 4000, .run_share = share}, 2, &progress)[0];
+        StratifyInMemory(EasyAndHard(), {.num_trials = 4000, .run_share = share}, 2)[0];
     EXPECT_NEAR(static_cast<double>(cell.num_run) / 4000.0, share, 0.045);
   }
 }
 
 // The easiest trials are run once in 64, none less often; where hardly any is run all strata are used.
 TEST(StratifyFailures, GoesToTheEasiestStratum) {
-  Progress progress("trials", 4000);
-  const StratifiedCell cell =
-      StratifyFailures(EasyAndHard(), {.num_trials = 4000, .run_share = 0.02}, 2, &progress)[0];
+  const StratifiedCell cell = StratifyInMemory(EasyAndHard(), {.num_trials = 4000, .run_share = 0.02}, 2)[0];
   std::int64_t num_trials = 0;
   for (const StratumCount& count : cell.strata) num_trials += count.num_trials;
   EXPECT_EQ(num_trials, 4000);
@@ -67,9 +65,7 @@ std::vector<double> ChancesOf(const StudyPlan& plan, std::uint32_t num_trials) {
 TEST(StratifyFailures, EndAtQuartersOfTheChance) {
   constexpr std::uint32_t kTrials = 3000;
   const StudyPlan plan = EasyAndHard();
-  Progress progress("trials", kTrials);
-  const StratifiedCell cell =
-      StratifyFailures(plan, {.num_trials = kTrials, .run_share = 0.1}, 2, &progress)[0];
+  const StratifiedCell cell = StratifyInMemory(plan, {.num_trials = kTrials, .run_share = 0.1}, 2)[0];
   const std::vector<double> chances = ChancesOf(plan, kTrials);
   std::vector<Interval> ends;
   size_t num_within = 0;
@@ -91,9 +87,8 @@ TEST(StratifyFailures, EndAtQuartersOfTheChance) {
 }
 
 TEST(StratifyFailures, RefusesRepeatedScenes) {
-  Progress progress("trials", 10);
   EXPECT_TRUE(ThrowsInputError(
-      [&] { StratifyFailures(EasyAndHard("repeats_per_scene: 2\n"), {.num_trials = 10}, 1, &progress); },
+      [&] { StratifyInMemory(EasyAndHard("repeats_per_scene: 2\n"), {.num_trials = 10}, 1); },
       {"repeats_per_scene"}));
 }
 

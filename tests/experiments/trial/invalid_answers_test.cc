@@ -4,10 +4,10 @@
 
 #include <limits>
 
-#include "experiments/statistics/compare.h"
-#include "experiments/statistics/summarize.h"
 #include "experiments/audit/claims/call_estimator.h"
 #include "experiments/run/run_until.h"
+#include "experiments/statistics/compare.h"
+#include "experiments/statistics/summarize.h"
 #include "experiments/tuning/verify_setting.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -85,8 +85,7 @@ TEST(InvalidAnswers, AreFailuresInSummaryComparisonAndVerification) {
       EXPECT_EQ(row.counts.RiskDifference(), 0.0);
     }
   }
-  Progress progress("trials", 1);
-  const std::vector<VerifiedEstimator> verified = VerifyEstimators(plan, {0, 200}, 2, &progress);
+  const std::vector<VerifiedEstimator> verified = VerifyEstimators(plan, {0, 200});
   EXPECT_EQ(verified[1].failure.errors, totals[1].num_failures);
   EXPECT_EQ(verified[1].refusal.errors, totals[1].num_refusals);
   EXPECT_EQ(verified[1].failure_or_refusal.errors, totals[1].num_failures + totals[1].num_refusals);

@@ -14,9 +14,8 @@ struct GoodAndBad {
   std::vector<double> good, bad;
 };
 
-std::vector<EntropyRoc> Measure(const StudyPlan& plan, TrialRange trials, int num_threads = 2) {
-  Progress progress("trials", 1);
-  return MeasureEntropyRocs(plan, trials, num_threads, &progress);
+std::vector<EntropyRoc> Measure(const StudyPlan& plan, TrialRange trials) {
+  return RocsOf(plan, MeasureEntropies(plan, trials));
 }
 
 void ExpectSame(const EntropyRoc& roc, const GoodAndBad& expected) {
@@ -124,15 +123,6 @@ TEST(EntropyRoc, WithoutABadOneThereIsNoCurve) {
   Study study = WithTest(20).study;
   study.factors[0].levels = {"0"};
   for (const EntropyRoc& roc : Measure(MakePlan(study), {0, 10})) EXPECT_NE(roc.population, "samples");
-}
-
-TEST(EntropyRoc, DoesNotDependOnThreads) {
-  const auto one = Measure(WithTest(20), {0, 20}, 1), three = Measure(WithTest(20), {0, 20}, 3);
-  ASSERT_EQ(one.size(), three.size());
-  for (size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].good, three[i].good);
-    EXPECT_EQ(one[i].bad, three[i].bad);
-  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "experiments/tuning/transfer_output.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 #include "tests/test_support/tuned_study.h"
 
 namespace rcme {
@@ -31,7 +32,7 @@ StudyPlan FourConditions(const std::string& design = "") {
 }
 
 TransferResult Transfer(const StudyPlan& plan, const std::string& by, int num_threads = 2) {
-  return MeasureTransfer(plan, SettingsOf(plan), by, num_threads);
+  return MeasureTransferInMemory(plan, SettingsOf(plan), by, num_threads);
 }
 
 std::vector<std::string> Words(const TransferResult& result) {
@@ -68,7 +69,7 @@ TEST(Transfer, AFamilyIsTunedOnItsOwnConditionsAlone) {
   for (size_t f = 0; f < 2; ++f) {
     StudyPlan alone = plan;
     alone.conditions = {plan.conditions[f], plan.conditions[2 + f]};
-    const TuneResult tuned = Tune(alone, SettingsOf(alone), Unreached::kVerifyAll, 2);
+    const TuneResult tuned = TuneInMemory(alone, SettingsOf(alone), Unreached::kVerifyAll, 2);
     EXPECT_EQ(result.families[f].choice.setting, tuned.choice.setting);
     EXPECT_EQ(result.families[f].choice.path, tuned.choice.path);
     EXPECT_EQ(result.families[f].choice.why, tuned.choice.why);

@@ -9,6 +9,7 @@
 #include "experiments/trial/trial.h"
 #include "experiments/tuning/tune_json.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/temp_folder.h"
 #include "tests/test_support/tuned_study.h"
@@ -27,7 +28,7 @@ const std::string kBlock =
     "  options: {mu: [1, 2, 3], lambda: [0.5, 1]}\n";
 
 TuneResult TuneIt(const StudyPlan& plan, int num_threads = 2, Unreached unreached = Unreached::kVerifyAll) {
-  return Tune(plan, SettingsOf(plan), unreached, num_threads);
+  return TuneInMemory(plan, SettingsOf(plan), unreached, num_threads);
 }
 
 std::string AllOf(const StudyPlan& plan, const TuneResult& result) {
@@ -82,13 +83,14 @@ TEST(Tune, EveryStageHasTrialsOfItsOwn) {
   EXPECT_EQ(trials.verify.end, 40u);
 }
 
-TEST(Tune, EveryTrialIsMadeOnceAndThoseForVerificationTwice) {
+// Those for verification: of all settings, by plain calls, and for the entropies.
+TEST(Tune, EveryTrialIsMadeOnceAndThoseForVerificationThrice) {
   WatchedData::Log log;
   const TuneResult result = TuneIt(Watched(TunedPlan(kBlock), &log));
   ASSERT_TRUE(result.choice.setting.has_value()) << result.choice.why;
   EXPECT_EQ(log.times.size(), 2u * 40u);
   for (const auto& [name, times] : log.times) {
-    EXPECT_EQ(times, name.second < 30 ? 1 : 2) << "condition " << name.first << " trial " << name.second;
+    EXPECT_EQ(times, name.second < 30 ? 1 : 3) << "condition " << name.first << " trial " << name.second;
   }
 }
 

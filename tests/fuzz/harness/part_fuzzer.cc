@@ -1,7 +1,7 @@
 #include "experiments/audit/claims/outcomes_json.h"
-#include "experiments/core/work/divided_work.h"
-#include "experiments/tuning/tune_part.h"
-#include "experiments/audit/validity/map_part.h"
+#include "experiments/audit/validity/map_work.h"
+#include "experiments/core/work/runner.h"
+#include "experiments/tuning/tuning_work.h"
 #include "tests/fuzz/harness/file_in_memory.h"
 #include "tests/fuzz/harness/only_input_error.h"
 #include "tests/test_support/tuned_study.h"
@@ -10,10 +10,10 @@ namespace rcme {
 namespace {
 
 // A work all of whose pieces gave the same.
-MergedParts GiveEachPiece(const PiecePlan& plan, const std::string& json) {
-  MergedParts merged;
+WorkResults GiveEachPiece(const WorkPlan& plan, const std::string& json) {
+  WorkResults merged;
   for (size_t group = 0; group < plan.groups.size(); ++group) {
-    for (size_t piece = 0; piece < plan.groups[group].num_pieces; ++piece) {
+    for (size_t piece = 0; piece < plan.groups[group].num_items; ++piece) {
       merged.results[{group, piece}] = {json, 0.0};
       merged.paths[{group, piece}] = "part";
     }
@@ -26,10 +26,10 @@ void CountTuning(const std::string& json) {
       "  target: failure\n  at_most: 0.3\n  explore: 3\n  calibrate: 5\n  verify: 3\n  options: {mu: [1, "
       "2]}\n");
   static const SettingPlan settings = SettingsOf(plan);
-  static const TuningPieces work = PiecesOfTuning(plan);
-  const MergedParts merged = GiveEachPiece(work.pieces, json);
-  OnlyInputError([&] { CountsOf(plan, settings, work, merged).count({0, 3}); });
-  OnlyInputError([&] { CountsOf(plan, settings, work, merged).verify(0); });
+  static const TuningWork work = PlanTuningWork(plan);
+  const WorkResults merged = GiveEachPiece(work.items, json);
+  OnlyInputError([&] { CountsIn(plan, settings, work, merged).count({0, 3}); });
+  OnlyInputError([&] { CountsIn(plan, settings, work, merged).verify(0); });
   OnlyInputError([&] { EntropiesIn(plan, work, merged); });
 }
 
@@ -42,8 +42,8 @@ void CountMap(const std::string& json) {
     small.reference = ValidityReferenceOptions{.num_samples = 2};
     return small;
   }();
-  static const PiecePlan plan = PiecesOfMap(work);
-  const MergedParts merged = GiveEachPiece(plan, json);
+  static const WorkPlan plan = PlanMapWork(work);
+  const WorkResults merged = GiveEachPiece(plan, json);
   OnlyInputError([&] { TrialsIn(work, plan, merged)(0); });
   OnlyInputError([&] { CountsIn(work, plan, merged)(0); });
 }
@@ -54,10 +54,10 @@ void CountAudit(const std::string& json) {
     two.targets = {ClaimedRate("rate", 0.3, {0.25, 0.35}, 0), ClaimedMean("mean", 0.5, {0.49, 0.55}, 1)};
     return two;
   }();
-  static const PiecePlan plan{"audit", "block", "", {{"check", 1}}};
+  static const WorkPlan plan{"audit", "block", "", {{"check", 1}}};
   OnlyInputError([&] {
-    ReadEach(plan, GiveEachPiece(plan, json), 0, 1,
-             [&](const PiecePlace&, const std::string& text) { OutcomesFrom(check, text, 3); });
+    ReadResults(plan, GiveEachPiece(plan, json), 0, 1,
+                [&](const ItemPlace&, const std::string& text) { OutcomesFrom(check, text, 3); });
   });
 }
 

@@ -12,6 +12,7 @@
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 
 namespace rcme {
 namespace {
@@ -53,7 +54,7 @@ TEST(Audit, ACorrectGaussianEstimatorPassesAtTheStatedErrorRate) {
     AuditOptions options;
     options.seed = seed;
     bool is_alarm = false, holds = true;
-    for (const ClaimResult& result : RunAudit(GaussianClaims(), options).results) {
+    for (const ClaimResult& result : RunAuditInMemory(GaussianClaims(), options).results) {
       is_alarm |= result.verdict != ClaimVerdict::kHolds && result.verdict != ClaimVerdict::kUndecided;
       holds &= result.verdict == ClaimVerdict::kHolds;
     }
@@ -68,17 +69,18 @@ TEST(Audit, ACorrectGaussianEstimatorPassesAtTheStatedErrorRate) {
 TEST(Audit, IsTheSameBytesForAnyNumberOfThreads) {
   AuditOptions one, three;
   one.num_threads = 1, three.num_threads = 3;
-  const std::string json = AuditAsJson(RunAudit(GaussianClaims(), one));
-  EXPECT_EQ(AuditAsJson(RunAudit(GaussianClaims(), three)), json);
+  const std::string json = AuditAsJson(RunAuditInMemory(GaussianClaims(), one));
+  EXPECT_EQ(AuditAsJson(RunAuditInMemory(GaussianClaims(), three)), json);
   AuditOptions other_seed = one;
   other_seed.seed = 2;
-  EXPECT_NE(AuditAsJson(RunAudit(GaussianClaims(), other_seed)), json);
+  EXPECT_NE(AuditAsJson(RunAuditInMemory(GaussianClaims(), other_seed)), json);
 }
 
 TEST(Audit, AClaimsResultDoesNotDependOnTheOthersThatAreRun) {
   AuditOptions all, some;
   some.only = {"gauss.b2"};
-  const Audit whole = RunAudit(GaussianClaims(), all), part = RunAudit(GaussianClaims(), some);
+  const Audit whole = RunAuditInMemory(GaussianClaims(), all),
+              part = RunAuditInMemory(GaussianClaims(), some);
   ASSERT_EQ(part.claims.size(), 1);
   EXPECT_EQ(part.num_targets, 60);
   EXPECT_EQ(part.confidence, whole.confidence);
@@ -101,7 +103,7 @@ TEST(SelectClaims, ByIdOrByFamilyOrAWordThatFitsNone) {
 TEST(AuditOutput, SaysEverythingOfAClaim) {
   AuditOptions options;
   options.only = {"gauss.a1"};
-  const Audit audit = RunAudit(GaussianClaims(), options);
+  const Audit audit = RunAuditInMemory(GaussianClaims(), options);
   const auto json = nlohmann::json::parse(AuditAsJson(audit));
   EXPECT_EQ(json["format"], "rcme audit 1");
   EXPECT_EQ(json["num_targets"], 60);
@@ -132,7 +134,7 @@ TEST(AuditOutput, NamesTheWorstFifthOfDifficulty) {
     const bool is_hardest = name.trial % 5 == 0;
     return {is_hardest ? 100.0 : 0.1, is_hardest ? 9.0 : 0.001 * name.trial};
   };
-  const Audit audit = RunAudit({claim}, {});
+  const Audit audit = RunAuditInMemory({claim}, {});
   const std::vector<DifficultyFifth>& fifths = audit.results[0].checks[0].fifths;
   ASSERT_EQ(fifths.size(), 5);
   EXPECT_EQ(fifths[4].measured, 0.0);

@@ -8,9 +8,10 @@
 #include "experiments/audit/claims/decide_check.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/study_cases.h"
-#include "experiments/study/study_file.h"
 #include "experiments/audit/validity/study_samples.h"
+#include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 
 namespace rcme {
 namespace {
@@ -213,7 +214,7 @@ TEST(MapOfAStudy, CountsOnlyTrialsWithASample) {
                              .condition_key = "condition",
                              .conditions = MapConditionsOf(plan),
                              .trials = 6};
-  const std::string csv = ValidityMapCsv(options);
+  const std::string csv = MapCsvInMemory(options);
   EXPECT_NE(csv.find("0.5,8,motion = general,"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",all,,f,0,0,,,\n"), std::string::npos) << csv;  // 50 points of 20
   EXPECT_NE(csv.find("0.5,8,motion = pure_rotation,,all,,pose,0,0,,,\n"), std::string::npos) << csv;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {
@@ -53,7 +54,7 @@ TEST(CountChoices, AreThoseOfSingleTrials) {
     }
   }
   for (const int num_threads : {1, 3}) {
-    const ChoiceCounts counts = CountChoices(plan, {}, num_threads);
+    const ChoiceCounts counts = CountChoicesInMemory(plan, {}, num_threads);
     ASSERT_EQ(counts.groups.size(), 1u);
     EXPECT_TRUE(counts.groups[0].levels.empty());
     EXPECT_EQ(counts.groups[0].matrices, expected) << num_threads;
@@ -62,8 +63,8 @@ TEST(CountChoices, AreThoseOfSingleTrials) {
 
 TEST(CountChoices, GroupsAreThoseOfTheFactors) {
   const StudyPlan plan = MakePlan(KindsStudy());
-  const ConfusionMatrix all = CountChoices(plan, {}, 1).groups[0].matrices[1];
-  const ChoiceCounts counts = CountChoices(plan, {"motion"}, 1);
+  const ConfusionMatrix all = CountChoicesInMemory(plan, {}, 1).groups[0].matrices[1];
+  const ChoiceCounts counts = CountChoicesInMemory(plan, {"motion"}, 1);
   ASSERT_EQ(counts.groups.size(), 2u);
   EXPECT_EQ(counts.groups[0].levels, (std::vector<std::string>{"general"}));
   EXPECT_EQ(counts.groups[1].levels, (std::vector<std::string>{"pure_rotation"}));
@@ -83,7 +84,7 @@ TEST(CountChoices, TheTruthIsThatOfTheRightMatches) {
   for (auto& [key, value] : study.data) {
     if (key == "outlier_ratio") value = "1";
   }
-  const ConfusionMatrix matrix = CountChoices(MakePlan(study), {}, 1).groups[0].matrices[0];
+  const ConfusionMatrix matrix = CountChoicesInMemory(MakePlan(study), {}, 1).groups[0].matrices[0];
   const auto& row = matrix[static_cast<size_t>(TrueKind::kBorderline)];
   EXPECT_EQ(std::accumulate(row.begin(), row.end(), std::int64_t{0}), 20);
 }
@@ -92,7 +93,7 @@ TEST(CountChoices, SaysWhatCannotBeScored) {
   const auto refusal = [](auto change, const std::vector<std::string>& by = {}) {
     Study study = KindsStudy();
     change(study);
-    return [study, by] { CountChoices(MakePlan(study), by, 1); };
+    return [study, by] { CountChoicesInMemory(MakePlan(study), by, 1); };
   };
   EXPECT_TRUE(ThrowsInputError(refusal([](Study&) {}, {"outlier_ratio"}),
                                {"--by outlier_ratio", "no such factor", "scene, motion"}));

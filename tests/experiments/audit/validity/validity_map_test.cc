@@ -7,10 +7,11 @@
 #include <sstream>
 #include <string>
 
-#include "experiments/audit/validity/map_part.h"
+#include "experiments/audit/validity/map_work.h"
 #include "experiments/audit/validity/validity_reference.h"
 #include "stats/intervals.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 #include "tests/test_support/run_program.h"
 
 namespace rcme {
@@ -62,15 +63,13 @@ ValidityMapOptions SmallMap(int trials) {
 
 TEST(ValidityMap, ThreadsChangeNothing) {
   ValidityMapOptions options = SmallMap(50);
-  options.num_threads = 1;
-  const std::string one = ValidityMapCsv(options);
+  const std::string one = MapCsvInMemory(options, 1);
   EXPECT_EQ(RowsOf(one).size(), 4u * 7u * 4u);  // cells, groups, quantities
   for (const int num_threads : {2, 5}) {
-    options.num_threads = num_threads;
-    EXPECT_EQ(ValidityMapCsv(options), one) << num_threads << " threads";
+    EXPECT_EQ(MapCsvInMemory(options, num_threads), one) << num_threads << " threads";
   }
   options.seed = 2;
-  EXPECT_NE(ValidityMapCsv(options), one);
+  EXPECT_NE(MapCsvInMemory(options), one);
 }
 
 TEST(ValidityMap, CoversWhereNoiseIsSmallAndShowsWhatWasMeasuredElsewhere) {
@@ -78,7 +77,7 @@ TEST(ValidityMap, CoversWhereNoiseIsSmallAndShowsWhatWasMeasuredElsewhere) {
   // covered 0.947 there in another measurement, which 3,000 trials cannot tell from 0.95. At 0.5 px that
   // measurement (two cameras of different focal lengths) gave 0.787 for Sigma_f and 0.632 for Sigma_p, n =
   // 20,000: here within 0.05, more than the interval's 0.03 for the difference of the cameras.
-  const std::vector<Row> rows = RowsOf(ValidityMapCsv(SmallMap(3'000)));
+  const std::vector<Row> rows = RowsOf(MapCsvInMemory(SmallMap(3'000)));
   for (const std::string m : {"8", "20"}) {
     for (const std::string quantity : {"f", "pose", "fresh_point", "ml_pose"}) {
       const Row row = Find(
@@ -98,7 +97,7 @@ TEST(ValidityMap, CoversWhereNoiseIsSmallAndShowsWhatWasMeasuredElsewhere) {
 }
 
 TEST(ValidityMap, ThirdsAddUpToAllAndAreInOrder) {
-  const std::vector<Row> rows = RowsOf(ValidityMapCsv(SmallMap(100)));
+  const std::vector<Row> rows = RowsOf(MapCsvInMemory(SmallMap(100)));
   for (const std::string quantity : {"f", "pose", "fresh_point", "ml_pose"}) {
     const Row cell = {{"sigma_px", "0.5"}, {"num_points", "8"}, {"quantity", quantity}};
     const auto with = [&](const std::string& group) {
@@ -125,7 +124,7 @@ TEST(ValidityMap, ThirdsAddUpToAllAndAreInOrder) {
 TEST(ValidityMap, ParallaxGrowsWithTheBaseline) {
   ValidityMapOptions options = SmallMap(200);
   options.conditions = AtBaselines({0.1, 1.5});
-  const std::vector<Row> rows = RowsOf(ValidityMapCsv(options));
+  const std::vector<Row> rows = RowsOf(MapCsvInMemory(options));
   const auto parallax_deg = [&](const std::string& baseline) {
     return std::stod(Find(rows, {{"sigma_px", "0.5"},
                                  {"num_points", "8"},
@@ -149,7 +148,7 @@ ValidityReferenceOptions SmallReference() {
 TEST(ValidityReference, AllCovariancesAgreeWhereNoiseIsSmall) {
   // False alarm 1e-4 a row. The Monte-Carlo covariance from 2,000 noises covers 0.949 of Gaussian errors
   // (Hotelling), which 1,200 draws cannot tell from 0.95.
-  const std::vector<Row> rows = RowsOf(ValidityReferenceCsv(SmallReference()));
+  const std::vector<Row> rows = RowsOf(ReferenceCsvInMemory(SmallReference()));
   EXPECT_EQ(rows.size(), 2u * 2u * 4u);
   for (const Row& row : rows) {
     EXPECT_EQ(row.at("n"), "1200");
@@ -161,16 +160,17 @@ TEST(ValidityReference, AllCovariancesAgreeWhereNoiseIsSmall) {
 TEST(ValidityReference, ThreadsChangeNothing) {
   ValidityReferenceOptions options = SmallReference();
   options.num_noises = 50;
-  options.num_threads = 1;
-  const std::string one = ValidityReferenceCsv(options);
-  options.num_threads = 3;
-  EXPECT_EQ(ValidityReferenceCsv(options), one);
+  EXPECT_EQ(ReferenceCsvInMemory(options, 3), ReferenceCsvInMemory(options, 1));
+}
+
+void Part(const MapWork& work, const Shard& shard, const std::string& path) {
+  Runner runner = Runner::OfShard(PlanMapWork(work), shard, path, 2);
+  GetMapResults(work, &runner);
 }
 
 // In shards the tables are those of one machine, to the last byte; a trial may have no sample.
 TEST(MapParts, GiveTheBytesOfOneMachine) {
   MapWork work{SmallMap(130), ValidityReferenceOptions{}, ""};
-  work.map.num_threads = work.reference->num_threads = 1;
   work.reference->num_samples = 4;
   work.reference->num_noises = work.reference->num_draws = 20;
   const auto sampler = work.map.conditions.front().sampler;
@@ -178,19 +178,19 @@ TEST(MapParts, GiveTheBytesOfOneMachine) {
     const MapSampler draw = sampler(num_points, sigma_px);
     return [draw](const StreamName& name) { return name.trial % 3 == 1 ? std::nullopt : draw(name); };
   };
-  const std::string map = ValidityMapCsv(work.map), reference = ValidityReferenceCsv(*work.reference);
+  const std::string map = MapCsvInMemory(work.map), reference = ReferenceCsvInMemory(*work.reference);
   EXPECT_NE(map.find(",87,"), std::string::npos) << "n: two thirds of 130";
-  const PiecePlan pieces = PiecesOfMap(work);
-  EXPECT_EQ(pieces.NumPieces(), 4u * 2u + 6u * 4u);
+  const WorkPlan pieces = PlanMapWork(work);
+  EXPECT_EQ(pieces.NumItems(), 4u * 2u + 6u * 4u);
   const TempFolder folder;
   for (const std::uint32_t count : {7, 64}) {
     std::vector<std::string> paths;
     for (std::uint32_t number = count; number >= 1; --number) {
       paths.push_back(folder.Path(fmt::format("{}_of_{}", number, count)));
-      RunMapPart(work, {number, count}, paths.back());
+      Part(work, {number, count}, paths.back());
     }
-    const MergedParts merged = MergeParts(pieces, paths);
-    EXPECT_EQ(MissingIn(pieces, merged, 0, pieces.groups.size()).num_pieces, 0);
+    const WorkResults merged = MergeParts(pieces, paths);
+    EXPECT_EQ(FindMissingIn(pieces, merged, 0, pieces.groups.size()).num_items, 0);
     EXPECT_EQ(ValidityMapCsv(work.map, TrialsIn(work, pieces, merged)), map);
     EXPECT_EQ(ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, merged)), reference);
   }
@@ -200,21 +200,17 @@ TEST(MapParts, OfAnotherSeedAreRefused) {
   const TempFolder folder;
   const std::string path = folder.Path("part.json");
   MapWork work{SmallMap(3), std::nullopt, ""};
-  RunMapPart(work, {1, 1}, path);
+  Part(work, {1, 1}, path);
   work.map.seed = 2;
-  EXPECT_TRUE(ThrowsInputError(
-      [&] {
-        RunMapPart(work, {1, 1}, path);
-      },
-      {path, "'seed: 1' there, 'seed: 2' here"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Part(work, {1, 1}, path); }, {path, "'seed: 1' there, 'seed: 2' here"}));
 }
 
 TEST(MapParts, DamageIsNamed) {
   MapWork work{SmallMap(3), ValidityReferenceOptions{}, ""};
   work.reference->num_samples = work.reference->num_noises = work.reference->num_draws = 20;
-  const PiecePlan pieces = PiecesOfMap(work);
+  const WorkPlan pieces = PlanMapWork(work);
   const auto is_refused = [&](size_t group, const std::string& result, const std::string& word) {
-    const MergedParts merged{1, {{{group, 0}, {result, 0.0}}}, {{{group, 0}, "a.json"}}};
+    const WorkResults merged{1, {{{group, 0}, {result, 0.0}}}, {{{group, 0}, "a.json"}}, ""};
     const auto read = [&] {
       TrialsIn(work, pieces, merged)(0);
       CountsIn(work, pieces, merged)(0);

@@ -1,5 +1,5 @@
 // A tuning and a transfer in shards give what one machine gives; what is damaged is named.
-#include "experiments/tuning/tune_part.h"
+#include "experiments/tuning/tuning_work.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 #include "experiments/tuning/tune_output.h"
 #include "tests/test_support/changed_part.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 #include "tests/test_support/temp_folder.h"
 #include "tests/test_support/tuned_study.h"
 
@@ -29,25 +30,29 @@ std::string Bytes(const StudyPlan& plan, const TuneResult& result, const std::ve
 
 class TuneParts : public testing::Test {
  protected:
+  MissingItems Part(const TuningWork& work, const WorkResults& merged, const Shard& shard,
+                    const std::string& path) const {
+    Runner runner = Runner::OfShard(work.items, shard, path, 2);
+    return GetTuningShard(plan_, settings_, work, merged, &runner);
+  }
   // Both rounds of a tuning, the one of a transfer.
-  Paths PartsOf(const TuningPieces& work, std::uint32_t count) const {
+  Paths PartsOf(const TuningWork& work, std::uint32_t count) const {
     Paths paths;
     for (std::uint32_t number = 1; number <= count; ++number)
       paths.push_back(folder_.Path(fmt::format("{}_of_{}", number, count)));
-    const bool has_rounds = work.num_first < work.pieces.groups.size();
+    const bool has_rounds = work.num_first < work.items.groups.size();
     for (int round = 0; round < (has_rounds ? 2 : 1); ++round) {
-      const MergedParts merged = round == 0 ? MergedParts{} : MergeParts(work.pieces, paths);
+      const WorkResults merged = round == 0 ? WorkResults{} : MergeParts(work.items, paths);
       for (std::uint32_t number = 1; number <= count; ++number) {
-        const MissingPieces missing =
-            RunTuningPart(plan_, settings_, work, merged, {number, count}, 1, paths[number - 1]);
-        EXPECT_EQ(missing.num_pieces > 0, has_rounds && round == 0);
+        const MissingItems missing = Part(work, merged, {number, count}, paths[number - 1]);
+        EXPECT_EQ(missing.num_items > 0, has_rounds && round == 0);
       }
     }
     return paths;
   }
-  std::string BytesOf(const TuningPieces& work, const MergedParts& merged) const {
+  std::string BytesOf(const TuningWork& work, const WorkResults& merged) const {
     const TuneResult result =
-        Tune(plan_, settings_, Unreached::kStop, CountsOf(plan_, settings_, work, merged));
+        Tune(plan_, settings_, Unreached::kStop, CountsIn(plan_, settings_, work, merged));
     return Bytes(plan_, result, RocsOf(plan_, EntropiesIn(plan_, work, merged)));
   }
 
@@ -57,61 +62,61 @@ class TuneParts : public testing::Test {
 };
 
 TEST_F(TuneParts, OfAnyNumberInAnyOrderGiveTheBytesOfOneMachine) {
-  const TuneResult one = Tune(plan_, settings_, Unreached::kStop, 2);
+  const TuneResult one = TuneInMemory(plan_, settings_, Unreached::kStop, 2);
   ASSERT_TRUE(one.choice.setting.has_value());
   const std::vector<EntropyRoc> rocs =
-      MeasureEntropyRocs(plan_, TuningTrials(*plan_.study.tuning).verify, 2, nullptr);
+      RocsOf(plan_, MeasureEntropies(plan_, TuningTrials(*plan_.study.tuning).verify));
   ASSERT_FALSE(rocs.empty());
   const std::string whole = Bytes(plan_, one, rocs);
-  const TuningPieces work = PiecesOfTuning(plan_);
-  EXPECT_EQ(work.pieces.NumPieces(), 2 * (3 + 5 + 4 + 4 + 4));
+  const TuningWork work = PlanTuningWork(plan_);
+  EXPECT_EQ(work.items.NumItems(), 2 * (3 + 5 + 4 + 4 + 4));
   for (const std::uint32_t count : {1, 7, 64}) {
     Paths paths = PartsOf(work, count);
     for (int order = 0; order < 2; ++order) {
-      EXPECT_EQ(BytesOf(work, MergeParts(work.pieces, paths)), whole) << count << " shards";
+      EXPECT_EQ(BytesOf(work, MergeParts(work.items, paths)), whole) << count << " shards";
       std::ranges::reverse(paths);
     }
     if (count == 1) continue;
     std::filesystem::remove(paths[2]);  // lost, and made again from the others
     Paths others = paths;
     others.erase(others.begin() + 2);
-    const MergedParts lost = MergeParts(work.pieces, others);
-    const MissingPieces missing = MissingIn(work.pieces, lost, 0, work.pieces.groups.size());
+    const WorkResults lost = MergeParts(work.items, others);
+    const MissingItems missing = FindMissingIn(work.items, lost, 0, work.items.groups.size());
     const Shard shard{3, count};
-    EXPECT_EQ(missing.num_pieces, PiecesOf(work.pieces, shard).size());
-    if (missing.num_pieces > 0) {
+    EXPECT_EQ(missing.num_items, ListItems(work.items, shard).size());
+    if (missing.num_items > 0) {
       EXPECT_EQ(missing.shards, std::vector<std::uint32_t>{3});
-      const MissingPieces of_round_one = RunTuningPart(plan_, settings_, work, lost, shard, 1, paths[2]);
-      EXPECT_GT(of_round_one.num_pieces, 0);
-      RunTuningPart(plan_, settings_, work, MergeParts(work.pieces, paths), shard, 1, paths[2]);
+      const MissingItems of_round_one = Part(work, lost, shard, paths[2]);
+      EXPECT_GT(of_round_one.num_items, 0);
+      Part(work, MergeParts(work.items, paths), shard, paths[2]);
     }
-    EXPECT_EQ(BytesOf(work, MergeParts(work.pieces, paths)), whole);
+    EXPECT_EQ(BytesOf(work, MergeParts(work.items, paths)), whole);
   }
 }
 
 TEST_F(TuneParts, OfATransferGiveTheBytesOfOneMachine) {
-  const TransferResult one = MeasureTransfer(plan_, settings_, "", 2);
+  const TransferResult one = MeasureTransferInMemory(plan_, settings_, "", 2);
   const std::string whole = TransferAsTable(plan_, one) + TransferAsJson(plan_, settings_, one);
-  const TuningPieces work = PiecesOfTransfer(plan_);
+  const TuningWork work = PlanTransferWork(plan_);
   for (const std::uint32_t count : {1, 7, 64}) {
-    const MergedParts merged = MergeParts(work.pieces, PartsOf(work, count));
-    EXPECT_EQ(MissingIn(work.pieces, merged, 0, work.num_first).num_pieces, 0);
+    const WorkResults merged = MergeParts(work.items, PartsOf(work, count));
+    EXPECT_EQ(FindMissingIn(work.items, merged, 0, work.num_first).num_items, 0);
     const TransferResult result =
-        MeasureTransfer(plan_, settings_, "", CountsOf(plan_, settings_, work, merged));
+        MeasureTransfer(plan_, settings_, "", CountsIn(plan_, settings_, work, merged));
     EXPECT_EQ(TransferAsTable(plan_, result) + TransferAsJson(plan_, settings_, result), whole);
   }
 }
 
 TEST_F(TuneParts, OfOtherLevelsAreRefused) {
-  const std::string path = PartsOf(PiecesOfTransfer(plan_), 1).front();
+  const std::string path = PartsOf(PlanTransferWork(plan_), 1).front();
   StudyPlan other = plan_;
   other.study.tuning->options.front().levels.back() = "5";
-  EXPECT_TRUE(ThrowsInputError([&] { MergeParts(PiecesOfTransfer(other).pieces, {path}); },
+  EXPECT_TRUE(ThrowsInputError([&] { MergeParts(PlanTransferWork(other).items, {path}); },
                                {path, "tune: mu: 1, 2, 3, 6' there", "tune: mu: 1, 2, 3, 5' here"}));
 }
 
 TEST_F(TuneParts, DamageIsNamed) {
-  const TuningPieces work = PiecesOfTuning(plan_);
+  const TuningWork work = PlanTuningWork(plan_);
   const std::string path = PartsOf(work, 1).front();
   // Whether a change of the first piece of a group is found when it is read.
   const auto is_refused = [&](size_t group, const std::function<void(PartJson*)>& change,
@@ -121,8 +126,8 @@ TEST_F(TuneParts, DamageIsNamed) {
         if (piece["group"] == group && piece["piece"] == 0) change(&piece["result"]);
       }
     });
-    return ThrowsInputError([&] { BytesOf(work, MergeParts(work.pieces, {changed})); },
-                            {changed, "damaged: block 0 of " + work.pieces.groups[group].name, word});
+    return ThrowsInputError([&] { BytesOf(work, MergeParts(work.items, {changed})); },
+                            {changed, "damaged: block 0 of " + work.items.groups[group].name, word});
   };
   const auto erase = [](PartJson* result) { result->erase(0); };
   EXPECT_TRUE(is_refused(0, erase, "no list of 4"));

@@ -1,4 +1,4 @@
-#include "experiments/audit/validity/map_part.h"
+#include "experiments/audit/validity/map_work.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kTrialsOfPiece = 100;
+constexpr std::uint32_t kTrialsOfItem = 100;
 
 constexpr std::array<double ValidityTrial::*, 7> kNumbers = {
     &ValidityTrial::f_nees,       &ValidityTrial::pose_nees,          &ValidityTrial::fresh_point_d2,
@@ -22,9 +22,9 @@ constexpr std::array<double ValidityTrial::*, 7> kNumbers = {
 
 size_t NumMapCells(const MapWork& work) { return static_cast<size_t>(NumCells(work.map)); }
 
-TrialRange TrialsOfPiece(const MapWork& work, const PiecePlace& place) {
-  const auto first = static_cast<std::uint32_t>(place.piece) * kTrialsOfPiece;
-  return {first, std::min(first + kTrialsOfPiece, static_cast<std::uint32_t>(work.map.trials))};
+TrialRange FindTrialsOfItem(const MapWork& work, const ItemPlace& place) {
+  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
+  return {first, std::min(first + kTrialsOfItem, static_cast<std::uint32_t>(work.map.trials))};
 }
 
 std::string TrialsAsJson(const std::vector<ValidityTrial>& trials) {
@@ -65,15 +65,15 @@ void AddCovered(const Json& json, std::int64_t most, CoveredCounts* sum) {
   }
 }
 
-std::string ComputePiece(const MapWork& work, const PiecePlace& place) {
+std::string ComputeMapItem(const MapWork& work, const ItemPlace& place) {
   const size_t num_cells = NumMapCells(work);
   if (place.group < num_cells) {
-    return TrialsAsJson(RunTrialsOfCell(work.map, static_cast<std::uint32_t>(place.group),
-                                        TrialsOfPiece(work, place), nullptr));
+    return TrialsAsJson(
+        RunTrialsOfCell(work.map, static_cast<std::uint32_t>(place.group), FindTrialsOfItem(work, place)));
   }
-  const auto sample = static_cast<std::uint32_t>(place.piece);
+  const auto sample = static_cast<std::uint32_t>(place.item);
   return Json(CountCovered(work.reference.value(), static_cast<std::uint32_t>(place.group - num_cells),
-                           {sample, sample + 1}, nullptr))
+                           sample))
       .dump();
 }
 
@@ -89,9 +89,9 @@ std::string Identity(const MapWork& work) {
 
 }  // namespace
 
-PiecePlan PiecesOfMap(const MapWork& work) {
-  PiecePlan plan{"map", "block", Identity(work), {}};
-  const auto num_blocks = (static_cast<size_t>(work.map.trials) + kTrialsOfPiece - 1) / kTrialsOfPiece;
+WorkPlan PlanMapWork(const MapWork& work) {
+  WorkPlan plan{"map", "block", Identity(work), {}};
+  const auto num_blocks = (static_cast<size_t>(work.map.trials) + kTrialsOfItem - 1) / kTrialsOfItem;
   for (std::uint32_t cell = 0; cell < NumMapCells(work); ++cell)
     plan.groups.push_back({CellInWords(work.map, cell), num_blocks});
   if (!work.reference) return plan;
@@ -102,28 +102,27 @@ PiecePlan PiecesOfMap(const MapWork& work) {
   return plan;
 }
 
-void RunMapPart(const MapWork& work, const Shard& shard, const std::string& path) {
-  const PiecePlan plan = PiecesOfMap(work);
-  PartInWork part(plan, shard, path);
-  part.DoEach(PiecesOf(plan, shard), [&](const PiecePlace& place) { return ComputePiece(work, place); });
+void GetMapResults(const MapWork& work, Runner* runner) {
+  runner->Get(ListItems(runner->plan(), runner->shard()),
+              [&](const ItemPlace& place) { return ComputeMapItem(work, place); });
 }
 
-TrialsOfCell TrialsIn(const MapWork& work, const PiecePlan& pieces, const MergedParts& merged) {
+TrialsOfCell TrialsIn(const MapWork& work, const WorkPlan& plan, const WorkResults& results) {
   return [&](std::uint32_t cell) {
     std::vector<ValidityTrial> trials;
-    ReadEach(pieces, merged, cell, cell + 1, [&](const PiecePlace& place, const std::string& json) {
-      const TrialRange range = TrialsOfPiece(work, place);
+    ReadResults(plan, results, cell, cell + 1, [&](const ItemPlace& place, const std::string& json) {
+      const TrialRange range = FindTrialsOfItem(work, place);
       AddTrials(ParsePiece(json), range.end - range.first, &trials);
     });
     return trials;
   };
 }
 
-CountsOfCell CountsIn(const MapWork& work, const PiecePlan& pieces, const MergedParts& merged) {
+CountsOfCell CountsIn(const MapWork& work, const WorkPlan& plan, const WorkResults& results) {
   return [&](std::uint32_t cell) {
     CoveredCounts sum{};
     const size_t group = NumMapCells(work) + cell;
-    ReadEach(pieces, merged, group, group + 1, [&](const PiecePlace&, const std::string& json) {
+    ReadResults(plan, results, group, group + 1, [&](const ItemPlace&, const std::string& json) {
       AddCovered(ParsePiece(json), work.reference->num_draws, &sum);
     });
     return sum;

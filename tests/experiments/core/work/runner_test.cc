@@ -1,11 +1,12 @@
 // A work in shards: every piece once, whatever was stopped, merged twice or in groups; what does not belong
 // together is refused.
-#include "experiments/core/work/divided_work.h"
+#include "experiments/core/work/runner.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <functional>
@@ -24,30 +25,30 @@ namespace {
 using Paths = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
 
-PiecePlan Plan() { return {"knitting", "row", "wool: red\n", {{"sleeve", 9}, {"collar", 2}, {"front", 20}}}; }
+WorkPlan Plan() { return {"knitting", "row", "wool: red\n", {{"sleeve", 9}, {"collar", 2}, {"front", 20}}}; }
 
-std::string Knit(const PiecePlace& place) { return fmt::format("[{},{}]", place.group, place.piece); }
+std::string Knit(const ItemPlace& place) { return fmt::format("[{},{}]", place.group, place.item); }
 
 // What was done, in order; a piece that is done twice is in it twice.
-std::string AllOf(const MergedParts& merged) {
+std::string AllOf(const WorkResults& merged) {
   std::string text;
-  ReadEach(Plan(), merged, 0, 3, [&](const PiecePlace& place, const std::string& json) {
+  ReadResults(Plan(), merged, 0, 3, [&](const ItemPlace& place, const std::string& json) {
     EXPECT_EQ(json, Knit(place));
     text += json;
   });
   return text;
 }
 
-class DividedWork : public testing::Test {
+class RunnerOfShards : public testing::Test {
  protected:
   std::string Path(std::uint32_t number, std::uint32_t count) const {
     return folder_.Path(fmt::format("{}_of_{}.json", number, count));
   }
   // The shard's part; the work is stopped after `most` pieces.
   std::string Part(std::uint32_t number, std::uint32_t count, int most = 1000,
-                   const PiecePlan& plan = Plan()) const {
-    PartInWork part(plan, {number, count}, Path(number, count));
-    part.DoEach(PiecesOf(plan, {number, count}), [&](const PiecePlace& place) {
+                   const WorkPlan& plan = Plan()) const {
+    Runner runner = Runner::OfShard(plan, {number, count}, Path(number, count), 1);
+    runner.Get(ListItems(plan, {number, count}), [&](const ItemPlace& place) {
       if (most-- == 0) throw Stopped("now");
       return Knit(place);
     });
@@ -60,27 +61,28 @@ class DividedWork : public testing::Test {
   }
   std::string Joined(const Paths& paths, const std::string& name) const {
     const std::string path = folder_.Path(name);
-    WritePart(path, JoinParts(paths));
+    const auto joined = JoinParts(paths);
+    WritePart(path, joined, joined.results);
     return path;
   }
-  static bool IsRefused(const Paths& paths, const Paths& words, const PiecePlan& plan = Plan()) {
+  static bool IsRefused(const Paths& paths, const Paths& words, const WorkPlan& plan = Plan()) {
     return ThrowsInputError([&] { MergeParts(plan, paths); }, words);
   }
 
   const TempFolder folder_;
 };
 
-TEST_F(DividedWork, AnyNumberOrderAndGroupingHoldEveryPieceOnce) {
+TEST_F(RunnerOfShards, AnyNumberOrderAndGroupingHoldEveryPieceOnce) {
   std::string whole;
-  for (const PiecePlace& place : PiecesOf(Plan(), {})) whole += Knit(place);
-  EXPECT_EQ(Plan().NumPieces(), 31);
+  for (const ItemPlace& place : ListItems(Plan(), {})) whole += Knit(place);
+  EXPECT_EQ(Plan().NumItems(), 31);
   for (const std::uint32_t count : {1, 2, 7, 64}) {
     Paths paths = Parts(count);
     for (int order = 0; order < 3; ++order) {
-      const MergedParts merged = MergeParts(Plan(), paths);
+      const WorkResults merged = MergeParts(Plan(), paths);
       EXPECT_EQ(AllOf(merged), whole);
       EXPECT_EQ(merged.num_shards, count);
-      EXPECT_EQ(MissingIn(Plan(), merged, 0, 3).num_pieces, 0);
+      EXPECT_EQ(FindMissingIn(Plan(), merged, 0, 3).num_items, 0);
       std::ranges::reverse(paths);
       std::ranges::rotate(paths, paths.begin() + count / 3);
     }
@@ -92,82 +94,82 @@ TEST_F(DividedWork, AnyNumberOrderAndGroupingHoldEveryPieceOnce) {
   }
 }
 
-TEST_F(DividedWork, TheGroupsThatAreAskedForAreReadAlone) {
-  const MergedParts merged = MergeParts(Plan(), Parts(2));
+TEST_F(RunnerOfShards, TheGroupsThatAreAskedForAreReadAlone) {
+  const WorkResults merged = MergeParts(Plan(), Parts(2));
   int num_rows = 0;
-  ReadEach(Plan(), merged, 1, 2, [&](const PiecePlace& place, const std::string&) {
+  ReadResults(Plan(), merged, 1, 2, [&](const ItemPlace& place, const std::string&) {
     EXPECT_EQ(place.group, 1u);
     ++num_rows;
   });
   EXPECT_EQ(num_rows, 2);
 }
 
-TEST(PiecePlan, EndsWithTheLastPieceOfEachGroup) {
+TEST(WorkPlan, EndsWithTheLastItemOfEachGroup) {
   EXPECT_TRUE(Plan().Has({0, 8}));
   EXPECT_FALSE(Plan().Has({0, 9}));
   EXPECT_TRUE(Plan().Has({2, 19}));
   EXPECT_FALSE(Plan().Has({3, 0}));
 }
 
-TEST_F(DividedWork, AGroupIsDividedEvenlyToWithinOnePiece) {
+TEST_F(RunnerOfShards, AGroupIsDividedEvenlyToWithinOnePiece) {
   for (const std::uint32_t count : {1, 4, 7, 64}) {
     for (size_t group = 0; group < 3; ++group) {
-      const size_t num_pieces = Plan().groups[group].num_pieces;
+      const size_t num_items = Plan().groups[group].num_items;
       for (std::uint32_t number = 1; number <= count; ++number) {
-        const size_t has = PiecesOf(Plan(), {number, count}, group, group + 1).size();
-        EXPECT_GE(has, num_pieces / count);
-        EXPECT_LE(has, (num_pieces + count - 1) / count);
+        const size_t has = ListItems(Plan(), {number, count}, group, group + 1).size();
+        EXPECT_GE(has, num_items / count);
+        EXPECT_LE(has, (num_items + count - 1) / count);
       }
     }
   }
 }
 
-TEST_F(DividedWork, WhatIsStoppedIsKeptAndGoesOn) {
-  const size_t num_pieces = PiecesOf(Plan(), {1, 2}).size();
-  for (int done = 0; done + 3 <= static_cast<int>(num_pieces); done += 3) {
+TEST_F(RunnerOfShards, WhatIsStoppedIsKeptAndGoesOn) {
+  const size_t num_items = ListItems(Plan(), {1, 2}).size();
+  for (int done = 0; done + 3 <= static_cast<int>(num_items); done += 3) {
     EXPECT_THROW(Part(1, 2, 3), Stopped);
     EXPECT_EQ(PartAsJson(Path(1, 2)).at("pieces").size(), static_cast<size_t>(done + 3));
   }
   Part(1, 2);
-  EXPECT_EQ(PartAsJson(Path(1, 2)).at("pieces").size(), num_pieces);
+  EXPECT_EQ(PartAsJson(Path(1, 2)).at("pieces").size(), num_items);
   EXPECT_NO_THROW(Part(1, 2, 0));  // nothing is left
   try {
     Part(2, 2, 4);
     FAIL();
   } catch (const Stopped& stopped) {
     const std::string words = stopped.what();
-    EXPECT_NE(words.find(fmt::format("4 of at most {} rows", 31 - num_pieces)), std::string::npos) << words;
+    EXPECT_NE(words.find(fmt::format("4 of at most {} rows", 31 - num_items)), std::string::npos) << words;
   }
 }
 
-TEST_F(DividedWork, ARequestStopsItBetweenTwoPieces) {
+TEST_F(RunnerOfShards, ARequestStopsItBetweenTwoPieces) {
   StopOnSignals stop;
-  PartInWork part(Plan(), {1, 1}, Path(1, 1));
-  EXPECT_THROW(part.DoEach(PiecesOf(Plan(), {}),
-                           [](const PiecePlace& place) {
-                             if (place == PiecePlace{0, 2}) std::raise(SIGTERM);
-                             return Knit(place);
-                           }),
+  Runner runner = Runner::OfShard(Plan(), {1, 1}, Path(1, 1), 1);
+  EXPECT_THROW(runner.Get(ListItems(Plan(), {}),
+                          [](const ItemPlace& place) {
+                            if (place == ItemPlace{0, 2}) std::raise(SIGTERM);
+                            return Knit(place);
+                          }),
                Stopped);
   EXPECT_EQ(PartAsJson(Path(1, 1)).at("pieces").size(), 3);
   const StopOnSignals forgets_the_signal;
 }
 
-TEST_F(DividedWork, MissingShardsAreNamed) {
+TEST_F(RunnerOfShards, MissingShardsAreNamed) {
   Paths paths = Parts(7);
   paths.erase(paths.begin() + 4);
   paths[1] = ChangedPart(paths[1], [](Json* part) { part->at("pieces").erase(0); });
-  const MergedParts merged = MergeParts(Plan(), paths);
-  const MissingPieces missing = MissingIn(Plan(), merged, 0, 3);
-  EXPECT_EQ(missing.num_pieces, 1 + PiecesOf(Plan(), {5, 7}).size());
+  const WorkResults merged = MergeParts(Plan(), paths);
+  const MissingItems missing = FindMissingIn(Plan(), merged, 0, 3);
+  EXPECT_EQ(missing.num_items, 1 + ListItems(Plan(), {5, 7}).size());
   EXPECT_EQ(missing.shards, (std::vector<std::uint32_t>{2, 5}));
   // Of one group alone.
-  EXPECT_EQ(MissingIn(Plan(), merged, 2, 3).num_pieces, PiecesOf(Plan(), {5, 7}, 2, 3).size());
+  EXPECT_EQ(FindMissingIn(Plan(), merged, 2, 3).num_items, ListItems(Plan(), {5, 7}, 2, 3).size());
   // Of nothing at all.
-  EXPECT_EQ(MissingIn(Plan(), MergeParts(Plan(), {}), 0, 3).num_pieces, 31);
+  EXPECT_EQ(FindMissingIn(Plan(), MergeParts(Plan(), {}), 0, 3).num_items, 31);
 }
 
-TEST_F(DividedWork, WhatDoesNotBelongTogetherIsRefused) {
+TEST_F(RunnerOfShards, WhatDoesNotBelongTogetherIsRefused) {
   const std::string first = Part(1, 3), second = Part(2, 3);
   const auto changed = [&](const std::string& key, const std::string& value) {
     return ChangedPart(first, [&](Json* part) { part->at(key) = value; });
@@ -184,53 +186,53 @@ TEST_F(DividedWork, WhatDoesNotBelongTogetherIsRefused) {
   const std::string of_seven = Part(1, 7);
   EXPECT_TRUE(IsRefused({second, of_seven}, {of_seven, "number of shards, '7' there, '3' here"}));
 
-  PiecePlan wool = Plan(), longer = Plan();
+  WorkPlan wool = Plan(), longer = Plan();
   wool.identity = "wool: blue\n";
-  longer.groups[0].num_pieces = 10;
+  longer.groups[0].num_items = 10;
   EXPECT_TRUE(IsRefused({first}, {first, "another knitting", "'wool: red' there, 'wool: blue' here"}, wool));
   EXPECT_TRUE(IsRefused({first}, {"'sleeve: 9 rows' there, 'sleeve: 10 rows' here"}, longer));
   EXPECT_TRUE(ThrowsInputError([&] { Part(1, 3, 1000, wool); }, {first, "wool: red"}));
   const std::string before = PartAsJson(second).dump();
   EXPECT_TRUE(ThrowsInputError(
       [&] {
-        PartInWork(Plan(), {1, 3}, second);
+        Runner::OfShard(Plan(), {1, 3}, second, 1);
       },
       {second, "another shard", "'2/3' there, '1/3' here"}));
   EXPECT_TRUE(ThrowsInputError(
       [&] {
-        PartInWork(Plan(), {1, 3}, changed("instruction_set", "abacus"));
+        Runner::OfShard(Plan(), {1, 3}, changed("instruction_set", "abacus"), 1);
       },
       {machine, "another instruction set, 'abacus' there"}));
   EXPECT_EQ(PartAsJson(second).dump(), before);
 }
 
-TEST_F(DividedWork, APieceThatIsThereTwiceCountsOnceOrIsRefused) {
+TEST_F(RunnerOfShards, APieceThatIsThereTwiceCountsOnceOrIsRefused) {
   const std::string part = Part(1, 3);
   const std::string later = ChangedPart(
       part, [](Json* json) { json->at("pieces").at(0).at("seconds") = 17.5; });  // its time may differ
-  EXPECT_EQ(MergeParts(Plan(), {part, later}).results.size(), PiecesOf(Plan(), {1, 3}).size());
+  EXPECT_EQ(MergeParts(Plan(), {part, later}).results.size(), ListItems(Plan(), {1, 3}).size());
   const std::string other = ChangedPart(part, [](Json* json) { json->at("pieces").at(0).at("result") = 5; });
-  const std::string row = fmt::format("row {} of sleeve", PiecesOf(Plan(), {1, 3}).front().piece);
+  const std::string row = fmt::format("row {} of sleeve", ListItems(Plan(), {1, 3}).front().item);
   EXPECT_TRUE(IsRefused({part, other}, {other, row, "is not equal to that of", part}));
   EXPECT_TRUE(ThrowsInputError([&] { JoinParts({part, other}); }, {other, "not equal", part}));
 }
 
 // Four pieces of 1, 2, 3 and 6 s of the three shards 1, 2, 3 and 1 of a group: 7, 2 and 3 s, 4 in the mean.
-TEST_F(DividedWork, SaysWhatThePiecesTook) {
-  MergedParts merged{3, {}, {}};
-  EXPECT_EQ(CostsInWords(Plan(), merged), "the pieces took no time");
+TEST_F(RunnerOfShards, SaysWhatThePiecesTook) {
+  WorkResults merged{3, {}, {}, ""};
+  EXPECT_EQ(DescribeCosts(Plan(), merged), "the pieces took no time");
   const double seconds[] = {1.0, 2.0, 3.0, 6.0};
   for (size_t piece = 0; piece < 4; ++piece) {
-    EXPECT_EQ(ShardOfPiece({0, piece}, 3), piece % 3 + 1);
+    EXPECT_EQ(FindShardOfItem({0, piece}, 3), piece % 3 + 1);
     merged.results[{0, piece}].seconds = seconds[piece];
   }
   EXPECT_EQ(
-      CostsInWords(Plan(), merged),
+      DescribeCosts(Plan(), merged),
       "processor time 12 s; the slowest of 3 shards 1.75 times the mean, the slowest row 1.50 times (row "
       "3 of sleeve)");
 }
 
-TEST_F(DividedWork, DamageIsNamed) {
+TEST_F(RunnerOfShards, DamageIsNamed) {
   const std::string part = Part(1, 2);
   const auto is_refused = [&](const std::function<void(Json*)>& change, const std::string& word) {
     return IsRefused({ChangedPart(part, change)}, {part, word});
@@ -255,8 +257,8 @@ TEST_F(DividedWork, DamageIsNamed) {
   EXPECT_TRUE(is_refused([](Json* p) { p->at("work") = Json::array({Json::array()}); }, "describes no part"));
   EXPECT_TRUE(ThrowsInputError(
       [&] {
-        ReadEach(Plan(), MergeParts(Plan(), {part}), 1, 3,
-                 [](const PiecePlace&, const std::string&) { throw std::invalid_argument("a hole"); });
+        ReadResults(Plan(), MergeParts(Plan(), {part}), 1, 3,
+                    [](const ItemPlace&, const std::string&) { throw std::invalid_argument("a hole"); });
       },
       {part, "damaged", "of collar", "a hole"}));
 
@@ -272,8 +274,96 @@ TEST_F(DividedWork, DamageIsNamed) {
   EXPECT_TRUE(IsRefused({folder_.Path("none.json")}, {"none.json", "no such part"}));
 }
 
+// A command on one machine, which keeps its results until it is done.
+class RunnerWithCheckpoint : public testing::Test {
+ protected:
+  // Calls of `compute` until it is stopped, or throws what `end` says.
+  int Run(
+      int num_threads, const std::function<void(int call)>& end = [](int) {}) {
+    Runner runner = Runner::WithCheckpoint(Plan(), path_, num_threads);
+    std::atomic<int> num_calls = 0;
+    try {
+      runner.Get(ListItems(Plan(), {}), [&](const ItemPlace& place) {
+        end(++num_calls);
+        return Knit(place);
+      });
+    } catch (const std::exception& error) {
+      message_ = error.what();
+      return num_calls;
+    }
+    all_ = AllOf(runner.results());
+    runner.RemoveCheckpoint();
+    return num_calls;
+  }
+  size_t NumKept() const { return ReadPart(path_).results.size(); }
+
+  const TempFolder folder_;
+  const std::string path_ = folder_.Path("unfinished.part");
+  std::string message_, all_;
+};
+
+TEST_F(RunnerWithCheckpoint, GivesTheSameOnAnyNumberOfThreadsAndLeavesNothing) {
+  for (const int num_threads : {1, 2, 5}) {
+    EXPECT_EQ(Run(num_threads), 31);
+    std::string whole;
+    for (const ItemPlace& place : ListItems(Plan(), {})) whole += Knit(place);
+    EXPECT_EQ(all_, whole);
+    EXPECT_EQ(folder_.NumEntries(), 0);
+  }
+}
+
+TEST_F(RunnerWithCheckpoint, KeepsWhatIsDoneWhenItIsStoppedAndComputesNothingTwice) {
+  {
+    const StopOnSignals stop;
+    EXPECT_EQ(Run(1,
+                  [](int call) {
+                    if (call == 5) std::raise(SIGTERM);
+                  }),
+              5);
+  }
+  EXPECT_EQ(NumKept(), 5u);
+  EXPECT_NE(message_.find(path_ + " has 5 of at most 31 rows, the same command goes on"), std::string::npos)
+      << message_;
+  const StopOnSignals forgets_the_signal;
+  EXPECT_EQ(Run(2), 26);
+  EXPECT_EQ(folder_.NumEntries(), 0);
+}
+
+TEST_F(RunnerWithCheckpoint, KeepsWhatIsDoneBeforeAnError) {
+  EXPECT_EQ(Run(1,
+                [](int call) {
+                  if (call == 8) throw InputError("no wool");
+                }),
+            8);
+  EXPECT_EQ(message_, "no wool");
+  EXPECT_EQ(NumKept(), 7u);
+  EXPECT_EQ(Run(1), 24);
+}
+
+TEST_F(RunnerWithCheckpoint, RefusesOtherWorkAndWhatIsDamaged) {
+  Run(1, [](int call) {
+    if (call == 8) throw InputError("no wool");
+  });
+  WorkPlan blue = Plan();
+  blue.identity = "wool: blue\n";
+  const auto open = [&](const WorkPlan& plan) {
+    return [=, this] { Runner::WithCheckpoint(plan, path_, 1); };
+  };
+  EXPECT_TRUE(ThrowsInputError(open(blue), {path_, "'wool: red' there, 'wool: blue' here",
+                                            "remove the file or choose another --out"}));
+  WorkPlan sewing = Plan();
+  sewing.work = "sewing";
+  EXPECT_TRUE(ThrowsInputError(open(sewing), {path_, "another work, 'knitting' there", "choose another"}));
+  EXPECT_EQ(NumKept(), 7u);
+  std::string bytes = ReadBytes(path_);
+  bytes[bytes.size() - 5] ^= 1;
+  folder_.Write("unfinished.part", bytes);
+  EXPECT_TRUE(
+      ThrowsInputError(open(Plan()), {path_, "damaged", "remove the file and run the command again"}));
+}
+
 // As the last version wrote it: one JSON object without checksums.
-TEST_F(DividedWork, AnEarlierFormatIsRefusedByName) {
+TEST_F(RunnerOfShards, AnEarlierFormatIsRefusedByName) {
   const std::string old =
       folder_.Write("old.json", "{\"format\": \"rcme part 1\", \"work\": \"knitting\", \"pieces\": [\n]}\n");
   EXPECT_TRUE(IsPart(old));
@@ -287,8 +377,9 @@ TEST(PartFile, EveryByteIsProtected) {
                   {1, 2},
                   {"rcme 1", "AVX2"},
                   {{{0, 1}, {"[0,7,3,0]", 0.5}}, {{1, 0}, {"[1]", 1.5}}}};
-  const std::string text = PartAsText(part);
-  EXPECT_EQ(PartAsText(ParsePart(text, "part")), text);
+  const std::string text = PartAsText(part, part.results);
+  const Part read = ParsePart(text, "part");
+  EXPECT_EQ(PartAsText(read, read.results), text);
   int num_refused = 0;
   for (size_t i = 0; i < text.size(); ++i) {
     for (const int flip : {1, 2, 8, 0x55}) {
@@ -307,7 +398,7 @@ TEST(PartFile, IsNotFollowedFar) {
   };
   EXPECT_TRUE(
       is_refused(std::string(kMaxPartLineBytes + 1, 'x'), "1: the line is too long; at most 67108864 bytes"));
-  const std::string first = PartAsText({"knitting", "", {1, 1}, {"", ""}, {}});
+  const std::string first = PartAsText({"knitting", "", {1, 1}, {"", ""}, {}}, {});
   EXPECT_TRUE(is_refused(first + "{" + std::string(kMaxPieceBytes, '['),
                          "2: the piece is too long; at most 8388608 bytes"));
   EXPECT_THROW(ParsePiece(std::string(1000, '[') + std::string(1000, ']')), std::invalid_argument);
@@ -332,11 +423,11 @@ TEST(PartFile, KeepsEveryNumberToItsLastBit) {
 // A study may be named in any bytes.
 TEST(PartFile, HoldsTextThatIsNoUtf8) {
   const TempFolder folder;
-  PiecePlan plan = Plan();
+  WorkPlan plan = Plan();
   plan.identity =
       "wool: r\xf6"
       "d\n";
-  PartInWork(plan, {}, folder.Path("part.json")).DoEach(PiecesOf(plan, {}), Knit);
+  Runner::OfShard(plan, {}, folder.Path("part.json"), 1).Get(ListItems(plan, {}), Knit);
   EXPECT_EQ(MergeParts(plan, {folder.Path("part.json")}).results.size(), 31);
 }
 

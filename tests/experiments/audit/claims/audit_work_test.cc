@@ -1,5 +1,5 @@
 // An audit in shards gives the bytes of one machine's; what does not belong together is refused.
-#include "experiments/audit/claims/audit_part.h"
+#include "experiments/audit/claims/audit_work.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,12 +14,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "experiments/core/files/file_output.h"
 #include "experiments/audit/claims/audit_output.h"
 #include "experiments/audit/claims/outcomes_json.h"
 #include "experiments/audit/claims/trial_blocks.h"
+#include "experiments/core/files/file_output.h"
 #include "tests/test_support/changed_part.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/in_memory.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
@@ -105,8 +106,8 @@ class AuditParts : public testing::Test {
   std::string Part(std::uint32_t number, std::uint32_t count, bool is_first = true,
                    const AuditOptions& options = Options()) const {
     const Audit plan = PlanAudit(Claims(), options);
-    RunAuditPart(plan, is_first ? FirstRound(plan) : ReadRound(plan, RoundPath()), {number, count},
-                 PathOf(number, count));
+    Runner runner = Runner::OfShard(PlanAuditBlocks(plan), {number, count}, PathOf(number, count), 1);
+    GetAuditRound(plan, is_first ? FirstRound(plan) : ReadRound(plan, RoundPath()), &runner);
     return PathOf(number, count);
   }
   // Of all shards, all rounds.
@@ -115,7 +116,7 @@ class AuditParts : public testing::Test {
     for (std::uint32_t number = 1; number <= count; ++number) paths.push_back(Part(number, count));
     for (int num_rounds = 1; num_rounds <= 12; ++num_rounds) {
       const MergedAudit merged = MergeAuditParts(Claims(), Options(), paths);
-      if (merged.missing.num_pieces == 0) {
+      if (merged.missing.num_items == 0) {
         EXPECT_GE(num_rounds, 4);
         return paths;
       }
@@ -133,7 +134,7 @@ class AuditParts : public testing::Test {
 };
 
 TEST_F(AuditParts, OfAnyNumberInAnyOrderGiveTheSameBytes) {
-  const Audit one = RunAudit(Claims(), Options());
+  const Audit one = RunAuditInMemory(Claims(), Options());
   const std::string whole = Bytes(one);
   EXPECT_NE(whole.find("nan"), std::string::npos);  // what JSON has no numbers for is tried too
   EXPECT_NE(whole.find("does not hold"), std::string::npos);
@@ -145,7 +146,7 @@ TEST_F(AuditParts, OfAnyNumberInAnyOrderGiveTheSameBytes) {
     Paths paths = Parts(count);
     for (int order = 0; order < 4; ++order) {
       const MergedAudit merged = MergeAuditParts(Claims(), Options(), paths);
-      EXPECT_EQ(merged.missing.num_pieces, 0);
+      EXPECT_EQ(merged.missing.num_items, 0);
       EXPECT_EQ(Bytes(merged.audit), whole) << count << " shards, order " << order;
       if (order == 1) std::ranges::reverse(paths);
       std::ranges::rotate(paths, paths.begin() + 1 % static_cast<std::ptrdiff_t>(count));
@@ -155,7 +156,7 @@ TEST_F(AuditParts, OfAnyNumberInAnyOrderGiveTheSameBytes) {
 
 TEST_F(AuditParts, FewTrialsAreRunForNothing) {
   std::int64_t needed = 0, least = 0;
-  for (const ClaimResult& claim : RunAudit(Claims(), Options()).results) {
+  for (const ClaimResult& claim : RunAuditInMemory(Claims(), Options()).results) {
     for (const CheckResult& check : claim.checks) {
       needed += check.num_trials;
       least += check.num_trials < 5'000 ? check.num_trials : 0;
@@ -170,21 +171,21 @@ TEST_F(AuditParts, FewTrialsAreRunForNothing) {
 
 TEST_F(AuditParts, EveryBlockIsInOneShardAndThoseOfACheckAreDividedEvenly) {
   const Audit plan = PlanAudit(Claims(), Options());
-  const PiecePlan pieces = PiecesOfAudit(plan);
+  const WorkPlan pieces = PlanAuditBlocks(plan);
   EXPECT_EQ(pieces.groups.size(), PlacesOf(plan).size());
-  EXPECT_EQ(pieces.groups.at(9).num_pieces, 0);  // not possible
+  EXPECT_EQ(pieces.groups.at(9).num_items, 0);  // not possible
   for (const std::uint32_t count : {1, 3, 7, 64}) {
-    std::set<PiecePlace> seen;
+    std::set<ItemPlace> seen;
     for (std::uint32_t number = 1; number <= count; ++number) {
       size_t num_of_first = 0;
-      for (const PiecePlace& place : PiecesOf(pieces, {number, count})) {
+      for (const ItemPlace& place : ListItems(pieces, {number, count})) {
         EXPECT_TRUE(seen.insert(place).second);
         num_of_first += place.group == 0;
       }
       EXPECT_GE(num_of_first, 64 / count);
       EXPECT_LE(num_of_first, (64 + count - 1) / count);
     }
-    EXPECT_EQ(seen.size(), pieces.NumPieces());
+    EXPECT_EQ(seen.size(), pieces.NumItems());
   }
 }
 
@@ -249,7 +250,7 @@ TEST_F(AuditParts, MissingShardsAreNamed) {
   const MergedAudit lost = MergeAuditParts(Claims(), Options(), {paths[0], paths[2]});
   EXPECT_EQ(lost.missing.shards, std::vector<std::uint32_t>{2});
   Part(2, 3, false);
-  EXPECT_EQ(MergeAuditParts(Claims(), Options(), paths).missing.num_pieces, 0);
+  EXPECT_EQ(MergeAuditParts(Claims(), Options(), paths).missing.num_items, 0);
 }
 
 TEST_F(AuditParts, APartGoesOnWhereItWas) {

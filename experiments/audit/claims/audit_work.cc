@@ -1,14 +1,18 @@
-#include "experiments/audit/claims/audit_part.h"
+#include "experiments/audit/claims/audit_work.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <stdexcept>
 
 #include "estimator/instruction_set.h"
-#include "experiments/core/text/program_name.h"
 #include "experiments/audit/claims/outcomes_json.h"
 #include "experiments/audit/claims/trial_blocks.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/text/program_name.h"
+#include "experiments/core/work/for_each_index.h"
+#include "experiments/core/work/progress.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -23,18 +27,18 @@ std::string Identity(const Audit& plan) {
   return identity + options.study_identity;
 }
 
-PiecePlan PlanOfChecks(const Audit& plan, const std::string& work, const std::string& piece_name,
-                       const AuditRound& num_pieces) {
-  PiecePlan pieces{work, piece_name, Identity(plan), {}};
+WorkPlan PlanOfChecks(const Audit& plan, const std::string& work, const std::string& item_name,
+                      const AuditRound& num_items) {
+  WorkPlan items{work, item_name, Identity(plan), {}};
   for (const CheckPlace& place : PlacesOf(plan)) {
-    pieces.groups.push_back({fmt::format("check {} of claim {}", place.check, plan.claims[place.claim].id),
-                             num_pieces[pieces.groups.size()]});
+    items.groups.push_back({fmt::format("check {} of claim {}", place.check, plan.claims[place.claim].id),
+                            num_items[items.groups.size()]});
   }
-  return pieces;
+  return items;
 }
 
 // A round is kept as a part is, with one piece for each check: how many blocks it needs.
-PiecePlan PiecesOfRound(const Audit& plan) {
+WorkPlan PlanRound(const Audit& plan) {
   return PlanOfChecks(plan, "round of an audit", "number", AuditRound(PlacesOf(plan).size(), 1));
 }
 
@@ -46,8 +50,8 @@ std::vector<TrialBlocks> BlocksOf(const Audit& plan) {
 }
 
 // The pieces that a round needs.
-std::vector<PiecePlace> PiecesOf(const AuditRound& round) {
-  std::vector<PiecePlace> places;
+std::vector<ItemPlace> ListItems(const AuditRound& round) {
+  std::vector<ItemPlace> places;
   for (size_t group = 0; group < round.size(); ++group) {
     for (size_t block = 0; block < round[group]; ++block) places.push_back({group, block});
   }
@@ -57,12 +61,12 @@ std::vector<PiecePlace> PiecesOf(const AuditRound& round) {
 // Counts the blocks of a check that the parts hold, as far as they lead without a gap and are needed: its
 // result, and how many blocks it needs.
 size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks& blocks, size_t group,
-                   const PiecePlan& pieces, const MergedParts& parts, CheckResult* result) {
+                   const WorkPlan& pieces, const WorkResults& parts, CheckResult* result) {
   const Check& check = CheckAt(plan, place);
   CheckDecision decision(check, RunOf(plan, place));
   size_t num_counted = 0;
-  ReadEach(pieces, parts, group, group + 1, [&](const PiecePlace& piece, const std::string& json) {
-    if (piece.piece != num_counted || decision.IsDone()) return;
+  ReadResults(pieces, parts, group, group + 1, [&](const ItemPlace& piece, const std::string& json) {
+    if (piece.item != num_counted || decision.IsDone()) return;
     const std::int64_t num_trials = blocks.End(num_counted) - blocks.Begin(num_counted);
     for (const Outcome& outcome : OutcomesFrom(check, json, static_cast<size_t>(num_trials)))
       decision.Add(outcome);
@@ -74,7 +78,37 @@ size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks
 
 }  // namespace
 
-PiecePlan PiecesOfAudit(const Audit& plan) {
+WorkPlan PlanAuditChecks(const Audit& plan) {
+  return PlanOfChecks(plan, "audit on one machine", "check", AuditRound(PlacesOf(plan).size(), 1));
+}
+
+Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runner* runner) {
+  Audit audit = PlanAudit(all, options);
+  const std::vector<CheckPlace> places = PlacesOf(audit);
+  const std::vector<double> seconds = EstimateSeconds(audit);
+  PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
+               audit.claims.size(), places.size(),
+               DurationInWords(std::accumulate(seconds.begin(), seconds.end(), 0.0)),
+               NumThreads(options.num_threads));
+  const auto milliseconds = [&](const ItemPlace& item) {
+    return static_cast<std::int64_t>(1000.0 * seconds[item.group]) + 1;
+  };
+  runner->Get(ListItems(runner->plan(), {}),
+              [&](const ItemPlace& item) {
+                const CheckPlace& place = places[item.group];
+                return CheckResultAsJson(DecideCheck(CheckAt(audit, place), RunOf(audit, place)));
+              },
+              {"ms of work", milliseconds});
+  ReadResults(runner->plan(), runner->results(), 0, places.size(),
+              [&](const ItemPlace& item, const std::string& json) {
+                const CheckPlace& place = places[item.group];
+                audit.results[place.claim].checks[place.check] = CheckResultFrom(CheckAt(audit, place), json);
+              });
+  JudgeClaims(&audit);
+  return audit;
+}
+
+WorkPlan PlanAuditBlocks(const Audit& plan) {
   AuditRound num_blocks;
   for (const TrialBlocks& blocks : BlocksOf(plan)) num_blocks.push_back(blocks.NumBlocks());
   return PlanOfChecks(plan, "audit", "block", num_blocks);
@@ -88,39 +122,40 @@ AuditRound FirstRound(const Audit& plan) {
 }
 
 void WriteRound(const Audit& plan, const AuditRound& round, const std::string& path) {
-  const PiecePlan pieces = PiecesOfRound(plan);
-  Part part{pieces.work, IdentityOf(pieces), {0, 1}, {ProgramName(), InstructionSetName()}, {}};
+  const WorkPlan pieces = PlanRound(plan);
+  const Part part{pieces.work, DescribeIdentity(pieces), {0, 1}, {ProgramName(), InstructionSetName()}, {}};
+  ItemResults results;
   for (size_t group = 0; group < round.size(); ++group)
-    part.results[{group, 0}].json = fmt::format("{}", round[group]);
-  WritePart(path, part);
+    results[{group, 0}].json = fmt::format("{}", round[group]);
+  WritePart(path, part, results);
 }
 
 AuditRound ReadRound(const Audit& plan, const std::string& path) {
-  const PiecePlan pieces = PiecesOfRound(plan);
-  const MergedParts merged = MergeParts(pieces, {path});
+  const WorkPlan pieces = PlanRound(plan);
+  const WorkResults merged = MergeParts(pieces, {path});
   const std::vector<TrialBlocks> blocks = BlocksOf(plan);
-  if (MissingIn(pieces, merged, 0, pieces.groups.size()).num_pieces > 0)
+  if (FindMissingIn(pieces, merged, 0, pieces.groups.size()).num_items > 0)
     throw InputError(fmt::format("{}: damaged: it lacks checks", path));
   AuditRound round(blocks.size());
-  ReadEach(pieces, merged, 0, round.size(), [&](const PiecePlace& place, const std::string& json) {
+  ReadResults(pieces, merged, 0, round.size(), [&](const ItemPlace& place, const std::string& json) {
     const auto num_blocks = static_cast<std::int64_t>(blocks[place.group].NumBlocks());
     round[place.group] = static_cast<size_t>(CountFrom(ParsePiece(json), num_blocks));
   });
   return round;
 }
 
-void RunAuditPart(const Audit& plan, const AuditRound& round, const Shard& shard, const std::string& path) {
-  PartInWork part(PiecesOfAudit(plan), shard, path);
+void GetAuditRound(const Audit& plan, const AuditRound& round, Runner* runner) {
   const std::vector<CheckPlace> checks = PlacesOf(plan);
   const std::vector<TrialBlocks> blocks = BlocksOf(plan);
-  std::vector<PiecePlace> its_own = PiecesOf(round);
-  std::erase_if(its_own, [&](const PiecePlace& p) { return ShardOfPiece(p, shard.count) != shard.number; });
-  part.DoEach(its_own, [&](const PiecePlace& place) {
+  std::vector<ItemPlace> its_own = ListItems(round);
+  const Shard& shard = runner->shard();
+  std::erase_if(its_own, [&](const ItemPlace& p) { return FindShardOfItem(p, shard.count) != shard.number; });
+  runner->Get(its_own, [&](const ItemPlace& place) {
     const CheckPlace& at = checks[place.group];
     const TrialBlocks& of_check = blocks[place.group];
     const Check& check = CheckAt(plan, at);
     return OutcomesAsJson(
-        check, RunTrials(check, RunOf(plan, at), of_check.Begin(place.piece), of_check.End(place.piece)));
+        check, RunTrials(check, RunOf(plan, at), of_check.Begin(place.item), of_check.End(place.item)));
   });
 }
 
@@ -128,7 +163,7 @@ MergedAudit MergeAuditParts(const std::vector<Claim>& all, const AuditOptions& o
                             const std::vector<std::string>& paths) {
   MergedAudit merged;
   merged.audit = PlanAudit(all, options);
-  const PiecePlan pieces = PiecesOfAudit(merged.audit);
+  const WorkPlan pieces = PlanAuditBlocks(merged.audit);
   merged.parts = MergeParts(pieces, paths);
   const std::vector<CheckPlace> checks = PlacesOf(merged.audit);
   const std::vector<TrialBlocks> blocks = BlocksOf(merged.audit);
@@ -137,11 +172,11 @@ MergedAudit MergeAuditParts(const std::vector<Claim>& all, const AuditOptions& o
     merged.round.push_back(
         CountBlocks(merged.audit, checks[group], blocks[group], group, pieces, merged.parts, result));
   }
-  merged.missing = MissingAmong(PiecesOf(merged.round), merged.parts);
+  merged.missing = FindMissingAmong(ListItems(merged.round), merged.parts);
   for (const auto& [place, result] : merged.parts.results) {
-    if (place.piece >= merged.round[place.group]) merged.unneeded_seconds += result.seconds;
+    if (place.item >= merged.round[place.group]) merged.unneeded_seconds += result.seconds;
   }
-  if (merged.missing.num_pieces == 0) JudgeClaims(&merged.audit);
+  if (merged.missing.num_items == 0) JudgeClaims(&merged.audit);
   return merged;
 }
 

@@ -1,4 +1,4 @@
-#include "experiments/tuning/tune_part.h"
+#include "experiments/tuning/tuning_work.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kTrialsOfPiece = 10;
+constexpr std::uint32_t kTrialsOfItem = 10;
 
 // What is done with the trials of a group; a group of each kind for every condition, in this order.
 enum class Kind : size_t { kExplore, kCalibrate, kVerify, kEntropies, kPlainCalls };
@@ -22,11 +22,11 @@ size_t FirstGroup(const StudyPlan& plan, Kind kind) {
   return static_cast<size_t>(kind) * plan.conditions.size();
 }
 
-Kind KindOf(const StudyPlan& plan, const PiecePlace& place) {
+Kind KindOf(const StudyPlan& plan, const ItemPlace& place) {
   return static_cast<Kind>(place.group / plan.conditions.size());
 }
 
-size_t ConditionOf(const StudyPlan& plan, const PiecePlace& place) {
+size_t ConditionOf(const StudyPlan& plan, const ItemPlace& place) {
   return place.group % plan.conditions.size();
 }
 
@@ -36,10 +36,10 @@ TrialRange RangeOf(const StudyPlan& plan, Kind kind) {
   return kind == Kind::kCalibrate ? trials.calibrate : trials.verify;
 }
 
-TrialRange TrialsOf(const StudyPlan& plan, const PiecePlace& place) {
+TrialRange TrialsOf(const StudyPlan& plan, const ItemPlace& place) {
   const TrialRange all = RangeOf(plan, KindOf(plan, place));
-  const auto first = all.first + static_cast<std::uint32_t>(place.piece) * kTrialsOfPiece;
-  return {first, std::min(first + kTrialsOfPiece, all.end)};
+  const auto first = all.first + static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
+  return {first, std::min(first + kTrialsOfItem, all.end)};
 }
 
 // The plan with one of its conditions alone.
@@ -62,14 +62,14 @@ std::string Identity(const StudyPlan& plan) {
   return identity + plan.identity;
 }
 
-TuningPieces PiecesWith(const StudyPlan& plan, const std::string& work, size_t num_kinds, size_t num_first) {
-  TuningPieces made{{work, "block", Identity(plan), {}}, num_first * plan.conditions.size()};
+TuningWork PlanWork(const StudyPlan& plan, const std::string& work, size_t num_kinds, size_t num_first) {
+  TuningWork made{
+      {work, "block", Identity(plan), {}}, 2 * plan.conditions.size(), num_first * plan.conditions.size()};
   for (size_t k = 0; k < num_kinds; ++k) {
     const TrialRange range = RangeOf(plan, static_cast<Kind>(k));
-    const size_t num_pieces = (range.end - range.first + kTrialsOfPiece - 1) / kTrialsOfPiece;
+    const size_t num_items = (range.end - range.first + kTrialsOfItem - 1) / kTrialsOfItem;
     for (const Condition& condition : plan.conditions) {
-      made.pieces.groups.push_back(
-          {fmt::format("{} of condition {}", kKinds[k], condition.index), num_pieces});
+      made.items.groups.push_back({fmt::format("{} of condition {}", kKinds[k], condition.index), num_items});
     }
   }
   return made;
@@ -179,64 +179,77 @@ void SetEntropies(const Json& json, size_t first, size_t num_trials, EntropiesOf
   }
 }
 
-std::string ComputePiece(const StudyPlan& plan, const SettingPlan& settings, std::optional<size_t> tuned,
-                         const PiecePlace& place, int num_threads) {
+std::string ComputeBlock(const StudyPlan& plan, const SettingPlan& settings, std::optional<size_t> tuned,
+                         const ItemPlace& place) {
   const StudyPlan one = OneCondition(plan, ConditionOf(plan, place));
   const TrialRange trials = TrialsOf(plan, place);
   const Kind kind = KindOf(plan, place);
-  if (kind == Kind::kEntropies)
-    return EntropiesAsJson(MeasureEntropies(one, trials, num_threads, nullptr)).dump();
+  if (kind == Kind::kEntropies) return EntropiesAsJson(MeasureEntropies(one, trials)).dump();
   if (kind == Kind::kPlainCalls) {
-    return VerifiedAsJson(
-               VerifyEstimators(PlanWithTuned(one, settings, tuned.value()), trials, num_threads, nullptr))
-        .dump();
+    return VerifiedAsJson(VerifyEstimators(PlanWithTuned(one, settings, tuned.value()), trials)).dump();
   }
-  return CountsAsJson(CountOutcomes(one, settings, trials, num_threads, nullptr).front()).dump();
+  return CountsAsJson(CountOutcomes(one, settings, trials, 1, nullptr).front()).dump();
 }
 
-std::int64_t NumTrialsOf(const StudyPlan& plan, const PiecePlace& place) {
+std::int64_t NumTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
   const TrialRange trials = TrialsOf(plan, place);
   return trials.end - trials.first;
 }
 
 }  // namespace
 
-TuningPieces PiecesOfTuning(const StudyPlan& plan) {
+TuningWork PlanTuningWork(const StudyPlan& plan) {
   CheckTrialsSuffice(*plan.study.tuning, plan.conditions.size());
-  return PiecesWith(plan, "tuning", kKinds.size(), kKinds.size() - 1);
+  return PlanWork(plan, "tuning", kKinds.size(), kKinds.size() - 1);
 }
 
-TuningPieces PiecesOfTransfer(const StudyPlan& plan) { return PiecesWith(plan, "transfer", 3, 3); }
+TuningWork PlanTransferWork(const StudyPlan& plan) { return PlanWork(plan, "transfer", 3, 3); }
 
-MissingPieces RunTuningPart(const StudyPlan& plan, const SettingPlan& settings, const TuningPieces& work,
-                            const MergedParts& merged, const Shard& shard, int num_threads,
-                            const std::string& path) {
-  PartInWork part(work.pieces, shard, path);
+void GetTuningResults(const StudyPlan& plan, const SettingPlan& settings, const TuningWork& work,
+                      Unreached unreached, Runner* runner) {
+  const size_t num_groups = work.items.groups.size();
   std::optional<size_t> tuned;
-  const auto compute = [&](const PiecePlace& place) {
-    return ComputePiece(plan, settings, tuned, place, num_threads);
+  const auto get = [&](size_t first, size_t end) {
+    runner->Get(ListItems(work.items, {}, first, end),
+                [&](const ItemPlace& place) { return ComputeBlock(plan, settings, tuned, place); });
   };
-  const size_t num_groups = work.pieces.groups.size();
-  part.DoEach(PiecesOf(work.pieces, shard, 0, work.num_first), compute);
+  // Parts are to have the whole first round, so that every shard that lacks some of it is named.
+  if (runner->ReadsParts() || work.num_first == num_groups) get(0, work.num_first);
+  if (work.num_first == num_groups) return;
+  get(0, work.num_choosing);
+  tuned = ChooseFrom(plan, settings, CountsIn(plan, settings, work, runner->results())).setting;
+  if (tuned || unreached == Unreached::kVerifyAll) get(work.num_choosing, work.num_first);
+  if (tuned) get(work.num_first, num_groups);
+}
+
+MissingItems GetTuningShard(const StudyPlan& plan, const SettingPlan& settings, const TuningWork& work,
+                            const WorkResults& merged, Runner* runner) {
+  const size_t num_groups = work.items.groups.size();
+  std::optional<size_t> tuned;
+  const auto get = [&](size_t first, size_t end) {
+    runner->Get(ListItems(work.items, runner->shard(), first, end),
+                [&](const ItemPlace& place) { return ComputeBlock(plan, settings, tuned, place); });
+  };
+  get(0, work.num_first);
   if (work.num_first == num_groups) return {};
-  const MissingPieces missing = MissingIn(work.pieces, merged, 0, work.num_first);
-  if (missing.num_pieces > 0) return missing;
-  tuned = ChooseFrom(plan, settings, CountsOf(plan, settings, work, merged)).setting;
-  if (tuned) part.DoEach(PiecesOf(work.pieces, shard, work.num_first, num_groups), compute);
+  const MissingItems missing = FindMissingIn(work.items, merged, 0, work.num_first);
+  if (missing.num_items > 0) return missing;
+  tuned = ChooseFrom(plan, settings, CountsIn(plan, settings, work, merged)).setting;
+  if (tuned) get(work.num_first, num_groups);
   return {};
 }
 
-TuningSource CountsOf(const StudyPlan& plan, const SettingPlan& settings, const TuningPieces& work,
-                      const MergedParts& merged) {
+TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const TuningWork& work,
+                      const WorkResults& results) {
   const auto count = [&](TrialRange range) {
     Kind kind = Kind::kExplore;
     while (RangeOf(plan, kind).first != range.first) kind = static_cast<Kind>(static_cast<size_t>(kind) + 1);
     const size_t first = FirstGroup(plan, kind), num_conditions = plan.conditions.size();
     SettingCounts counts(num_conditions, std::vector<SettingCount>(settings.settings.size()));
-    ReadEach(work.pieces, merged, first, first + num_conditions,
-             [&](const PiecePlace& place, const std::string& json) {
-               AddCounts(ParsePiece(json), NumTrialsOf(plan, place), &counts[place.group - first]);
-             });
+    ReadResults(work.items, results, first, first + num_conditions,
+                [&](const ItemPlace& place, const std::string& json) {
+                  AddCounts(ParsePiece(json), NumTrialsOf(plan, place), &counts[place.group - first]);
+                });
     return counts;
   };
   const auto verify = [&](size_t tuned) {
@@ -244,25 +257,26 @@ TuningSource CountsOf(const StudyPlan& plan, const SettingPlan& settings, const 
     for (const EstimatorSpec& spec : PlanWithTuned(plan, settings, tuned).study.estimators)
       estimators.push_back({spec, {}, {}, {}, {}});
     const size_t first = FirstGroup(plan, Kind::kPlainCalls);
-    ReadEach(work.pieces, merged, first, first + plan.conditions.size(),
-             [&](const PiecePlace& place, const std::string& json) {
-               AddVerified(ParsePiece(json), NumTrialsOf(plan, place), &estimators);
-             });
+    ReadResults(work.items, results, first, first + plan.conditions.size(),
+                [&](const ItemPlace& place, const std::string& json) {
+                  AddVerified(ParsePiece(json), NumTrialsOf(plan, place), &estimators);
+                });
     return estimators;
   };
   return {count, verify};
 }
 
-EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningPieces& work, const MergedParts& merged) {
+EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningWork& work, const WorkResults& results) {
   const TrialRange range = RangeOf(plan, Kind::kEntropies);
   const size_t num_trials = range.end - range.first, first = FirstGroup(plan, Kind::kEntropies);
   EntropiesOfTrials entropies(plan.estimators.size(),
                               std::vector<TrialEntropies>(num_trials * plan.conditions.size()));
-  ReadEach(work.pieces, merged, first, first + plan.conditions.size(),
-           [&](const PiecePlace& place, const std::string& json) {
-             const size_t begin = (place.group - first) * num_trials + place.piece * kTrialsOfPiece;
-             SetEntropies(ParsePiece(json), begin, static_cast<size_t>(NumTrialsOf(plan, place)), &entropies);
-           });
+  ReadResults(work.items, results, first, first + plan.conditions.size(),
+              [&](const ItemPlace& place, const std::string& json) {
+                const size_t begin = (place.group - first) * num_trials + place.item * kTrialsOfItem;
+                SetEntropies(ParsePiece(json), begin, static_cast<size_t>(NumTrialsOf(plan, place)),
+                             &entropies);
+              });
   return entropies;
 }
 
