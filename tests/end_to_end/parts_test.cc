@@ -204,7 +204,6 @@ TEST_F(Parts, OfAnotherStudyOptionOrCommandAreRefused) {
   is_refused({"merge", Part(1), "--check"}, {"--merge", "--partial"});
   is_refused(tune + Words{"--shard", "1/2", "--figures", out, "--out", Part(2)}, {"--figures"});
   is_refused(tune + Words{"--merged", Part(1), "--out", Part(2)}, {"--merged", "--shard"});
-  is_refused(tune + Words{"--max-time", "1s", "--out", Part(2)}, {"--max-time", "--shard"});
   is_refused(Words{"map", "--shard", "3/2", "--out", Part(2)}, {"there is no shard 3 of 2"});
   EXPECT_FALSE(std::filesystem::exists(out));
 

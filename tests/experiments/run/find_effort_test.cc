@@ -56,7 +56,7 @@ EstimatorSpec Busy(const Settings& options = {}) {
 std::vector<TimedProblem> SomeProblems() { return TimedProblems(MakePlan(SmallStudy()), 0, 5); }
 
 TEST(FindEffort, FindsTheEffortOfATime) {
-  for (const double time_ms : {0.1, 1.0, 5.0}) {
+  for (const double time_ms : {1.0, 3.0, 8.0}) {
     const FoundEffort found = FindEffort(Busy(), SomeProblems(), time_ms);
     EXPECT_EQ(found.end, EffortEnd::kReached);
     EXPECT_NEAR(static_cast<double>(found.effort), 50.0 * time_ms, 0.1 * 50.0 * time_ms) << time_ms;
