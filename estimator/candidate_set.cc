@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "estimator/solvers/solver_table.h"
 
@@ -12,7 +13,7 @@ CandidateSet::CandidateSet(const RansacOptions& options, int num_matches)
       inlier_ratio_(std::isnan(options.inlier_ratio) ? 0.0 : options.inlier_ratio),
       is_ratio_inferred_(std::isnan(options.inlier_ratio)),
       num_matches_(num_matches) {
-  const int most = MaxModelsOf(options.solver) * std::min(options.num_iterations, 4096);
+  const int most = FindMaxModels(options.solver) * std::min(options.num_iterations, 4096);
   passed_.reserve(static_cast<size_t>(std::min(most, 4096)));
 }
 
@@ -33,6 +34,22 @@ int CandidateSet::CountMembers() const {
   return static_cast<int>(std::count_if(passed_.begin(), passed_.end(), [this](const Candidate& candidate) {
     return MeetsSizeCondition(candidate);
   }));
+}
+
+std::vector<Candidate> CandidateSet::SelectBest(int count, DecidingScore decides) const {
+  std::vector<const Candidate*> members;
+  members.reserve(passed_.size());
+  for (const Candidate& candidate : passed_) {
+    if (MeetsSizeCondition(candidate)) members.push_back(&candidate);
+  }
+  const auto end = members.begin() + std::min<std::ptrdiff_t>(count, std::ssize(members));
+  std::partial_sort(members.begin(), end, members.end(), [&](const Candidate* a, const Candidate* b) {
+    return IsBetter(a->score, b->score, decides) || (!IsBetter(b->score, a->score, decides) && a < b);
+  });
+  std::vector<Candidate> best;
+  best.reserve(static_cast<size_t>(end - members.begin()));
+  std::transform(members.begin(), end, std::back_inserter(best), [](const Candidate* c) { return *c; });
+  return best;
 }
 
 }  // namespace rcme

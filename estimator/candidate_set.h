@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <iterator>
 #include <vector>
 
 #include "estimator/inlier_quality.h"
@@ -26,24 +24,8 @@ class CandidateSet {
   bool MeetsSizeCondition(const Candidate& candidate) const;
   int CountMembers() const;
 
-  // The best members in the order of `better` (the first one first at a tie), at most `count`; none if C is
-  // empty.
-  template <typename Better>
-  std::vector<Candidate> SelectBest(int count, Better better) const {
-    std::vector<const Candidate*> members;
-    members.reserve(passed_.size());
-    for (const Candidate& candidate : passed_) {
-      if (MeetsSizeCondition(candidate)) members.push_back(&candidate);
-    }
-    const auto end = members.begin() + std::min<std::ptrdiff_t>(count, std::ssize(members));
-    std::partial_sort(members.begin(), end, members.end(), [&](const Candidate* a, const Candidate* b) {
-      return better(a->score, b->score) || (!better(b->score, a->score) && a < b);
-    });
-    std::vector<Candidate> best;
-    best.reserve(static_cast<size_t>(end - members.begin()));
-    std::transform(members.begin(), end, std::back_inserter(best), [](const Candidate* c) { return *c; });
-    return best;
-  }
+  // The best members, at most `count`, the first one first at a tie; none if C is empty.
+  std::vector<Candidate> SelectBest(int count, DecidingScore decides) const;
 
  private:
   std::vector<Candidate> passed_;

@@ -71,8 +71,8 @@ void PropagateCovariance(const MotionProblem& problem, Hypothesis<Solver>* hypot
 }
 
 template <typename Solver>
-std::optional<UncertainFundamental> UncertainModelOf(const MotionProblem& problem,
-                                                     const Hypothesis<Solver>& hypothesis) {
+std::optional<UncertainFundamental> ComputeUncertainFundamental(const MotionProblem& problem,
+                                                                const Hypothesis<Solver>& hypothesis) {
   if constexpr (Hypothesis<Solver>::kHasFactor) {
     return UncertainFundamental::FromFactor(hypothesis.pose, hypothesis.pose_factor, problem.camera1,
                                             problem.camera2);
@@ -91,8 +91,8 @@ std::optional<UncertainFundamental> UncertainModelOf(const MotionProblem& proble
   template std::optional<Hypothesis<Solver>> InstantiateModel<Solver>(const MotionProblem&,                  \
                                                                       const HypothesisId&);                  \
   template void PropagateCovariance<Solver>(const MotionProblem&, Hypothesis<Solver>*);                      \
-  template std::optional<UncertainFundamental> UncertainModelOf<Solver>(const MotionProblem&,                \
-                                                                        const Hypothesis<Solver>&);
+  template std::optional<UncertainFundamental> ComputeUncertainFundamental<Solver>(                          \
+      const MotionProblem&, const Hypothesis<Solver>&);
 RCME_INSTANTIATE_HYPOTHESES_OF(EightPoint)
 RCME_INSTANTIATE_HYPOTHESES_OF(SevenPoint)
 RCME_INSTANTIATE_HYPOTHESES_OF(FivePoint)

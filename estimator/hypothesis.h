@@ -63,7 +63,7 @@ void PropagateCovariance(const MotionProblem& problem, Hypothesis<Solver>* hypot
 // F with its derivatives along the axes of pose_cov, once it is filled. Nothing if it is not finite and
 // positive semi-definite.
 template <typename Solver>
-std::optional<UncertainFundamental> UncertainModelOf(const MotionProblem& problem,
-                                                     const Hypothesis<Solver>& hypothesis);
+std::optional<UncertainFundamental> ComputeUncertainFundamental(const MotionProblem& problem,
+                                                                const Hypothesis<Solver>& hypothesis);
 
 }  // namespace rcme

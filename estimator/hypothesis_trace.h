@@ -2,9 +2,11 @@
 // again, under other thresholds, without a new estimation.
 #pragma once
 
+#include <iterator>
 #include <vector>
 
 #include "estimator/ransac_loop.h"
+#include "estimator/thresholds.h"
 
 namespace rcme {
 
@@ -21,7 +23,8 @@ struct HypothesisTrace {
 
 // Every hypothesis that `search` makes of `num_iterations` samples. The decisions of the loop play no part.
 template <typename Search>
-HypothesisTrace TraceHypotheses(int num_iterations, int num_matches, Search& search) {
+requires HypothesisSolver<Search> && HypothesisScorer<Search> HypothesisTrace
+TraceHypotheses(int num_iterations, int num_matches, Search& search) {
   HypothesisTrace trace{num_matches, search.thresholds(), {}};
   trace.hypotheses.reserve(static_cast<size_t>(num_iterations));
   for (int j = 0; j < num_iterations;) {
@@ -33,7 +36,7 @@ HypothesisTrace TraceHypotheses(int num_iterations, int num_matches, Search& sea
   return trace;
 }
 
-// A search (ransac_loop.h) over hypotheses made before.
+// Solver and scorer (ransac_loop.h) of hypotheses made before.
 class TraceSearch {
  public:
   explicit TraceSearch(const HypothesisTrace& trace)

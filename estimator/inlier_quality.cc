@@ -5,6 +5,22 @@
 
 namespace rcme {
 
+DecidingScore FindDecidingScore(Selection selection) {
+  return selection == Selection::kMeanEntropy ? DecidingScore::kMeanEntropy : DecidingScore::kCost;
+}
+
+bool IsBetter(const InlierScore& a, const InlierScore& b, DecidingScore decides) {
+  switch (decides) {
+    case DecidingScore::kNumInliers:
+      return a.num_inliers > b.num_inliers;
+    case DecidingScore::kMeanEntropy:
+      return a.mean_entropy < b.mean_entropy;
+    case DecidingScore::kCost:
+      break;
+  }
+  return a.negative_log_likelihood < b.negative_log_likelihood;
+}
+
 double ZStatistic(const InlierScore& score, double mu) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (score.num_inliers == 0) return kInfinity;

@@ -21,6 +21,16 @@ struct InlierScore {
   }
 };
 
+// The number of an InlierScore by which an estimator chooses among its candidates.
+enum class DecidingScore {
+  kNumInliers,   // the most, as RANSAC
+  kMeanEntropy,  // the least (eq::model_select_entropy)
+  kCost,         // the least negative_log_likelihood
+};
+// What the option `selection` chooses by.
+DecidingScore FindDecidingScore(Selection selection);
+bool IsBetter(const InlierScore& a, const InlierScore& b, DecidingScore decides);
+
 // Z_j = (psi - mu) / (s / sqrt(n_j)) (eq. 18). Fewer than two inliers, or s = 0: minus infinity where psi <=
 // mu, else plus infinity, the limit s -> 0. No inlier at all: plus infinity.
 double ZStatistic(const InlierScore& score, double mu);

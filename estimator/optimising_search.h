@@ -13,7 +13,7 @@
 namespace rcme {
 
 // `Optimise`: Supported(problem, Hypothesis<Solver>, Supported start, threshold, rng).
-template <typename Pipeline, typename Solver, typename Optimise>
+template <RansacDecision Decision, typename Solver, typename Optimise>
 class OptimisingSearch {
  public:
   OptimisingSearch(const MotionProblem& problem, const RansacOptions& options, const Optimise& optimise,
@@ -56,20 +56,20 @@ class OptimisingSearch {
 
  private:
   const MotionProblem& problem_;
-  ReferenceSearch<Pipeline, Solver> search_;
+  ReferenceSearch<Decision, Solver> search_;
   Optimise optimise_;
   RandomStream& rng_;
   int most_inliers_ = 0;  // of one sample's motion
   std::map<HypothesisId, Supported> optima_;
 };
 
-template <typename Pipeline, typename SolverT, typename Optimise>
+template <RansacDecision Decision, typename SolverT, typename Optimise>
 struct OptimisingEngine {
   using Solver = SolverT;
   OptimisingEngine(const MotionProblem& problem, const RansacOptions& options, const Optimise& optimise,
                    RandomStream& rng)
       : search(problem, options, optimise, rng), matches(problem, options.refinement_error) {}
-  OptimisingSearch<Pipeline, Solver, Optimise> search;
+  OptimisingSearch<Decision, Solver, Optimise> search;
   ReferenceMatches matches;
 };
 

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
+#include <optional>
 #include <vector>
 
 #include "estimator/hypothesis.h"
 #include "estimator/point_consistency.h"
 #include "estimator/ransac_loop.h"
+#include "estimator/thresholds.h"
 
 namespace rcme {
 
@@ -33,19 +36,17 @@ InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, co
   return score;
 }
 
-// A pipeline may score all squared distances of a hypothesis together (robust_scores.h): `RobustScore`, whose
+// A decision may score all squared distances of a hypothesis together (robust_scores.h): `RobustScore`, whose
 // cost takes the place of the likelihood.
-template <typename Pipeline>
+template <typename T>
 concept HasRobustScore = requires {
-  typename Pipeline::RobustScore;
+  typename T::RobustScore;
 };
 
 // Inliers, and the robust score of all squared distances together. `distances` is room for them.
-template <typename Pipeline>
-requires HasRobustScore<Pipeline> InlierScore ScoreDistances(const MotionProblem& problem,
-                                                             const typename Pipeline::PointTest& test,
-                                                             const Thresholds& thresholds,
-                                                             std::vector<double>* distances) {
+template <HasRobustScore Decision>
+InlierScore ScoreDistances(const MotionProblem& problem, const typename Decision::PointTest& test,
+                           const Thresholds& thresholds, std::vector<double>* distances) {
   InlierScore score;
   distances->clear();
   for (const Correspondence& match : problem.matches) {
@@ -53,15 +54,27 @@ requires HasRobustScore<Pipeline> InlierScore ScoreDistances(const MotionProblem
     distances->push_back(test.Distance(match, &residual));
     if (distances->back() <= thresholds.point) score.AddInlier(test.Entropy(residual));
   }
-  score.negative_log_likelihood = Pipeline::RobustScore::Cost(*distances, thresholds);
+  score.negative_log_likelihood = Decision::RobustScore::Cost(*distances, thresholds);
   return score;
 }
 
-template <typename Pipeline, typename Solver>
+// What a search needs to know of a decision, beside what the loop asks it: whether a match is an inlier and
+// with what entropy (point_consistency.h), and whether the sample is tested (eq::sample-p-test) where the
+// solver's kSampleTestDof > 0. Where it is, the reference asks
+//
+//   static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);
+template <typename T>
+concept RansacDecision =
+    LoopDecision<T> && std::constructible_from<T, const RansacOptions&, const Thresholds&> && requires {
+  typename T::PointTest;
+  { T::kTestsSample } -> std::convertible_to<bool>;
+};
+
+template <RansacDecision Decision, typename Solver>
 class ReferenceSearch {
  public:
-  using PointTest = typename Pipeline::PointTest;
-  static constexpr bool kTestsSample = Pipeline::kTestsSample && Solver::kSampleTestDof > 0;
+  using PointTest = typename Decision::PointTest;
+  static constexpr bool kTestsSample = Decision::kTestsSample && Solver::kSampleTestDof > 0;
 
   ReferenceSearch(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
       : problem_(problem),
@@ -85,15 +98,15 @@ class ReferenceSearch {
     if (!test_) return proposal;
     bool agrees = true;
     if constexpr (kTestsSample) {
-      agrees = Pipeline::SampleIsConsistent(problem_, hypothesis, *test_, thresholds_);
+      agrees = Decision::SampleIsConsistent(problem_, hypothesis, *test_, thresholds_);
     }
     proposal.verdict = agrees ? SampleVerdict::kConsistent : SampleVerdict::kInconsistent;
     return proposal;
   }
 
   InlierScore Score() {
-    if constexpr (HasRobustScore<Pipeline>)
-      return ScoreDistances<Pipeline>(problem_, *test_, thresholds_, &distances_);
+    if constexpr (HasRobustScore<Decision>)
+      return ScoreDistances<Decision>(problem_, *test_, thresholds_, &distances_);
     if constexpr (kScoresTheRest<Solver, PointTest>) {
       return ScoreInliers(problem_, *test_, thresholds_, hypotheses_.models[0].id.sample);
     }
@@ -127,7 +140,7 @@ class ReferenceSearch {
       return PointTest(hypothesis->F, problem_.sigma_px);
     } else {
       PropagateCovariance(problem_, hypothesis);
-      const std::optional<UncertainFundamental> model = UncertainModelOf(problem_, *hypothesis);
+      const std::optional<UncertainFundamental> model = ComputeUncertainFundamental(problem_, *hypothesis);
       if (!model) return std::nullopt;
       return PointTest(*model, problem_.sigma_px);
     }

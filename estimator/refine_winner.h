@@ -1,48 +1,54 @@
 // Box 4 of the paper: from the winner of the loop and its inlier set to the estimate.
 //
-// Written once for two ways to hold a set of matches and to sum over it, reference_matches.h (one match at a
-// time) and kernels/block_matches.h (many at a time):
-//
-//   struct Matches {
-//     using Set = ...;
-//     const MotionProblem& problem() const;
-//     // cheirality
-//     RelativePose SelectPose(projection, set) const;
-//     RefinedMotion Refine(set, start, loss) const;
-//     // refinement/fit_set.h
-//     Set FindAgreeing(motion, fitted, significance_level) const;
-//     Set SelectFitSet(motion, fitted) const;
-//     // of all matches: squared Sampson distance over sigma^2 at most the threshold; and how many of a set
-//     Set FindConsistent(pose, threshold) const;
-//     int CountConsistent(set, pose, threshold) const;
-//     // refinement/rotation_equations.h
-//     RotationEquations LinearizeRotation(set, R, loss) const;
-//     Set FindRotated(R, threshold) const;
-//
-//     Set SetOf(sorted_indices) const;
-//     Set All() const;
-//     Set Intersect(a, b) const;
-//     std::vector<int> IndicesOf(set) const;
-//     int Count(set) const;
-//   };
+// Written once for two ways to hold a set of matches and to sum over it, the models of MatchSets:
+// reference_matches.h (one match at a time) and kernels/block_matches.h (many at a time).
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "estimator/hypothesis.h"
 #include "estimator/motion_estimate.h"
 #include "estimator/motion_tests.h"
 #include "estimator/ransac_options.h"
 #include "estimator/refinement/motion_search.h"
+#include "estimator/refinement/rotation_equations.h"
 
 namespace rcme {
 
 // Most refits after the robust fit; the fit set is nearly always stable after two or three.
 inline constexpr int kMaxRefits = 10;
 
+template <typename T>
+concept MatchSets = requires(const T matches, const typename T::Set& set, const RelativePose& pose,
+                             const RefinedMotion& motion, const EssentialProjection& projection,
+                             const std::vector<int>& sorted_indices, const Eigen::Matrix3d& R, Loss loss,
+                             double threshold, double significance_level) {
+  { matches.problem() } -> std::same_as<const MotionProblem&>;
+  { matches.SelectPose(projection, set) } -> std::same_as<RelativePose>;  // cheirality
+  { matches.Refine(set, pose, loss) } -> std::same_as<RefinedMotion>;
+  // refinement/fit_set.h; `set` holds the matches that the motion was fitted to.
+  { matches.FindAgreeing(motion, set, significance_level) } -> std::same_as<typename T::Set>;
+  { matches.SelectFitSet(motion, set) } -> std::same_as<typename T::Set>;
+  // Of all matches: squared Sampson distance over sigma^2 at most the threshold; and how many of a set.
+  { matches.FindConsistent(pose, threshold) } -> std::same_as<typename T::Set>;
+  { matches.CountConsistent(set, pose, threshold) } -> std::same_as<int>;
+  // refinement/rotation_equations.h
+  { matches.LinearizeRotation(set, R, loss) } -> std::same_as<RotationEquations>;
+  { matches.FindRotated(R, threshold) } -> std::same_as<typename T::Set>;
+  { matches.SetOf(sorted_indices) } -> std::convertible_to<typename T::Set>;
+  { matches.All() } -> std::convertible_to<typename T::Set>;
+  { matches.Intersect(set, set) } -> std::same_as<typename T::Set>;
+  { matches.IndicesOf(set) } -> std::convertible_to<std::vector<int>>;
+  { matches.Count(set) } -> std::same_as<int>;
+};
+
 // A motion and the matches it was fitted to.
-template <typename Matches>
+template <MatchSets Matches>
 struct Fit {
   RefinedMotion motion;
   typename Matches::Set fitted;
@@ -51,7 +57,7 @@ struct Fit {
 // Cheirality was decided at the hypothesis, which may be so far off that most matches seemed to lie in front
 // of the cameras for the wrong one of the four motions of E. Decided again at the optimum; E is the same for
 // all four.
-template <typename Matches>
+template <MatchSets Matches>
 RefinedMotion DecideCheiralityAgain(const Matches& matches, const typename Matches::Set& support,
                                     const RefinedMotion& motion) {
   const RelativePose& pose = motion.cam2_from_cam1;
@@ -63,7 +69,7 @@ RefinedMotion DecideCheiralityAgain(const Matches& matches, const typename Match
 // From the support to the matches that agree. Five matches determine a motion exactly: their residuals and
 // the variances of these are zero, rounding would decide whether they agree, and nothing speaks for the
 // motion.
-template <typename Matches>
+template <MatchSets Matches>
 Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& support,
                          const RelativePose& start) {
   if (matches.Count(support) <= 5) return {{.cam2_from_cam1 = start}, support};
@@ -82,7 +88,7 @@ Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& su
   return fit;
 }
 
-template <typename Matches, typename Solver>
+template <MatchSets Matches, typename Solver>
 Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis<Solver>* winner,
                     const typename Matches::Set& support) {
   switch (refinement) {
@@ -106,7 +112,7 @@ std::string SuccessMessage(int num_inliers, int num_matches);
 // kappa flag and the status. The final inliers are the matches that agree with the refined motion
 // (rank-aware, its covariance included). Whatever the minimal solver, the refinement moves all five degrees
 // of freedom; without one, motion and covariance are the hypothesis's own.
-template <typename Matches, typename Solver>
+template <MatchSets Matches, typename Solver>
 void RefineWinner(const Matches& matches, const RansacOptions& options,
                   const std::optional<Hypothesis<Solver>>& hypothesis, const typename Matches::Set& support,
                   MotionEstimate* estimate) {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <span>
 
-#include "estimator/ransac_loop.h"
+#include "estimator/thresholds.h"
 
 namespace rcme {
 

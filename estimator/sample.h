@@ -7,6 +7,8 @@
 
 namespace rcme {
 
+class RandomStream;
+
 inline constexpr int kMaxSampleSize = 8;  // of all minimal solvers
 
 // S_j (eq::minimal_sample_set): the indices of distinct matches, as many as the minimal solver takes. No
@@ -34,6 +36,9 @@ class Sample {
   std::array<int, kMaxSampleSize> indices_{};  // zero beyond size_
   int size_ = 0;
 };
+
+// `size` distinct indices below n, every set equally likely; n >= size.
+Sample DrawSample(int size, int n, RandomStream& rng);
 
 // What identifies a hypothesis among those of a problem: the sample, and which of the solver's models of it.
 struct HypothesisId {

@@ -1,21 +1,20 @@
-// Judges a motion that no sample made; see RansacEstimator::ScoreMotion.
+// Judges a motion that no sample made; see LoopInspection::ScoreMotion.
 #pragma once
 
 #include <optional>
-#include <type_traits>
 #include <vector>
 
-#include "estimator/ransac_estimator.h"
+#include "estimator/loop_inspection.h"
+#include "estimator/ransac_estimate.h"
 #include "estimator/reference_search.h"
-#include "estimator/run_pipeline.h"
 
 namespace rcme {
 
 // The point test of a motion with its covariance, as of a hypothesis. Nothing if the covariance is not finite
 // and positive semi-definite.
 template <typename PointTest>
-std::optional<PointTest> PointTestOf(const MotionProblem& problem, const RelativePose& pose,
-                                     const Matrix5d& pose_cov) {
+std::optional<PointTest> MakePointTest(const MotionProblem& problem, const RelativePose& pose,
+                                       const Matrix5d& pose_cov) {
   if constexpr (PointTest::kNeedsCovariance) {
     const auto model = UncertainFundamental::From(pose, pose_cov, problem.camera1, problem.camera2);
     if (!model) return std::nullopt;
@@ -27,29 +26,20 @@ std::optional<PointTest> PointTestOf(const MotionProblem& problem, const Relativ
 }
 
 // The score of a motion over all matches.
-template <typename Pipeline>
-InlierScore ScoreOf(const MotionProblem& problem, const typename Pipeline::PointTest& test,
-                    const Thresholds& thresholds) {
-  if constexpr (HasRobustScore<Pipeline>) {
+template <RansacDecision Decision>
+InlierScore ScoreMatches(const MotionProblem& problem, const typename Decision::PointTest& test,
+                         const Thresholds& thresholds) {
+  if constexpr (HasRobustScore<Decision>) {
     std::vector<double> distances;
-    return ScoreDistances<Pipeline>(problem, test, thresholds, &distances);
+    return ScoreDistances<Decision>(problem, test, thresholds, &distances);
   } else {
     return ScoreInliers(problem, test, thresholds);
   }
 }
 
-// What the pipeline's IsBetter looks at.
-template <typename Pipeline>
-DecidingScore DecidingScoreOf(const RansacOptions& options) {
-  if constexpr (HasRobustScore<Pipeline>) return DecidingScore::kCost;
-  if constexpr (std::is_same_v<typename Pipeline::PointTest, KnownPoseTest>)
-    return DecidingScore::kNumInliers;
-  return options.selection == Selection::kMeanEntropy ? DecidingScore::kMeanEntropy : DecidingScore::kCost;
-}
-
-template <typename Pipeline, typename Engine>
-ScoredMotion ScoreMotionOf(const MotionProblem& problem, const RansacOptions& options,
-                           const RelativePose& start) {
+template <RansacDecision Decision, RansacEngine Engine>
+ScoredMotion ScoreGivenMotion(const MotionProblem& problem, const RansacOptions& options,
+                              const RelativePose& start) {
   ScoredMotion scored;
   if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) {
     scored.estimate = *refusal;
@@ -71,11 +61,11 @@ ScoredMotion ScoreMotionOf(const MotionProblem& problem, const RansacOptions& op
   const Matrix5d pose_cov = scored.estimate.pose_cov;
   RefuseByMotionTests(engine.matches, options, &scored.estimate);
   CheckExplainedShare(options, static_cast<int>(problem.matches.size()), &scored.estimate);
-  const auto test = PointTestOf<typename Pipeline::PointTest>(problem, pose, pose_cov);
+  const auto test = MakePointTest<typename Decision::PointTest>(problem, pose, pose_cov);
   if (!test) return scored;
   scored.refined = {true, pose, pose_cov, 0};
-  scored.decides = DecidingScoreOf<Pipeline>(options);
-  scored.score = ScoreOf<Pipeline>(problem, *test, scored.thresholds);
+  scored.decides = Decision(options, scored.thresholds).deciding_score();
+  scored.score = ScoreMatches<Decision>(problem, *test, scored.thresholds);
   return scored;
 }
 

@@ -1,19 +1,20 @@
 #pragma once
 
+#include "estimator/inlier_quality.h"
 #include "estimator/point_consistency.h"
-#include "estimator/ransac_loop.h"
+#include "estimator/ransac_options.h"
+#include "estimator/thresholds.h"
 
 namespace rcme {
 
 // RANSAC (Fischler & Bolles 1981): motions taken as exact, no test of samples or inlier sets, most inliers
 // win.
-struct InlierCountPipeline {
+struct InlierCountDecision {
   using PointTest = KnownPoseTest;
   static constexpr bool kTestsSample = false;
-  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
-  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
-    return a.num_inliers > b.num_inliers;
-  }
+  InlierCountDecision(const RansacOptions&, const Thresholds&) {}
+  bool AcceptsInlierSet(double) const { return true; }
+  DecidingScore deciding_score() const { return DecidingScore::kNumInliers; }
 };
 
 }  // namespace rcme

@@ -3,7 +3,7 @@
 #include "estimator/estimators/inlier_count.h"
 #include "estimator/estimators/ransac_model.h"
 #include "estimator/optimising_search.h"
-#include "estimator/run_pipeline.h"
+#include "estimator/ransac_estimate.h"
 #include "estimator/solvers/solver_table.h"
 
 namespace rcme {
@@ -29,8 +29,8 @@ struct ByUncertainty {
   }
 };
 
-// Not a RansacEstimator: what an optimisation finds hangs on the samples before it, so that a hypothesis
-// cannot be made again from its sample alone.
+// Its loop cannot be inspected: what an optimisation finds hangs on the samples before it, so that a
+// hypothesis cannot be made again from its sample alone.
 template <typename Optimise>
 class LocalRansac : public MotionEstimator {
  public:
@@ -40,10 +40,10 @@ class LocalRansac : public MotionEstimator {
   }
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
     return VisitSolver(options_.solver, [&]<typename Solver>(std::type_identity<Solver>) {
-      using Engine = OptimisingEngine<InlierCountPipeline, Solver, Optimise>;
+      using Engine = OptimisingEngine<InlierCountDecision, Solver, Optimise>;
       if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
       Engine engine(problem, options_, optimise_, rng);
-      return RunEngine<InlierCountPipeline>(problem, options_, engine);
+      return EstimateWith<InlierCountDecision>(problem, options_, engine);
     });
   }
 

@@ -6,11 +6,11 @@
 #include "estimator/estimators/ransac_model.h"
 #include "estimator/estimators/robust_score.h"
 #include "estimator/motion_tests.h"
+#include "estimator/ransac_estimate.h"
 #include "estimator/reference_matches.h"
 #include "estimator/refine_winner.h"
 #include "estimator/refinement/m_estimation.h"
 #include "estimator/refinement/sampson_equations.h"
-#include "estimator/run_pipeline.h"
 
 namespace rcme {
 namespace {
@@ -88,7 +88,7 @@ class MEstimator : public MotionEstimator {
 
   RansacOptions options_;
   MEstimation estimation_;
-  std::unique_ptr<RansacEstimator> start_;
+  std::unique_ptr<MotionEstimator> start_;
 };
 
 class Model : public PlainRansacModel {

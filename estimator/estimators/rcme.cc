@@ -1,6 +1,6 @@
 #include "estimator/estimators/rcme.h"
 
-#include "estimator/estimators/pipeline_estimator.h"
+#include "estimator/estimators/loop_estimator.h"
 #include "estimator/estimators/ransac_model.h"
 #include "estimator/sample_consistency.h"
 
@@ -33,7 +33,8 @@ struct NoSampleTest {
 };
 
 template <typename PointTestT, typename SampleTestT>
-struct RcmePipeline {
+class RcmeDecision {
+ public:
   using PointTest = PointTestT;
   static constexpr bool kTestsSample = SampleTestT::kTestsSample;
   template <typename Solver>
@@ -41,27 +42,30 @@ struct RcmePipeline {
                                  const PointTest& test, const Thresholds& thresholds) {
     return SampleTestT::Passes(problem, hypothesis, test, thresholds);
   }
-  static bool InlierSetIsGood(double z, const RansacOptions& options, const Thresholds& thresholds) {
-    return PassesQualityTest(z, thresholds.normal, options.quality_test);
-  }
-  // The candidate of least mean entropy wins (eq::model_select_entropy).
-  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions& options) {
-    return options.selection == Selection::kMeanEntropy
-               ? a.mean_entropy < b.mean_entropy
-               : a.negative_log_likelihood < b.negative_log_likelihood;
-  }
+
+  RcmeDecision(const RansacOptions& options, const Thresholds& thresholds)
+      : quality_test_(options.quality_test),
+        deciding_score_(FindDecidingScore(options.selection)),
+        normal_quantile_(thresholds.normal) {}
+  bool AcceptsInlierSet(double z) const { return PassesQualityTest(z, normal_quantile_, quality_test_); }
+  DecidingScore deciding_score() const { return deciding_score_; }
+
+ private:
+  QualityTest quality_test_;
+  DecidingScore deciding_score_;
+  double normal_quantile_;
 };
 
 }  // namespace
 
-std::unique_ptr<RansacEstimator> MakeRcme(const RansacOptions& options, SampleTest sample_test) {
+std::unique_ptr<MotionEstimator> MakeRcme(const RansacOptions& options, SampleTest sample_test) {
   const bool tests_sample = sample_test == SampleTest::kOn;
   if (options.reading == Reading::kAsPrinted) {
-    return tests_sample ? MakePipelineEstimator<RcmePipeline<AsPrintedTest, PerPointSampleTest>>(options)
-                        : MakePipelineEstimator<RcmePipeline<AsPrintedTest, NoSampleTest>>(options);
+    return tests_sample ? MakeLoopEstimator<RcmeDecision<AsPrintedTest, PerPointSampleTest>>(options)
+                        : MakeLoopEstimator<RcmeDecision<AsPrintedTest, NoSampleTest>>(options);
   }
-  return tests_sample ? MakePipelineEstimator<RcmePipeline<RankAwareTest, JointSampleTest>>(options)
-                      : MakePipelineEstimator<RcmePipeline<RankAwareTest, NoSampleTest>>(options);
+  return tests_sample ? MakeLoopEstimator<RcmeDecision<RankAwareTest, JointSampleTest>>(options)
+                      : MakeLoopEstimator<RcmeDecision<RankAwareTest, NoSampleTest>>(options);
 }
 
 namespace {

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "estimator/estimator_model.h"
-#include "estimator/ransac_estimator.h"
 #include "estimator/ransac_options.h"
 
 namespace rcme {
@@ -15,6 +14,6 @@ enum class SampleTest { kOn, kOff };
 std::unique_ptr<EstimatorModel> RcmeModel(SampleTest sample_test);
 
 // The same from options in the code. Throws InputError if they contradict each other.
-std::unique_ptr<RansacEstimator> MakeRcme(const RansacOptions& options, SampleTest sample_test);
+std::unique_ptr<MotionEstimator> MakeRcme(const RansacOptions& options, SampleTest sample_test);
 
 }  // namespace rcme

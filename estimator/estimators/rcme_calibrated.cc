@@ -150,7 +150,7 @@ std::string MessageOf(const MotionEstimate& e) {
                      ProbabilityText(e.failure_probability), ReasonOf(e));
 }
 
-class RcmeCalibrated : public CalibratedEstimator {
+class RcmeCalibrated : public MotionEstimator, public WeightInspection {
  public:
   explicit RcmeCalibrated(const CalibratedOptions& options) : options_(options) { Validate(options); }
 

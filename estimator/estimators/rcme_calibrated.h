@@ -4,7 +4,7 @@
 //   1  hypotheses    calibrated/hypothesis_search.h    five-point samples, ranked by a soft score
 //   2  modes         calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h)
 //                    calibrated/split_mode.h           two motions in place of a compromise between them
-//   3  influence     calibrated/influence.h            without matches that decide by themselves: mostly
+//   3  influence     calibrated/influence.h            without matches that decide by themselves, mostly
 //   wrong
 //                    calibrated/leverage_branches.h    fits without single ones of large influence that are
 //                    left
@@ -33,18 +33,19 @@ struct WeighedMotion {
   bool is_answer = false;
 };
 
-class CalibratedEstimator : public MotionEstimator {
+// The inspection of rcme_calibrated: its weights taken apart from its search. Estimate never asks it.
+class WeightInspection {
  public:
+  virtual ~WeightInspection() = default;
   // What it would make of these motions, had its search found them and nothing else: the optima that are
-  // reached from them, and the others that follow from these (steps 3 to 6). For those who look into a
-  // result: Estimate never asks it.
+  // reached from them, and the others that follow from these (steps 3 to 6).
   virtual std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
                                                   const std::vector<RelativePose>& starts) const = 0;
 };
 
-// The estimator as one that weighs motions; null if it does not.
-inline const CalibratedEstimator* AsCalibrated(const MotionEstimator& estimator) {
-  return dynamic_cast<const CalibratedEstimator*>(&estimator);
+// The inspection of the estimator's weights, which lives as long as the estimator; null if there is none.
+inline const WeightInspection* FindWeightInspection(const MotionEstimator& estimator) {
+  return dynamic_cast<const WeightInspection*>(&estimator);
 }
 
 // Throws InputError if the options contradict each other.

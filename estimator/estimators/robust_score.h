@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "estimator/estimator_model.h"
-#include "estimator/ransac_estimator.h"
 #include "estimator/ransac_options.h"
 
 namespace rcme {
@@ -14,7 +13,7 @@ std::unique_ptr<EstimatorModel> MsacModel();
 std::unique_ptr<EstimatorModel> MlesacModel();
 
 // The same from options in the code. Throws InputError if they contradict each other.
-std::unique_ptr<RansacEstimator> MakeMsac(const RansacOptions& options);
-std::unique_ptr<RansacEstimator> MakeMlesac(const RansacOptions& options);
+std::unique_ptr<MotionEstimator> MakeMsac(const RansacOptions& options);
+std::unique_ptr<MotionEstimator> MakeMlesac(const RansacOptions& options);
 
 }  // namespace rcme

@@ -1,7 +1,7 @@
 #include "estimator/estimators/standard.h"
 
 #include "estimator/estimators/inlier_count.h"
-#include "estimator/estimators/pipeline_estimator.h"
+#include "estimator/estimators/loop_estimator.h"
 #include "estimator/estimators/ransac_model.h"
 
 namespace rcme {
@@ -17,8 +17,8 @@ class Standard : public PlainRansacModel {
 
 std::unique_ptr<EstimatorModel> StandardModel() { return std::make_unique<Standard>(); }
 
-std::unique_ptr<RansacEstimator> MakeStandard(const RansacOptions& options) {
-  return MakePipelineEstimator<InlierCountPipeline>(options);
+std::unique_ptr<MotionEstimator> MakeStandard(const RansacOptions& options) {
+  return MakeLoopEstimator<InlierCountDecision>(options);
 }
 
 }  // namespace rcme

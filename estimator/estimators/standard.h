@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "estimator/estimator_model.h"
-#include "estimator/ransac_estimator.h"
 #include "estimator/ransac_options.h"
 
 namespace rcme {
@@ -16,6 +15,6 @@ std::unique_ptr<EstimatorModel> StandardModel();
 
 // The same from options in the code, early_stop_entropy off; levels of the tests of the refined motion are by
 // default as the reading says. Throws InputError if they contradict each other.
-std::unique_ptr<RansacEstimator> MakeStandard(const RansacOptions& options);
+std::unique_ptr<MotionEstimator> MakeStandard(const RansacOptions& options);
 
 }  // namespace rcme

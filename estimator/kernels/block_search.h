@@ -12,7 +12,7 @@
 
 namespace rcme {
 
-// What a pipeline's PointTest and kTestsSample ask for.
+// What a decision's PointTest and kTestsSample ask for.
 enum class BlockReading { kKnownPose, kAsPrinted, kRankAware };
 struct BlockTests {
   BlockReading reading = BlockReading::kKnownPose;

@@ -6,11 +6,11 @@
 
 namespace rcme {
 
-// `implementation: fast`, eight hypotheses and many matches at a time. See run_pipeline.h.
-template <typename Pipeline, typename SolverT>
+// `implementation: fast`, eight hypotheses and many matches at a time. See ransac_estimate.h.
+template <RansacDecision Decision, typename SolverT>
 struct FastEngine {
   using Solver = SolverT;
-  using PointTest = typename Pipeline::PointTest;
+  using PointTest = typename Decision::PointTest;
   static constexpr BlockReading kReading = std::is_same_v<PointTest, KnownPoseTest> ? BlockReading::kKnownPose
                                            : std::is_same_v<PointTest, RankAwareTest>
                                                ? BlockReading::kRankAware
@@ -18,7 +18,7 @@ struct FastEngine {
   FastEngine(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng)
       : blocks(problem),
         search(problem, blocks, options,
-               {kReading, Pipeline::kTestsSample, options.selection == Selection::kPredictiveLikelihood},
+               {kReading, Decision::kTestsSample, options.selection == Selection::kPredictiveLikelihood},
                rng),
         matches(problem, blocks, options.refinement_error) {}
   MatchBlocks blocks;

@@ -45,7 +45,7 @@ inline const std::vector<std::pair<std::string, MinimalSolver>>& SolverNames() {
 }
 
 // Greatest number of models of a sample.
-inline int MaxModelsOf(MinimalSolver solver) {
+inline int FindMaxModels(MinimalSolver solver) {
   return VisitSolver(solver, []<typename Solver>(std::type_identity<Solver>) { return Solver::kMaxModels; });
 }
 

@@ -6,18 +6,18 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "estimator/ransac_estimator.h"
-#include "experiments/real/answer/estimate_output.h"
+#include "estimator/loop_inspection.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_source.h"
+#include "experiments/commands/number_option.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
-#include "experiments/commands/commands.h"
-#include "experiments/commands/estimator_source.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
+#include "experiments/real/answer/estimate_output.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
@@ -123,12 +123,15 @@ class Answerer {
 };
 
 // The tests of the motion are off as printed. A person should know what they would have said.
-void PrintCaution(const RansacEstimator& estimator, const MotionProblem& problem, std::int64_t seed) {
-  RansacOptions tested = estimator.options();
+void PrintCaution(const LoopInspection& inspection, const MotionProblem& problem, std::int64_t seed) {
+  RansacOptions tested = inspection.options();
   if (tested.ObservabilityLevelOrDefault() < 1.0 || tested.ChanceLevelOrDefault() < 1.0) return;
   tested.observability_significance_level = tested.chance_significance_level = 0.001;
   RandomStream rng = StreamFor({static_cast<std::uint64_t>(seed), 0, 0, 0}, StreamPurpose::kSampling);
-  const MotionEstimate estimate = estimator.With(tested)->Estimate(problem, rng);
+  const std::unique_ptr<LoopInspection> loop = inspection.With(tested);
+  Refinements refinements;
+  const MotionEstimate estimate =
+      loop->Finish(problem, loop->Decide(loop->Trace(problem, rng)), &refinements);
   if (estimate.status == MotionStatus::kOk) return;
   fmt::print(
       "caution: {} - {}\n  (--set observability_significance_level=0.001 --set "
@@ -156,9 +159,9 @@ void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, con
     fmt::print("{}", JsonText(kEstimateFormat, MakeJson(answer, answerer.spec(), doubts)));
   } else {
     fmt::print("{}", AnswerAsText(answer, answerer.spec()));
-    const RansacEstimator* const ransac = AsRansac(answerer.estimator());
-    if (ransac && answer.estimate.status == MotionStatus::kOk)
-      PrintCaution(*ransac, data.problem, arguments.seed);
+    const LoopInspection* const inspection = FindInspection(answerer.estimator());
+    if (inspection && answer.estimate.status == MotionStatus::kOk)
+      PrintCaution(*inspection, data.problem, arguments.seed);
   }
   // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
   // answer.

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "estimator/ransac_estimator.h"
+#include "estimator/loop_inspection.h"
 #include "experiments/run/for_each_trial.h"
 #include "experiments/trial/trial.h"
 
@@ -27,7 +27,7 @@ void AddSamples(const HypothesisTrace& trace, const Truth& truth, TrialEntropies
   }
 }
 
-TrialEntropies EntropiesOf(const RansacEstimator& estimator, const TrialData& data, StreamName name,
+TrialEntropies EntropiesOf(const LoopInspection& estimator, const TrialData& data, StreamName name,
                            const FailureBounds& bounds) {
   TrialEntropies entropies;
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
@@ -44,11 +44,11 @@ TrialEntropies EntropiesOf(const RansacEstimator& estimator, const TrialData& da
 
 // The estimators of the plan without their quality test; null where an estimator's loop cannot be taken
 // apart.
-std::vector<std::unique_ptr<const RansacEstimator>> WithoutQualityTest(const StudyPlan& plan) {
-  std::vector<std::unique_ptr<const RansacEstimator>> estimators;
+std::vector<std::unique_ptr<const LoopInspection>> WithoutQualityTest(const StudyPlan& plan) {
+  std::vector<std::unique_ptr<const LoopInspection>> estimators;
   for (const auto& estimator : plan.estimators) {
     estimators.push_back(nullptr);
-    const RansacEstimator* const ransac = AsRansac(*estimator);
+    const LoopInspection* const ransac = FindInspection(*estimator);
     if (!ransac) continue;
     RansacOptions options = ransac->options();
     options.mu = kNoQualityTest;

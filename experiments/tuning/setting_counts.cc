@@ -29,10 +29,9 @@ class TrialDecisions {
     refinements_.clear();
     outcomes_.clear();
     decided_.clear();
-    const RansacEstimator* tracer = AsRansac(*group.tracer);
-    if (tracer) {
+    if (group.tracer) {
       RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
-      trace_ = tracer->Trace(data_.problem, rng);
+      trace_ = group.tracer->Trace(data_.problem, rng);
     }
     for (const size_t s : group.settings) {
       const TrialOutcome outcome = OutcomeUnder(*plan.estimators[s]);
@@ -47,7 +46,7 @@ class TrialDecisions {
   using Handover = std::pair<std::vector<HypothesisId>, double>;
 
   TrialOutcome OutcomeUnder(const MotionEstimator& estimator) {
-    const RansacEstimator* parts = AsRansac(estimator);
+    const LoopInspection* parts = FindInspection(estimator);
     if (!parts) {
       RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
       return JudgedOutcome(estimator.Estimate(data_.problem, rng));

@@ -27,15 +27,15 @@ std::string KeyOf(const Settings& options) {
   return key;
 }
 
-// An estimator whose trace serves all of the settings: as many hypotheses as any looks at, with likelihoods
+// An inspection whose trace serves all of the settings: as many hypotheses as any looks at, with likelihoods
 // if any selects by them, none left out by an early stop.
-std::shared_ptr<const MotionEstimator> MakeTracer(const SettingPlan& plan,
-                                                  const std::vector<size_t>& settings) {
-  const RansacEstimator& first = *AsRansac(*plan.estimators[settings.front()]);
+std::shared_ptr<const LoopInspection> MakeTracer(const SettingPlan& plan,
+                                                 const std::vector<size_t>& settings) {
+  const LoopInspection& first = *FindInspection(*plan.estimators[settings.front()]);
   RansacOptions options = first.options();
   options.early_stop_entropy = RansacOptions().early_stop_entropy;
   for (const size_t s : settings) {
-    const RansacOptions& other = AsRansac(*plan.estimators[s])->options();
+    const RansacOptions& other = FindInspection(*plan.estimators[s])->options();
     options.num_iterations = std::max(options.num_iterations, other.num_iterations);
     if (other.selection == Selection::kPredictiveLikelihood) options.selection = other.selection;
   }
@@ -62,10 +62,10 @@ bool AddEstimators(SettingPlan* plan) {
 void AddGroups(SettingPlan* plan) {
   std::map<std::string, std::vector<size_t>> groups;
   for (size_t s = 0; s < plan->settings.size(); ++s) {
-    if (AsRansac(*plan->estimators[s])) {
+    if (FindInspection(*plan->estimators[s])) {
       groups[TraceKey(plan->settings[s].spec.options)].push_back(s);
     } else {
-      plan->groups.push_back({plan->estimators[s], {s}});
+      plan->groups.push_back({nullptr, {s}});
     }
   }
   for (const auto& [key, settings] : groups) plan->groups.push_back({MakeTracer(*plan, settings), settings});

@@ -1,12 +1,12 @@
 // The settings of a tuning, and how few estimations they take: settings that differ in decision options alone
-// (estimator/ransac_estimator.h) share one trace per trial.
+// (estimator/loop_inspection.h) share one trace per trial.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "estimator/ransac_estimator.h"
+#include "estimator/loop_inspection.h"
 #include "experiments/study/study.h"
 #include "experiments/study/tuning.h"
 
@@ -18,9 +18,9 @@ struct TunedSetting {
   EstimatorSpec spec;               // the study's estimator with these levels
 };
 
-// Settings that share a trace.
+// Settings that share a trace, or one whose estimator cannot be inspected: null.
 struct TraceGroup {
-  std::shared_ptr<const MotionEstimator> tracer;
+  std::shared_ptr<const LoopInspection> tracer;
   std::vector<size_t> settings;
 };
 

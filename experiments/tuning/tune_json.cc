@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimator/estimator_registry.h"
-#include "estimator/ransac_estimator.h"
+#include "estimator/loop_inspection.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
@@ -35,7 +35,7 @@ bool IsNumber(const std::string& text) {
 // The options, a number in place of a word where the word stands for one.
 Settings InNumbers(EstimatorSpec spec) {
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
-  if (const RansacEstimator* ransac = AsRansac(*estimator)) {
+  if (const LoopInspection* ransac = FindInspection(*estimator)) {
     for (auto& [option, value] : spec.options) {
       if (option == "mu") value = fmt::format("{}", ransac->options().MuOrDefault());
       if (option == "sample_significance_level")
@@ -112,7 +112,7 @@ Json CurveAsJson(const std::vector<RocPoint>& curve) {
 
 Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
   const EstimatorSpec& spec = plan.study.estimators[roc.estimator];
-  const RansacOptions& options = AsRansac(*plan.estimators[roc.estimator])->options();
+  const RansacOptions& options = FindInspection(*plan.estimators[roc.estimator])->options();
   const double mu = options.MuOrDefault();
   const bool is_printed = options.reading == Reading::kAsPrinted;
   const std::vector<RocPoint> curve = CurveOf(roc);

@@ -78,7 +78,7 @@ def files_of(room):
 
 
 # What `implementation: reference` runs, but for the choice between the two implementations (estimators/).
-REFERENCE = ["estimator/reference_engine.h", "estimator/run_pipeline.h"]
+REFERENCE = ["estimator/reference_engine.h", "estimator/ransac_estimate.h"]
 
 
 def reached_from(roots, read):
@@ -152,7 +152,7 @@ class IncludeDirections(unittest.TestCase):
                  "estimator/kernels/score.h": ""}
         self.assertEqual(kernels_reached_from(["a.h"], files.get),
                          ["b.cc: the reference may not include estimator/kernels/score.h"])
-        self.assertTrue(kernels_reached_from(["estimator/estimators/pipeline_estimator.h"], read_source))
+        self.assertTrue(kernels_reached_from(["estimator/estimators/loop_estimator.h"], read_source))
 
     def test_only_simulator_experiments_and_tests_speak_of_the_truth(self):
         for room in ["parameters", "stats", "estimator", "robot", "peers"]:

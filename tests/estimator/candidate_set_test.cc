@@ -17,9 +17,6 @@ Candidate Make(int num_inliers, double mean_entropy, int tag = 0) {
   return candidate;
 }
 
-bool LessEntropy(const InlierScore& a, const InlierScore& b) { return a.mean_entropy < b.mean_entropy; }
-bool MoreInliers(const InlierScore& a, const InlierScore& b) { return a.num_inliers > b.num_inliers; }
-
 RansacOptions GivenRatio(double inlier_ratio, double lambda) {
   RansacOptions options;
   options.inlier_ratio = inlier_ratio;
@@ -30,7 +27,7 @@ RansacOptions GivenRatio(double inlier_ratio, double lambda) {
 TEST(CandidateSet, EmptySelectsNothing) {
   const CandidateSet candidates(RansacOptions(), kNumMatches);
   EXPECT_EQ(candidates.CountMembers(), 0);
-  EXPECT_TRUE(candidates.SelectBest(1, LessEntropy).empty());
+  EXPECT_TRUE(candidates.SelectBest(1, DecidingScore::kMeanEntropy).empty());
 }
 
 TEST(CandidateSet, GivenRatioDecidesTheSizeCondition) {
@@ -42,9 +39,9 @@ TEST(CandidateSet, GivenRatioDecidesTheSizeCondition) {
   candidates.Add(Make(40, 1.0, 1));
   candidates.Add(Make(90, 2.0, 2));  // must not raise the given omega_p
   EXPECT_EQ(candidates.CountMembers(), 2);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 1)
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kMeanEntropy).at(0).id.sample[0], 1)
       << "the best entropy is too small a set";
-  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).id.sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kNumInliers).at(0).id.sample[0], 2);
 }
 
 TEST(CandidateSet, InferredRatioIsTheLargestShareOfAllThatPassed) {
@@ -53,14 +50,14 @@ TEST(CandidateSet, InferredRatioIsTheLargestShareOfAllThatPassed) {
   CandidateSet candidates(options, kNumMatches);
   candidates.Add(Make(20, -9.0, 1));
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kMeanEntropy).at(0).id.sample[0], 1);
   candidates.Add(Make(60, 3.0, 2));  // now at least 30 are needed: the first one is out again
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kMeanEntropy).at(0).id.sample[0], 2);
   candidates.Add(Make(30, 0.0, 3));
   candidates.Add(Make(29, -1.0, 4));
   EXPECT_EQ(candidates.CountMembers(), 2);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 3);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kMeanEntropy).at(0).id.sample[0], 3);
 }
 
 TEST(CandidateSet, LargestLambdaKeepsTheLargestSetAlone) {
@@ -68,7 +65,7 @@ TEST(CandidateSet, LargestLambdaKeepsTheLargestSetAlone) {
   candidates.Add(Make(59, -9.0, 1));
   candidates.Add(Make(60, 3.0, 2));
   EXPECT_EQ(candidates.CountMembers(), 1);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 2);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kMeanEntropy).at(0).id.sample[0], 2);
 }
 
 TEST(CandidateSet, LargestSetIsAlwaysAMember) {
@@ -88,8 +85,8 @@ TEST(CandidateSet, FirstOneWinsATie) {
   CandidateSet candidates(GivenRatio(0.1, 0.5), kNumMatches);
   candidates.Add(Make(50, 1.0, 1));
   candidates.Add(Make(50, 1.0, 2));
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).id.sample[0], 1);
-  EXPECT_EQ(candidates.SelectBest(1, MoreInliers).at(0).id.sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kMeanEntropy).at(0).id.sample[0], 1);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kNumInliers).at(0).id.sample[0], 1);
 }
 
 // The tags in the order of selection: the best first, the earlier one at a tie, no more than there are.
@@ -100,7 +97,7 @@ TEST(CandidateSet, SelectsTheBestInOrder) {
     candidates.Add(Make(i == 6 ? 4 : 50, entropies[i], i));  // the last is too small
   const auto tags = [&](int count) {
     std::vector<int> first_matches;
-    for (const Candidate& candidate : candidates.SelectBest(count, LessEntropy))
+    for (const Candidate& candidate : candidates.SelectBest(count, DecidingScore::kMeanEntropy))
       first_matches.push_back(candidate.id.sample[0]);
     return first_matches;
   };
@@ -123,7 +120,7 @@ TEST(CandidateSet, SelectsTheLeastOfMany) {
     least = std::min(least, candidate.score.mean_entropy);
   }
   EXPECT_EQ(candidates.CountMembers(), num_members);
-  EXPECT_EQ(candidates.SelectBest(1, LessEntropy).at(0).score.mean_entropy, least);
+  EXPECT_EQ(candidates.SelectBest(1, DecidingScore::kMeanEntropy).at(0).score.mean_entropy, least);
 }
 
 }  // namespace

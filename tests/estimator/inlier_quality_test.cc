@@ -77,6 +77,23 @@ TEST(ZStatistic, IsStandardNormalForIndependentEntropies) {
   EXPECT_NEAR(sum_squares / kSets, 99.0 / 97.0, 5.0 * std::sqrt(2.0 / kSets));
 }
 
+TEST(IsBetter, LooksAtTheDecidingNumberAlone) {
+  const InlierScore most{.num_inliers = 3, .mean_entropy = 2.0, .negative_log_likelihood = 2.0};
+  const InlierScore least_entropy{.num_inliers = 2, .mean_entropy = 1.0, .negative_log_likelihood = 3.0};
+  const InlierScore least_cost{.num_inliers = 1, .mean_entropy = 3.0, .negative_log_likelihood = 1.0};
+  const std::vector<InlierScore> scores = {most, least_entropy, least_cost};
+  const auto wins = [&](size_t k, DecidingScore decides) {
+    for (size_t other = 0; other < scores.size(); ++other) {
+      if (IsBetter(scores[k], scores[other], decides) != (other != k)) return false;
+      if (IsBetter(scores[other], scores[k], decides)) return false;
+    }
+    return true;
+  };
+  EXPECT_TRUE(wins(0, DecidingScore::kNumInliers));
+  EXPECT_TRUE(wins(1, FindDecidingScore(Selection::kMeanEntropy)));
+  EXPECT_TRUE(wins(2, FindDecidingScore(Selection::kPredictiveLikelihood)));
+}
+
 TEST(PassesQualityTest, TheTwoReadingsDifferBetweenTheQuantiles) {
   const double quantile = NormalQuantile(0.95);  // 1.645
   for (const double z : {-kInfinity, -3.0, -1.645}) {

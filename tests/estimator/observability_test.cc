@@ -154,14 +154,14 @@ MotionProblem PureRotationProblem(std::uint32_t trial) {
   return MakeRotationCase(60, rng).problem;
 }
 
-std::unique_ptr<RansacEstimator> Make(Reading reading, Implementation implementation) {
+std::unique_ptr<MotionEstimator> Make(Reading reading, Implementation implementation) {
   RansacOptions options;
   options.reading = reading;
   options.implementation = implementation;
   return MakeRcme(options, SampleTest::kOff);
 }
 
-MotionEstimate EstimateFrom(const RansacEstimator& estimator, const MotionProblem& problem) {
+MotionEstimate EstimateFrom(const MotionEstimator& estimator, const MotionProblem& problem) {
   RandomStream rng({.seed = 1, .purpose = 1407});
   return estimator.Estimate(problem, rng);
 }

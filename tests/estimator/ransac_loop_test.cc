@@ -3,17 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <new>
-#include <set>
 
+#include "estimator/estimators/inlier_count.h"
 #include "estimator/kernels/block_search.h"
 #include "estimator/reference_search.h"
 #include "estimator/solvers/solver_table.h"
-#include "stats/distributions.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace {
@@ -36,18 +33,18 @@ std::atomic<long> num_allocations{0};
 namespace rcme {
 namespace {
 
-struct BarePipeline {
-  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
-  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
-    return a.num_inliers > b.num_inliers;
-  }
+template <typename PointTestT>
+struct CountOf : InlierCountDecision {
+  using PointTest = PointTestT;
+  using InlierCountDecision::InlierCountDecision;
 };
 
-template <typename PointTestT>
-struct BareReference : BarePipeline {
-  using PointTest = PointTestT;
-  static constexpr bool kTestsSample = false;
-};
+// The loop as an estimator runs it: most inliers win.
+template <typename Search>
+LoopResult RunByCount(const RansacOptions& options, int num_matches, Search& search) {
+  return RunRansacLoop(options, num_matches, search, search,
+                       InlierCountDecision(options, search.thresholds()));
+}
 
 template <typename Solver>
 MinimalSolver ChoiceOf() {
@@ -82,9 +79,9 @@ template <typename Solver, typename PointTest>
 void ExpectReferenceDoesNotAllocate() {
   ExpectNoAllocationPerHypothesisOrPoint(
       ChoiceOf<Solver>(), [](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-        ReferenceSearch<BareReference<PointTest>, Solver> search(problem, options, rng);
+        ReferenceSearch<CountOf<PointTest>, Solver> search(problem, options, rng);
         const long before = num_allocations;
-        RunRansacLoop<BarePipeline>(options, static_cast<int>(problem.matches.size()), search);
+        RunByCount(options, static_cast<int>(problem.matches.size()), search);
         return num_allocations - before;
       });
 }
@@ -96,7 +93,7 @@ void ExpectBlocksDoNotAllocate(BlockReading reading) {
         const MatchBlocks matches(problem);
         BlockSearch<Solver> search(problem, matches, options, {reading, true, true}, rng);
         const long before = num_allocations;
-        RunRansacLoop<BarePipeline>(options, matches.num_matches(), search);
+        RunByCount(options, matches.num_matches(), search);
         return num_allocations - before;
       });
 }
@@ -137,7 +134,7 @@ LoopResult RunScript(const std::vector<InlierScore>& scores, double early_stop_e
   options.lambda = 0.5;
   options.early_stop_entropy = early_stop_entropy;
   ScriptedSearch search(scores);
-  return RunRansacLoop<BarePipeline>(options, 100, search);
+  return RunByCount(options, 100, search);
 }
 
 TEST(RansacLoop, StopsEarlyOnlyAtAMemberOfTheCandidateSet) {
@@ -155,49 +152,6 @@ TEST(RansacLoop, WithoutABoundItRunsToItsEndAndTheFirstOfEqualsWins) {
   EXPECT_EQ(result.counts.num_hypotheses, 3);
   EXPECT_EQ(result.winner->id.sample[0], 1);
   EXPECT_FALSE(RunScript({{39, -9.0}}, off).winner);
-}
-
-// An outlier costs what a uniform law over image 2's diagonal does, 1000 px here and 800 px in image 1.
-TEST(Thresholds, AreThoseOfTheProblemAndTheOptions) {
-  MotionProblem problem{{}, TestCamera1(), TestCamera2(), 0.25};
-  RansacOptions options;
-  options.significance_level = 0.02;
-  const Thresholds printed = Thresholds::For(problem, options, 3);
-  EXPECT_DOUBLE_EQ(printed.outlier_cost, std::log(1000.0 / 0.25));
-  EXPECT_DOUBLE_EQ(printed.point, ChiSquareQuantile(3, 0.98));
-  EXPECT_DOUBLE_EQ(printed.sample, ChiSquareQuantile(3, 0.98));
-  EXPECT_DOUBLE_EQ(printed.normal, NormalQuantile(0.98));
-  options.sample_significance_level = 0.1;
-  for (const int dof : {1, 3}) {
-    const Thresholds own_level = Thresholds::For(problem, options, dof);
-    EXPECT_DOUBLE_EQ(own_level.point, ChiSquareQuantile(dof, 0.98));
-    EXPECT_DOUBLE_EQ(own_level.sample, ChiSquareQuantile(3, 0.9));
-  }
-  problem.sigma_px = 5000.0;
-  EXPECT_EQ(Thresholds::For(problem, options, 1).outlier_cost, 0.0) << "noise wider than the image";
-}
-
-TEST(DrawSample, IndicesAreDistinctAndInRange) {
-  RandomStream rng({1, 0, 0, 4});
-  for (int draw = 0; draw < 1000; ++draw) {
-    const Sample sample = DrawSample(8, 8, rng);
-    EXPECT_EQ(std::set<int>(sample.begin(), sample.end()), (std::set<int>{0, 1, 2, 3, 4, 5, 6, 7}));
-  }
-}
-
-// Every one of the 45 sets of 8 out of 10 is equally likely: chi-square with 44 degrees of freedom over
-// 45,000 draws, at 1e-5. A set drawn 10 % too often alone adds 10 to the statistic's 44 +- 9.
-TEST(DrawSample, EverySetIsEquallyLikely) {
-  RandomStream rng({1, 0, 0, 4});
-  std::map<std::set<int>, int> counts;
-  for (int draw = 0; draw < 45'000; ++draw) {
-    const Sample sample = DrawSample(8, 10, rng);
-    ++counts[std::set<int>(sample.begin(), sample.end())];
-  }
-  EXPECT_EQ(counts.size(), 45u);
-  double statistic = 0.0;
-  for (const auto& [set, count] : counts) statistic += (count - 1000.0) * (count - 1000.0) / 1000.0;
-  EXPECT_LT(statistic, ChiSquareQuantile(44, 1.0 - 1e-5));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ class Entries(unittest.TestCase):
         self.assert_refused("open = { was = 'a", "stats.toml")
 
     def test_the_room_is_the_innermost_that_the_file_is_in(self):
-        self.assertEqual(entries.room_of("estimator/ransac_loop.cc"), "estimator")
+        self.assertEqual(entries.room_of("estimator/ransac_loop.h"), "estimator")
         self.assertEqual(entries.room_of("estimator/calibrated/influence.cc"), "calibrated")
         self.assertEqual(entries.room_of("experiments/real/truth_free/twin.cc"), "truth_free")
         self.assertIsNone(entries.room_of("robot/pose_graph.cc"))

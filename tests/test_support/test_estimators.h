@@ -7,7 +7,7 @@
 #include <string>
 
 #include "estimator/estimator_registry.h"
-#include "estimator/ransac_estimator.h"
+#include "estimator/loop_inspection.h"
 
 namespace rcme {
 
@@ -15,37 +15,55 @@ struct CallCounts {
   std::atomic<int> estimates{0}, traces{0}, decisions{0}, finishes{0};
 };
 
-// rcme, every call counted.
-class CountedEstimator : public RansacEstimator {
+// That of rcme, every call counted.
+class CountedInspection : public LoopInspection {
  public:
-  CountedEstimator(std::unique_ptr<MotionEstimator> rcme, CallCounts* counts)
+  CountedInspection(std::unique_ptr<const LoopInspection> rcme, CallCounts* counts)
       : rcme_(std::move(rcme)), counts_(counts) {}
-  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
-    ++counts_->estimates;
-    return rcme_->Estimate(problem, rng);
-  }
   HypothesisTrace Trace(const MotionProblem& problem, RandomStream& rng) const override {
     ++counts_->traces;
-    return AsRansac(*rcme_)->Trace(problem, rng);
+    return rcme_->Trace(problem, rng);
   }
   LoopResult Decide(const HypothesisTrace& trace) const override {
     ++counts_->decisions;
-    return AsRansac(*rcme_)->Decide(trace);
+    return rcme_->Decide(trace);
   }
   MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
                         Refinements* refinements) const override {
     ++counts_->finishes;
-    return AsRansac(*rcme_)->Finish(problem, loop, refinements);
+    return rcme_->Finish(problem, loop, refinements);
   }
   ScoredMotion ScoreMotion(const MotionProblem& problem, const RelativePose& start) const override {
-    return AsRansac(*rcme_)->ScoreMotion(problem, start);
+    return rcme_->ScoreMotion(problem, start);
   }
-  const RansacOptions& options() const override { return AsRansac(*rcme_)->options(); }
-  std::unique_ptr<RansacEstimator> With(const RansacOptions& options) const override {
-    return std::make_unique<CountedEstimator>(AsRansac(*rcme_)->With(options), counts_);
+  const RansacOptions& options() const override { return rcme_->options(); }
+  std::unique_ptr<LoopInspection> With(const RansacOptions& options) const override {
+    return std::make_unique<CountedInspection>(rcme_->With(options), counts_);
   }
 
  private:
+  std::unique_ptr<const LoopInspection> rcme_;
+  CallCounts* counts_;
+};
+
+// rcme, every call counted, those of its inspection too.
+class CountedEstimator : public InspectableEstimator {
+ public:
+  CountedEstimator(std::unique_ptr<MotionEstimator> rcme, CallCounts* counts)
+      : InspectableEstimator(std::make_unique<CountedInspection>(CopyInspection(*rcme), counts)),
+        rcme_(std::move(rcme)),
+        counts_(counts) {}
+  MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    ++counts_->estimates;
+    return rcme_->Estimate(problem, rng);
+  }
+
+ private:
+  static std::unique_ptr<LoopInspection> CopyInspection(const MotionEstimator& rcme) {
+    const LoopInspection* const inspection = FindInspection(rcme);
+    return inspection->With(inspection->options());
+  }
+
   std::unique_ptr<MotionEstimator> rcme_;
   CallCounts* counts_;
 };

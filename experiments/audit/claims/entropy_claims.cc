@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "estimator/run_pipeline.h"
+#include "estimator/ransac_estimate.h"
 #include "estimator/sample_consistency.h"
 #include "experiments/audit/claims/calibration.h"
 #include "experiments/audit/claims/call_estimator.h"
@@ -128,19 +128,18 @@ class PrintedEntropyTest {
 
 // RCME with the joint sample test and no quality test: all but the score that selects is the same.
 template <typename PointTestT>
-struct SelectionPipeline {
+struct SelectionDecision {
   using PointTest = PointTestT;
   static constexpr bool kTestsSample = true;
   static bool SampleIsConsistent(const MotionProblem&, const Hypothesis<EightPoint>& hypothesis,
                                  const PointTest&, const Thresholds& thresholds) {
     return JointSampleStatistic(hypothesis) <= thresholds.sample;
   }
-  static bool InlierSetIsGood(double, const RansacOptions&, const Thresholds&) { return true; }
-  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions& options) {
-    return options.selection == Selection::kMeanEntropy
-               ? a.mean_entropy < b.mean_entropy
-               : a.negative_log_likelihood < b.negative_log_likelihood;
-  }
+  SelectionDecision(const RansacOptions& options, const Thresholds&)
+      : selected_by(FindDecidingScore(options.selection)) {}
+  bool AcceptsInlierSet(double) const { return true; }
+  DecidingScore deciding_score() const { return selected_by; }
+  DecidingScore selected_by;
 };
 
 template <typename PointTest>
@@ -148,9 +147,9 @@ bool SelectionFails(const Case& made, Selection selection) {
   RansacOptions options;
   options.selection = selection;
   RandomStream sampling_rng = StreamFor(made.name, StreamPurpose::kSampling);
-  using Pipeline = SelectionPipeline<PointTest>;
-  const MotionEstimate estimate =
-      RunPipeline<Pipeline, ReferenceEngine<Pipeline, EightPoint>>(made.problem(), options, sampling_rng);
+  using Decision = SelectionDecision<PointTest>;
+  const MotionEstimate estimate = EstimateByRansac<Decision, ReferenceEngine<Decision, EightPoint>>(
+      made.problem(), options, sampling_rng);
   return FailsOrRefuses(Score(estimate, made.data, 0.0));
 }
 

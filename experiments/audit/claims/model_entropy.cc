@@ -9,7 +9,7 @@ std::optional<UncertainFundamental> ModelOf(const MotionProblem& problem, const 
   std::optional<Hypothesis<EightPoint>> hypothesis = InstantiateModel<EightPoint>(problem, {sample});
   if (!hypothesis) return std::nullopt;
   PropagateCovariance(problem, &*hypothesis);
-  return UncertainModelOf(problem, *hypothesis);
+  return ComputeUncertainFundamental(problem, *hypothesis);
 }
 
 Sample DrawSampleOf(SampleKind kind, Case& made) {

@@ -93,7 +93,7 @@ InlierScore FivePointScore(const MotionProblem& problem, const Sample& sample) {
   InlierScore most;
   for (Hypothesis<FivePoint> hypothesis : InstantiateModels<FivePoint>(problem, first_five)) {
     PropagateCovariance(problem, &hypothesis);
-    const std::optional<UncertainFundamental> model = UncertainModelOf(problem, hypothesis);
+    const std::optional<UncertainFundamental> model = ComputeUncertainFundamental(problem, hypothesis);
     if (!model) continue;
     const InlierScore score = ScoreInliers(problem, RankAwareTest(*model, problem.sigma_px), thresholds);
     if (score.num_inliers > most.num_inliers) most = score;

@@ -10,8 +10,8 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/estimators/rcme_calibrated.h"
+#include "estimator/loop_inspection.h"
 #include "estimator/motion_tests.h"
-#include "estimator/ransac_estimator.h"
 #include "estimator/reference_matches.h"
 #include "experiments/real/answer/estimate_output.h"
 #include "experiments/real/answer/motion_words.h"
@@ -102,7 +102,7 @@ constexpr double kClear = 2.0;
 
 // Which of the motions the estimator itself would choose, had its loop found these alone; nothing: none
 // passes its tests.
-std::optional<size_t> Chosen(const RansacEstimator& estimator, int num_matches,
+std::optional<size_t> Chosen(const LoopInspection& estimator, int num_matches,
                              const std::vector<const ScoredMotion*>& motions) {
   RansacOptions options = estimator.options();
   options.num_iterations = static_cast<int>(motions.size());
@@ -124,7 +124,7 @@ std::optional<size_t> Chosen(const RansacEstimator& estimator, int num_matches,
 
 class RansacWhy {
  public:
-  RansacWhy(const RansacEstimator& estimator, const TrialData& data, const FailureBounds& bounds)
+  RansacWhy(const LoopInspection& estimator, const TrialData& data, const FailureBounds& bounds)
       : estimator_(estimator),
         data_(data),
         bounds_(bounds),
@@ -174,7 +174,7 @@ class RansacWhy {
                {}};
   }
 
-  const RansacEstimator& estimator_;
+  const LoopInspection& estimator_;
   const TrialData& data_;
   const FailureBounds& bounds_;
   ScoredMotion truth_;
@@ -183,7 +183,7 @@ class RansacWhy {
 constexpr double kSure = 0.9;
 
 // By the odds that rcme_calibrated itself gives the true motion, had its search found it.
-Why WhyByWeights(const CalibratedEstimator& estimator, const TrialData& data, const MotionEstimate& estimate,
+Why WhyByWeights(const WeightInspection& estimator, const TrialData& data, const MotionEstimate& estimate,
                  const FailureBounds& bounds) {
   std::vector<RelativePose> starts = {*data.truth.cam2_from_cam1_true};
   if (estimate.status == MotionStatus::kOk) starts.push_back(estimate.cam2_from_cam1);
@@ -218,11 +218,11 @@ Why WhyNotRight(const EstimatorSpec& spec, const TrialData& data, const MotionEs
         WhyVerdict::kTestsRefuse, "the gate of model choice refuses the problem: " + estimate.message, {}};
   if (IsBadInput(status)) return {WhyVerdict::kTestsRefuse, estimate.message, {}};
   std::unique_ptr<MotionEstimator> estimator = Bare(spec);
-  if (const CalibratedEstimator* calibrated = AsCalibrated(*estimator))
+  if (const WeightInspection* calibrated = FindWeightInspection(*estimator))
     return WhyByWeights(*calibrated, data, estimate, bounds);
-  const bool has_own_score = AsRansac(*estimator) != nullptr;
+  const bool has_own_score = FindInspection(*estimator) != nullptr;
   if (!has_own_score) estimator = MakeEstimator(kStandIn);
-  const RansacWhy of(*AsRansac(*estimator), data, bounds);
+  const RansacWhy of(*FindInspection(*estimator), data, bounds);
   Why why = status == MotionStatus::kOk ? of.OfFailure(estimate.cam2_from_cam1) : of.OfRefusal();
   if (!has_own_score) why.words += fmt::format(" (by {}, in place of its own score)", kStandIn);
   return why;

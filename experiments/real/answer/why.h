@@ -1,7 +1,7 @@
 // Why an answer is wrong, or missing: did the search fail, or can the estimator's own model not tell?
 //
 // The true motion is handed to the estimator as if its search had found it, and judged by the estimator's own
-// score and tests (RansacEstimator::ScoreMotion and Decide, CalibratedEstimator::WeighMotions). It is refined
+// score and tests (LoopInspection::ScoreMotion and Decide, WeightInspection::WeighMotions). It is refined
 // there first: noise moves the optimum away from the truth, and a motion that was fitted is not to be held
 // against one that was not. No call of Estimate sees the truth.
 #pragma once

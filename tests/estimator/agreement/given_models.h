@@ -50,22 +50,26 @@ class SearchOfGivenModels {
   std::optional<Judged<Solver, PointTest>> judged_;
 };
 
-// The decisions of prcme and rcme.
-struct EntropyDecisions {
-  static bool InlierSetIsGood(double z, const RansacOptions& options, const Thresholds& thresholds) {
-    return PassesQualityTest(z, thresholds.normal, options.quality_test);
-  }
-  static bool IsBetter(const InlierScore& a, const InlierScore& b, const RansacOptions&) {
-    return a.mean_entropy < b.mean_entropy;
-  }
+// The decision of prcme and rcme, by mean entropy.
+class EntropyDecision {
+ public:
+  EntropyDecision(const RansacOptions& options, const Thresholds& thresholds)
+      : quality_test_(options.quality_test), normal_quantile_(thresholds.normal) {}
+  bool AcceptsInlierSet(double z) const { return PassesQualityTest(z, normal_quantile_, quality_test_); }
+  DecidingScore deciding_score() const { return DecidingScore::kMeanEntropy; }
+
+ private:
+  QualityTest quality_test_;
+  double normal_quantile_;
 };
 
-template <typename Decisions, typename PointTest>
+template <LoopDecision Decision, typename PointTest>
 LoopResult RunOverModels(const RansacOptions& options, const MotionProblem& problem, std::uint32_t trial) {
   const MatchBlocks matches(problem);
   RandomStream rng = SamplingStream(trial);
   SearchOfGivenModels<FivePoint, PointTest> search(problem, matches, options, rng);
-  return RunRansacLoop<Decisions>(options, matches.num_matches(), search);
+  return RunRansacLoop(options, matches.num_matches(), search, search,
+                       Decision(options, search.thresholds()));
 }
 
 // Of a variant with five points.
@@ -73,10 +77,10 @@ inline LoopResult ReferenceOverFastModels(const Variant& variant, const MotionPr
                                           std::uint32_t trial) {
   const RansacOptions options = variant.Options();
   if (variant.estimator == "standard")
-    return RunOverModels<InlierCountPipeline, KnownPoseTest>(options, problem, trial);
+    return RunOverModels<InlierCountDecision, KnownPoseTest>(options, problem, trial);
   return variant.reading == Reading::kRankAware
-             ? RunOverModels<EntropyDecisions, RankAwareTest>(options, problem, trial)
-             : RunOverModels<EntropyDecisions, AsPrintedTest>(options, problem, trial);
+             ? RunOverModels<EntropyDecision, RankAwareTest>(options, problem, trial)
+             : RunOverModels<EntropyDecision, AsPrintedTest>(options, problem, trial);
 }
 
 }  // namespace rcme::agreement

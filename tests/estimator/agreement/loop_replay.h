@@ -43,7 +43,7 @@ struct Judged {
       return Judged{*hypothesis, PointTest(hypothesis->F, problem.sigma_px)};
     } else {
       PropagateCovariance(problem, &*hypothesis);
-      const auto model = UncertainModelOf(problem, *hypothesis);
+      const auto model = ComputeUncertainFundamental(problem, *hypothesis);
       if (!model) return std::nullopt;
       return Judged{*hypothesis, PointTest(*model, problem.sigma_px)};
     }

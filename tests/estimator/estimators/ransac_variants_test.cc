@@ -64,11 +64,12 @@ TEST(RansacVariants, TheLeastCostWins) {
   RansacOptions options;
   options.solver = MinimalSolver::kFivePoint;
   for (const auto make : {MakeMsac, MakeMlesac}) {
-    const std::unique_ptr<RansacEstimator> estimator = make(options);
+    const std::unique_ptr<MotionEstimator> estimator = make(options);
+    const LoopInspection* const inspection = FindInspection(*estimator);
     const MotionProblem problem = TwoCameraProblem(100, 0.5, 0.3, 0);
     RandomStream rng({1, 0, 0, 4});
-    const HypothesisTrace trace = estimator->Trace(problem, rng);
-    const LoopResult loop = estimator->Decide(trace);
+    const HypothesisTrace trace = inspection->Trace(problem, rng);
+    const LoopResult loop = inspection->Decide(trace);
     ASSERT_TRUE(loop.winner.has_value());
     int most = 0;
     for (const ScoredHypothesis& h : trace.hypotheses) most = std::max(most, h.score.num_inliers);
@@ -78,7 +79,7 @@ TEST(RansacVariants, TheLeastCostWins) {
     }
     Refinements refinements;
     RandomStream again({1, 0, 0, 4});
-    EXPECT_EQ(NumbersOf(estimator->Finish(problem, loop, &refinements)),
+    EXPECT_EQ(NumbersOf(inspection->Finish(problem, loop, &refinements)),
               NumbersOf(estimator->Estimate(problem, again)));
   }
 }

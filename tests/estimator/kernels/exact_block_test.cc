@@ -72,7 +72,7 @@ TEST_F(ExactBlockTest, IsTheScalarHypothesis) {
           Eigen::Matrix3d F;
           for (int i = 0; i < 9; ++i) F(i / 3, i % 3) = block.F[i][lane];
           EXPECT_LT(std::min((F - expected).norm(), (F + expected).norm()), tolerance * expected.norm());
-          const UncertainFundamental model = UncertainModelOf(problem, scalar).value();
+          const UncertainFundamental model = ComputeUncertainFundamental(problem, scalar).value();
           for (int i = 0; i < 60; i += 7) {
             const double variance = VarianceOfG(model, problem.matches[static_cast<size_t>(i)]);
             EXPECT_GT(variance, 0.0);

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "estimator/estimator_registry.h"
+#include "estimator/loop_inspection.h"
 #include "estimator/model_choice/verdict.h"
-#include "estimator/ransac_estimator.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/family_problem.h"
 #include "tests/test_support/option_checks.h"
@@ -22,8 +22,8 @@ MotionEstimate Ask(const std::string& estimator, const Settings& options, const 
 
 TEST(Gate, IsOffByDefaultAndThenNotThere) {
   const std::unique_ptr<MotionEstimator> estimator = MakeEstimator("standard", {});
-  EXPECT_NE(AsRansac(*estimator), nullptr);
-  EXPECT_EQ(AsRansac(*MakeEstimator("standard", {{"model_choice", "gic"}})), nullptr);
+  EXPECT_NE(FindInspection(*estimator), nullptr);
+  EXPECT_EQ(FindInspection(*MakeEstimator("standard", {{"model_choice", "gic"}})), nullptr);
 }
 
 TEST(Gate, WhatItLetsThroughIsTheAnswerWithoutIt) {

@@ -204,7 +204,7 @@ TYPED_TEST(MinimalSolverTest, TheCovarianceIsThePropagatedOne) {
       EXPECT_LT(std::abs(eigenvalues(3)), 1e-14 * eigenvalues(4));
     }
     const MotionProblem& problem = random.problem;
-    const auto of_factor = UncertainModelOf(problem, *hypothesis);
+    const auto of_factor = ComputeUncertainFundamental(problem, *hypothesis);
     const auto of_cov =
         UncertainFundamental::From(hypothesis->pose, hypothesis->pose_cov, problem.camera1, problem.camera2);
     ASSERT_TRUE(of_factor && of_cov);
@@ -307,7 +307,7 @@ TEST(OnePoint, ACovarianceOfRankOneIsAsGoodAsAnyToThePointTests) {
     AddNoise(0.01, rng, &random.problem);
     const auto hypothesis = NearestHypothesis<OnePoint>(random);
     ASSERT_TRUE(hypothesis);
-    const auto model = UncertainModelOf(random.problem, *hypothesis);
+    const auto model = ComputeUncertainFundamental(random.problem, *hypothesis);
     ASSERT_TRUE(model);
     PointResidual residual, printed;
     const RankAwareTest test(*model, 0.01);

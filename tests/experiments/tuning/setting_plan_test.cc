@@ -69,7 +69,7 @@ TEST(SettingPlan, TheTraceHasAsManyHypothesesAsAnySettingLooksAt) {
   const StreamName name{1, 0, 0, 0};
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
   const MotionProblem problem = study.conditions[0].source->Make(name).problem;
-  EXPECT_EQ(AsRansac(*plan.groups[0].tracer)->Trace(problem, rng).hypotheses.size(), 30u);
+  EXPECT_EQ(plan.groups[0].tracer->Trace(problem, rng).hypotheses.size(), 30u);
 }
 
 TEST(SettingPlan, AnEstimatorThatIsNotInTheStudy) {

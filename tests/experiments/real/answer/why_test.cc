@@ -8,7 +8,7 @@
 #include <string>
 
 #include "estimator/estimators/rcme_calibrated.h"
-#include "estimator/ransac_estimator.h"
+#include "estimator/loop_inspection.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 
@@ -138,7 +138,7 @@ TEST(ScoreMotion, GivesTheAnswerItsOwnAnswer) {
       const MotionEstimate& answer = result.estimates[e];
       if (answer.status != MotionStatus::kOk) continue;
       const ScoredMotion scored =
-          AsRansac(*plan.estimators[e])->ScoreMotion(result.data.problem, answer.cam2_from_cam1);
+          FindInspection(*plan.estimators[e])->ScoreMotion(result.data.problem, answer.cam2_from_cam1);
       ASSERT_TRUE(scored.refined.converged);
       // The same optimum: the robust refinement from there ends there, to what its last step leaves.
       EXPECT_LT(LocalCoordinates(answer.cam2_from_cam1, scored.refined.cam2_from_cam1).norm(), 1e-3);
@@ -159,7 +159,8 @@ TEST(WeighMotions, OneMotionOrTwo) {
       const TrialData data = plan.conditions[0].source->Make(NameOfScene(plan, plan.conditions[0], trial));
       double sum = 0.0, greatest = 0.0;
       for (const WeighedMotion& motion :
-           AsCalibrated(*plan.estimators[0])->WeighMotions(data.problem, {*data.truth.cam2_from_cam1_true})) {
+           FindWeightInspection(*plan.estimators[0])
+               ->WeighMotions(data.problem, {*data.truth.cam2_from_cam1_true})) {
         sum += motion.weight;
         greatest = std::max(greatest, motion.weight);
       }

@@ -1,11 +1,11 @@
 // Estimation taken apart: trace, decide, finish.
-#include "estimator/ransac_estimator.h"
+#include "estimator/ransac_estimate.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "estimator/estimator_registry.h"
-#include "estimator/run_pipeline.h"
+#include "estimator/loop_inspection.h"
 #include "tests/test_support/make_ransac.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -59,13 +59,13 @@ std::vector<RansacOptions> BothReadings() {
   return both;
 }
 
-TEST(RansacEstimator, EstimateIsFinishOfDecideOfTrace) {
+TEST(RansacEstimate, EstimateIsFinishOfDecideOfTrace) {
   for (const EstimatorEntry& entry : EstimatorRegistry()) {
     for (RansacOptions options : BothReadings()) {
       for (const Implementation implementation : {Implementation::kFast, Implementation::kReference}) {
         options.implementation = implementation;
         const auto estimator = MakeRansac(entry.name, options);
-        const RansacEstimator* parts = AsRansac(*estimator);
+        const LoopInspection* parts = FindInspection(*estimator);
         ASSERT_NE(parts, nullptr) << entry.name;
         for (const MotionProblem& problem : Problems()) {
           SCOPED_TRACE(entry.name);
@@ -80,7 +80,7 @@ TEST(RansacEstimator, EstimateIsFinishOfDecideOfTrace) {
 }
 
 // One trace decided under other options is what an estimation with these options gives.
-TEST(RansacEstimator, ATraceServesAllDecisionOptions) {
+TEST(RansacEstimate, ATraceServesAllDecisionOptions) {
   const std::vector<std::pair<std::string, std::string>> changes = {{"mu", "-1000"},
                                                                     {"mu", "-5"},
                                                                     {"mu", "1.5"},
@@ -103,14 +103,14 @@ TEST(RansacEstimator, ATraceServesAllDecisionOptions) {
       if (options.reading == Reading::kRankAware) options.selection = Selection::kPredictiveLikelihood;
       const auto traced = MakeRansac("rcme", options);
       RandomStream rng = SamplingStream();
-      const HypothesisTrace trace = AsRansac(*traced)->Trace(problem, rng);
+      const HypothesisTrace trace = FindInspection(*traced)->Trace(problem, rng);
       Refinements refinements;  // one set for all
       for (const auto& [key, value] : changes) {
         SCOPED_TRACE(key + " = " + value);
         RansacOptions changed = options;
         FindParameter(AllParameters(changed), key).SetFromText(value);
         const auto estimator = MakeRansac("rcme", changed);
-        const RansacEstimator* parts = AsRansac(*estimator);
+        const LoopInspection* parts = FindInspection(*estimator);
         ExpectEqual(parts->Finish(problem, parts->Decide(trace), &refinements),
                     EstimateWith(*estimator, problem));
       }
@@ -120,7 +120,7 @@ TEST(RansacEstimator, ATraceServesAllDecisionOptions) {
 
 // Of several refined candidates the one that explains most matches wins, so that more of them explain no
 // fewer; in one of these problems they explain more.
-TEST(RansacEstimator, MoreRefinedCandidatesExplainNoFewerMatches) {
+TEST(RansacEstimate, MoreRefinedCandidatesExplainNoFewerMatches) {
   int num_better = 0;
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     const MotionProblem problem = MakeProblem(0.5, 120, trial);
@@ -140,7 +140,7 @@ TEST(RansacEstimator, MoreRefinedCandidatesExplainNoFewerMatches) {
 }
 
 // A tie within rounding may part them, rarely.
-TEST(RansacEstimator, BothImplementationsChooseTheSameOfSeveralMotions) {
+TEST(RansacEstimate, BothImplementationsChooseTheSameOfSeveralMotions) {
   int num_different = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const MotionProblem problem = MakeProblem(0.4, 120, trial);
@@ -158,7 +158,7 @@ TEST(RansacEstimator, BothImplementationsChooseTheSameOfSeveralMotions) {
 }
 
 // The motion is refused where it explains less than asked for, and only there.
-TEST(RansacEstimator, AMotionThatExplainsTooLittleIsRefused) {
+TEST(RansacEstimate, AMotionThatExplainsTooLittleIsRefused) {
   const MotionProblem problem = MakeProblem(0.2, 120, 0);
   RansacOptions options;
   options.reading = Reading::kRankAware;
@@ -174,7 +174,7 @@ TEST(RansacEstimator, AMotionThatExplainsTooLittleIsRefused) {
 }
 
 // A share that is met exactly is met: 0.55 * 100 is more than 55 in floating point.
-TEST(RansacEstimator, AShareThatIsMetExactlyIsEnough) {
+TEST(RansacEstimate, AShareThatIsMetExactlyIsEnough) {
   for (const int num_matches : {100, 200, 400, 1000}) {
     for (int num_explained = 1; num_explained <= num_matches; ++num_explained) {
       RansacOptions options;
@@ -192,7 +192,7 @@ TEST(RansacEstimator, AShareThatIsMetExactlyIsEnough) {
 }
 
 // Of refined candidates that explain as many matches the better one of the loop stays, whose turn is first.
-TEST(RansacEstimator, OfEqualMotionsTheFirstStays) {
+TEST(RansacEstimate, OfEqualMotionsTheFirstStays) {
   LoopResult loop;
   const auto made = [](int index) { return Candidate{{{index}}, {}, 0.0}; };
   loop.winner = made(0);
@@ -214,7 +214,7 @@ TEST(RansacEstimator, OfEqualMotionsTheFirstStays) {
 }
 
 // Where nothing is too poor or too small, the winner is the best of all hypotheses by what selects.
-TEST(RansacEstimator, TheWinnerIsTheBestByWhatSelects) {
+TEST(RansacEstimate, TheWinnerIsTheBestByWhatSelects) {
   RansacOptions options;
   options.reading = Reading::kRankAware;
   options.mu = 1000.0;
@@ -225,8 +225,8 @@ TEST(RansacEstimator, TheWinnerIsTheBestByWhatSelects) {
     options.selection = selection;
     const auto estimator = MakeRansac("prcme", options);
     RandomStream rng = SamplingStream();
-    const HypothesisTrace trace = AsRansac(*estimator)->Trace(problem, rng);
-    const InlierScore winner = AsRansac(*estimator)->Decide(trace).winner.value().score;
+    const HypothesisTrace trace = FindInspection(*estimator)->Trace(problem, rng);
+    const InlierScore winner = FindInspection(*estimator)->Decide(trace).winner.value().score;
     int num_worse = 0;
     for (const ScoredHypothesis& hypothesis : trace.hypotheses) {
       if (hypothesis.score.num_inliers == 0) continue;
@@ -240,7 +240,7 @@ TEST(RansacEstimator, TheWinnerIsTheBestByWhatSelects) {
   }
 }
 
-TEST(RansacEstimator, AnEmptyLoopIsDegenerateOnlyIfEverySampleIs) {
+TEST(RansacEstimate, AnEmptyLoopIsDegenerateOnlyIfEverySampleIs) {
   LoopCounts counts{.num_hypotheses = 20, .num_degenerate_samples = 20};
   EXPECT_EQ(RefusalFromLoop(counts).status, MotionStatus::kDegenerateMatches);
   counts.num_degenerate_samples = 19;
@@ -249,7 +249,7 @@ TEST(RansacEstimator, AnEmptyLoopIsDegenerateOnlyIfEverySampleIs) {
 }
 
 // Without entropies there is nothing to stop at: psi is zero for every hypothesis.
-TEST(RansacEstimator, StopsEarly) {
+TEST(RansacEstimate, StopsEarly) {
   const MotionProblem problem = MakeProblem(0.4, 120, 0);
   RansacOptions options;
   options.reading = Reading::kRankAware;
@@ -257,14 +257,14 @@ TEST(RansacEstimator, StopsEarly) {
   EXPECT_LT(EstimateWith(*MakeRansac("prcme", options), problem).counts.num_hypotheses, 10);
 }
 
-TEST(RansacEstimator, DecisionOptionsAreOptions) {
+TEST(RansacEstimate, DecisionOptionsAreOptions) {
   RansacOptions options;
   const std::vector<Parameter> parameters = AllParameters(options);
   for (const char* name : kDecisionOptions) EXPECT_NO_THROW(FindParameter(parameters, name)) << name;
 }
 
 // The sample test has its own level; as long as none is given it is alpha.
-TEST(RansacEstimator, TheSampleTestHasALevelOfItsOwn) {
+TEST(RansacEstimate, TheSampleTestHasALevelOfItsOwn) {
   const MotionProblem problem = MakeProblem(0.0, 120, 5);
   for (RansacOptions options : BothReadings()) {
     const auto num_inconsistent = [&](double level) {
@@ -314,7 +314,7 @@ Verdict VerdictOf(const RansacOptions& options, const MotionProblem& problem) {
 
 // Pixels times 1000: excess entropy has no unit, so no verdict may change. A mu among the entropies, so that
 // some sets pass and some do not.
-TEST(RansacEstimator, RankAwareVerdictsDoNotDependOnTheUnitOfLength) {
+TEST(RansacEstimate, RankAwareVerdictsDoNotDependOnTheUnitOfLength) {
   RansacOptions options;
   options.reading = Reading::kRankAware;
   options.mu = 2.0;
@@ -334,7 +334,7 @@ TEST(RansacEstimator, RankAwareVerdictsDoNotDependOnTheUnitOfLength) {
 }
 
 // As printed, h grows by 4 log(1000) = 27.6 nats, and mu = -3.53 px refuses everything.
-TEST(RansacEstimator, PrintedVerdictsDependOnTheUnitOfLength) {
+TEST(RansacEstimate, PrintedVerdictsDependOnTheUnitOfLength) {
   const MotionProblem problem = MakeProblem(0.1, 150, 0);
   EXPECT_EQ(VerdictOf({}, problem).status, MotionStatus::kOk);
   EXPECT_EQ(VerdictOf({}, InUnits(problem, 1000)).status, MotionStatus::kNoCandidate);

@@ -1,16 +1,27 @@
-// The parts of a call of the RANSAC family: check, loop, cheirality, refinement.
-//
-// An engine makes the hypotheses (`search`, see ransac_loop.h) and holds the matches for the refinement
-// (`matches`, see refine_winner.h): reference_engine.h or kernels/fast_engine.h.
+// A call of the RANSAC family: check, loop, refinement. The body of Estimate.
 #pragma once
 
-#include "estimator/hypothesis_trace.h"
+#include <concepts>
+#include <optional>
+#include <utility>
+
 #include "estimator/problem_check.h"
-#include "estimator/ransac_estimator.h"
+#include "estimator/ransac_loop.h"
 #include "estimator/reference_engine.h"
 #include "estimator/refine_winner.h"
 
 namespace rcme {
+
+// Makes the hypotheses of one minimal solver (`search`), finds one of them again with its inliers, and holds
+// the matches for the refinement (`matches`): reference_engine.h or kernels/fast_engine.h.
+template <typename T>
+concept RansacEngine = requires(T engine, const HypothesisId& id) {
+  requires HypothesisSolver<decltype(engine.search)> && HypothesisScorer<decltype(engine.search)>;
+  requires MatchSets<decltype(engine.matches)>;
+  { engine.search.thresholds() } -> std::same_as<const Thresholds&>;
+  { engine.search.FindHypothesis(id) } -> std::same_as<std::optional<Hypothesis<typename T::Solver>>>;
+  { engine.search.FindSupport(id) } -> std::convertible_to<typename decltype(engine.matches)::Set>;
+};
 
 // What the loop says of a candidate.
 MotionEstimate EstimateFromCandidate(const LoopCounts& counts, const Candidate& candidate);
@@ -23,13 +34,13 @@ void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEs
 
 // The check before any hypothesis is drawn; a refusal, or nothing. The points of one image must not lie on
 // one line whatever the solver: the refinement moves all five degrees of freedom.
-template <typename Engine>
+template <RansacEngine Engine>
 std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem) {
   return RefuseUnsolvable(problem, Engine::Solver::kSampleSize);
 }
 
 // The estimate from one candidate, before others are looked at.
-template <typename Engine>
+template <RansacEngine Engine>
 MotionEstimate RefineCandidate(Engine& engine, const RansacOptions& options, const LoopCounts& counts,
                                const Candidate& candidate) {
   MotionEstimate estimate = EstimateFromCandidate(counts, candidate);
@@ -53,50 +64,22 @@ MotionEstimate FinishLoop(const RansacOptions& options, int num_matches, const L
   return best;
 }
 
-template <typename Pipeline, typename Engine>
-MotionEstimate RunEngine(const MotionProblem& problem, const RansacOptions& options, Engine& engine) {
+template <RansacDecision Decision, RansacEngine Engine>
+MotionEstimate EstimateWith(const MotionProblem& problem, const RansacOptions& options, Engine& engine) {
   const auto num_matches = static_cast<int>(problem.matches.size());
-  const LoopResult loop = RunRansacLoop<Pipeline>(options, num_matches, engine.search);
+  const Decision decision(options, engine.search.thresholds());
+  const LoopResult loop = RunRansacLoop(options, num_matches, engine.search, engine.search, decision);
   return FinishLoop(options, num_matches, loop, [&](const Candidate& candidate) {
     return RefineCandidate(engine, options, loop.counts, candidate);
   });
 }
 
-template <typename Pipeline, typename Engine>
-MotionEstimate RunPipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+template <RansacDecision Decision, RansacEngine Engine>
+MotionEstimate EstimateByRansac(const MotionProblem& problem, const RansacOptions& options,
+                                RandomStream& rng) {
   if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
   Engine engine(problem, options, rng);
-  return RunEngine<Pipeline>(problem, options, engine);
-}
-
-template <typename Engine>
-HypothesisTrace TracePipeline(const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
-  if (RefuseBeforeLoop<Engine>(problem)) return {};
-  Engine engine(problem, options, rng);
-  return TraceHypotheses(options.num_iterations, static_cast<int>(problem.matches.size()), engine.search);
-}
-
-// See RansacEstimator::Finish.
-template <typename Engine>
-MotionEstimate FinishPipeline(const MotionProblem& problem, const RansacOptions& options,
-                              const LoopResult& loop, Refinements* refinements) {
-  if (!loop.winner) {
-    if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
-  }
-  RandomStream no_samples({0, 0, 0, 0});
-  std::optional<Engine> engine;  // made when the first refinement is missing
-  const auto refine = [&](const Candidate& candidate) {
-    const auto known = refinements->find(candidate.id);
-    if (known == refinements->end()) {
-      if (!engine) engine.emplace(problem, options, no_samples);
-      return (*refinements)[candidate.id] = RefineCandidate(*engine, options, loop.counts, candidate);
-    }
-    MotionEstimate estimate = known->second;
-    estimate.counts = loop.counts;  // these two depend on how the loop decided
-    estimate.z_statistic = candidate.z_statistic;
-    return estimate;
-  };
-  return FinishLoop(options, static_cast<int>(problem.matches.size()), loop, refine);
+  return EstimateWith<Decision>(problem, options, engine);
 }
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-#include "estimator/run_pipeline.h"
+#include "estimator/ransac_estimate.h"
 
 #include <fmt/format.h>
 
@@ -24,8 +24,7 @@ MotionEstimate RefusalFromLoop(const LoopCounts& counts) {
           ? fmt::format("no motion could be computed: all {} samples are degenerate", counts.num_hypotheses)
           : fmt::format(
                 "none of the {} hypotheses is a candidate: {} samples are degenerate, {} hypotheses disagree "
-                "with "
-                "their sample, {} fail the inlier quality test",
+                "with their sample, {} fail the inlier quality test",
                 counts.num_hypotheses, counts.num_degenerate_samples, counts.num_inconsistent_samples,
                 counts.num_poor_inlier_sets);
   return estimate;
