@@ -1,9 +1,6 @@
 #include "estimator/hypothesis.h"
 
-#include "estimator/solvers/eight_point.h"
-#include "estimator/solvers/five_point.h"
-#include "estimator/solvers/one_point.h"
-#include "estimator/solvers/seven_point.h"
+#include "estimator/solvers/solver_table.h"
 #include "estimator/uncertainty/motion_covariance.h"
 
 namespace rcme {
@@ -81,8 +78,7 @@ std::optional<UncertainFundamental> ComputeUncertainFundamental(const MotionProb
   }
 }
 
-// One line per minimal solver.
-#define RCME_INSTANTIATE_HYPOTHESES_OF(Solver)                                                               \
+#define RCME_INSTANTIATE_HYPOTHESES_OF(Solver, name)                                                         \
   template struct SampleRays<Solver>;                                                                        \
   template std::optional<Hypothesis<Solver>> HypothesisFromModel<Solver>(                                    \
       const MotionProblem&, const HypothesisId&, const Solver::Model&);                                      \
@@ -93,9 +89,7 @@ std::optional<UncertainFundamental> ComputeUncertainFundamental(const MotionProb
   template void PropagateCovariance<Solver>(const MotionProblem&, Hypothesis<Solver>*);                      \
   template std::optional<UncertainFundamental> ComputeUncertainFundamental<Solver>(                          \
       const MotionProblem&, const Hypothesis<Solver>&);
-RCME_INSTANTIATE_HYPOTHESES_OF(EightPoint)
-RCME_INSTANTIATE_HYPOTHESES_OF(SevenPoint)
-RCME_INSTANTIATE_HYPOTHESES_OF(FivePoint)
-RCME_INSTANTIATE_HYPOTHESES_OF(OnePoint)
+RCME_FOR_EACH_SOLVER(RCME_INSTANTIATE_HYPOTHESES_OF)
+#undef RCME_INSTANTIATE_HYPOTHESES_OF
 
 }  // namespace rcme

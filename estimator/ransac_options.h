@@ -41,12 +41,8 @@ enum class RefinementError {
 };
 
 // What makes the hypotheses: matches of a sample -> F -> motion (solvers/minimal_solver.h).
-enum class MinimalSolver {
-  kEightPoint,  // the paper's: linear, one model
-  kSevenPoint,  // F of rank 2, up to three
-  kFivePoint,   // essential matrices, up to ten
-  kOnePoint,    // a car on a plane, one; cameras upright (solvers/one_point.h)
-};
+// solvers/solver_list.h has the list.
+enum class MinimalSolver : int;
 
 // Two implementations of the same mathematics. They agree to rounding, but for solutions of five points that
 // nearly coincide, of which each misses others (kernels/five_point_block.h).
@@ -59,7 +55,7 @@ enum class Implementation {
 // Options of the loop and the refinement of the RANSAC family (standard, prcme, rcme), each of which shows
 // those that have an effect on it. Defaults are the paper's where it gives a value.
 struct RansacOptions {
-  MinimalSolver solver = MinimalSolver::kEightPoint;
+  MinimalSolver solver{};            // the first of the list, eight_point
   int num_iterations = 200;          // N samples; fewer only where early_stop_entropy stops the loop
   double significance_level = 0.05;  // alpha of every test, the sample test's unless that has its own
   double sample_significance_level = std::numeric_limits<double>::quiet_NaN();  // NaN: significance_level

@@ -11,6 +11,7 @@
 #include "estimator/ransac_loop.h"
 #include "estimator/reference_matches.h"
 #include "estimator/refinement/rotation_mle.h"
+#include "estimator/solvers/solver_list.h"
 #include "stats/distributions.h"
 
 namespace rcme {

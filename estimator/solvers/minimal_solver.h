@@ -1,6 +1,6 @@
 // What a minimal solver is: the paper's Omega^-1 (Sec. model_instantiate) as a type. Five parts of the
 // estimator read it: the draw of the sample, the models and their covariance (hypothesis.h), the sample test
-// (sample_consistency.h), the loop, and the option `solver` (solver_choice.h). A worked example is
+// (sample_consistency.h), the loop, and the option `solver` (solver_list.h). A worked example is
 // one_point.h.
 //
 //   struct Solver {

@@ -1,6 +1,7 @@
-// The minimal solvers that the option `solver` offers: one line each in VisitSolver, one in SolverNames.
+// The minimal solvers that the option `solver` offers (solver_list.h), as types.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "estimator/solvers/five_point.h"
 #include "estimator/solvers/one_point.h"
 #include "estimator/solvers/seven_point.h"
+#include "estimator/solvers/solver_list.h"
 
 namespace rcme {
 
@@ -18,16 +20,13 @@ namespace rcme {
 template <typename Visit>
 decltype(auto) VisitSolver(MinimalSolver solver, Visit&& visit) {
   switch (solver) {
-    case MinimalSolver::kSevenPoint:
-      return visit(std::type_identity<SevenPoint>());
-    case MinimalSolver::kFivePoint:
-      return visit(std::type_identity<FivePoint>());
-    case MinimalSolver::kOnePoint:
-      return visit(std::type_identity<OnePoint>());
-    case MinimalSolver::kEightPoint:
-      break;
+#define RCME_VISIT(Solver, name) \
+  case MinimalSolver::k##Solver: \
+    return visit(std::type_identity<Solver>());
+    RCME_FOR_EACH_SOLVER(RCME_VISIT)
+#undef RCME_VISIT
   }
-  return visit(std::type_identity<EightPoint>());
+  throw std::logic_error("no minimal solver");
 }
 
 // Whether the solver has a fast implementation: a BlockSource (kernels/block_source.h).
@@ -37,10 +36,10 @@ inline constexpr bool kHasFast = std::is_same_v<Solver, EightPoint> || std::is_s
 // The names of the solvers in options, in the order in which they are listed.
 inline const std::vector<std::pair<std::string, MinimalSolver>>& SolverNames() {
   static const std::vector<std::pair<std::string, MinimalSolver>> names = {
-      {"eight_point", MinimalSolver::kEightPoint},
-      {"seven_point", MinimalSolver::kSevenPoint},
-      {"five_point", MinimalSolver::kFivePoint},
-      {"one_point", MinimalSolver::kOnePoint}};
+#define RCME_NAME(Solver, name) {name, MinimalSolver::k##Solver},
+      RCME_FOR_EACH_SOLVER(RCME_NAME)
+#undef RCME_NAME
+  };
   return names;
 }
 

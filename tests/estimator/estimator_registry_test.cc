@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "estimator/solvers/solver_table.h"
 #include "parameters/input_error.h"
@@ -36,16 +37,32 @@ std::string WordFor(const EstimatorVariant& variant, const std::string& option) 
   return "";
 }
 
+struct SolverFacts {
+  int sample_size = 0, max_models = 0;
+  bool has_fast = false;
+};
+
+// Nothing: an estimator without that option.
+std::optional<SolverFacts> FindFacts(const std::string& solver_name) {
+  for (const auto& [name, solver] : SolverNames()) {
+    if (name != solver_name) continue;
+    return VisitSolver(solver, []<typename S>(std::type_identity<S>) {
+      return SolverFacts{S::kSampleSize, S::kMaxModels, kHasFast<S>};
+    });
+  }
+  return std::nullopt;
+}
+
 // Every solver with every reading and each implementation that it has.
 std::vector<EstimatorVariant> Variants() {
   std::vector<EstimatorVariant> variants;
   for (EstimatorVariant variant : EstimatorVariants({"solver", "reading", "implementation"})) {
-    const std::string solver = WordFor(variant, "solver"),
-                      implementation = WordFor(variant, "implementation");
+    const std::string implementation = WordFor(variant, "implementation");
+    const std::optional<SolverFacts> solver = FindFacts(WordFor(variant, "solver"));
     if (implementation == "automatic") continue;
-    if (implementation == "fast" && solver != "eight_point" && solver != "five_point") continue;
+    if (implementation == "fast" && !(solver && solver->has_fast)) continue;
     // Up to ten models a sample, one by one: fewer samples will do.
-    if (implementation == "reference" && solver != "eight_point") {
+    if (implementation == "reference" && solver && solver->max_models > 1) {
       variant.options.emplace_back("num_iterations", "40");
     }
     variants.push_back(variant);
@@ -61,10 +78,7 @@ class EstimatorContract : public testing::TestWithParam<EstimatorVariant> {
   }
   static std::string Solver() { return WordFor(GetParam(), "solver"); }
   static int SampleSize() {
-    for (const auto& [name, solver] : SolverNames()) {
-      if (name != Solver()) continue;
-      return VisitSolver(solver, []<typename S>(std::type_identity<S>) { return S::kSampleSize; });
-    }
+    if (const std::optional<SolverFacts> solver = FindFacts(Solver())) return solver->sample_size;
     return GetParam().estimator == "rcme_calibrated" ? 6 : 8;  // five decide nothing there
   }
   std::unique_ptr<MotionEstimator> estimator_ = GetParam().Make();

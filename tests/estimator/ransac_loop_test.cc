@@ -101,10 +101,9 @@ void ExpectBlocksDoNotAllocate(BlockReading reading) {
 TEST(RansacLoop, DoesNotAllocatePerHypothesisOrPoint) {
   ExpectReferenceDoesNotAllocate<EightPoint, KnownPoseTest>();
   ExpectReferenceDoesNotAllocate<EightPoint, AsPrintedTest>();
-  ExpectReferenceDoesNotAllocate<EightPoint, RankAwareTest>();
-  ExpectReferenceDoesNotAllocate<SevenPoint, RankAwareTest>();
-  ExpectReferenceDoesNotAllocate<FivePoint, RankAwareTest>();
-  ExpectReferenceDoesNotAllocate<OnePoint, RankAwareTest>();
+#define RCME_EXPECT_NO_ALLOCATION(Solver, name) ExpectReferenceDoesNotAllocate<Solver, RankAwareTest>();
+  RCME_FOR_EACH_SOLVER(RCME_EXPECT_NO_ALLOCATION)
+#undef RCME_EXPECT_NO_ALLOCATION
   for (const BlockReading reading :
        {BlockReading::kKnownPose, BlockReading::kAsPrinted, BlockReading::kRankAware}) {
     ExpectBlocksDoNotAllocate<EightPoint>(reading);

@@ -7,6 +7,7 @@
 
 #include "estimator/estimators/rcme.h"
 #include "estimator/estimators/standard.h"
+#include "estimator/solvers/solver_list.h"
 
 namespace rcme {
 

@@ -91,7 +91,11 @@ std::optional<Hypothesis<Solver>> NearestHypothesis(const RandomProblem& random)
 
 template <typename Solver>
 class MinimalSolverTest : public testing::Test {};
-using Solvers = testing::Types<EightPoint, SevenPoint, FivePoint, OnePoint>;
+template <typename None, typename... All>
+using TypesAfter = testing::Types<All...>;
+#define RCME_AND(Solver, name) , Solver
+using Solvers = TypesAfter<void RCME_FOR_EACH_SOLVER(RCME_AND)>;
+#undef RCME_AND
 TYPED_TEST_SUITE(MinimalSolverTest, Solvers);
 
 TYPED_TEST(MinimalSolverTest, ModelsFitTheirSampleAndTheTruthIsAmongThem) {
