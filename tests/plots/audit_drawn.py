@@ -1,12 +1,11 @@
 """What the figures of plots/audit.py hold, and the tests' common ground."""
 
-import contextlib
 import functools
-import io
 import json
 import pathlib
 import tempfile
-import unittest
+
+from plot_test_case import PlotTestCase
 
 import audit
 from audit_figures.audit_file import read_audit
@@ -77,11 +76,11 @@ def shown_texts(figure):
     return [(text.get_text(), text.get_window_extent()) for text in texts if text.get_text()]
 
 
-class Written(unittest.TestCase):
+class Written(PlotTestCase):
+    script, given = audit, ["audit.json"]
+
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         self.file = self.folder / "audit.json"
         self.small = file_with(claim("flag.kappa", [evidence([target("flag rate", "rate", 0.02, None, None, 0.05)])]),
                                claim("z_test.size", [evidence(coverage(0), sigma_px=s) for s in SIGMAS],
@@ -89,16 +88,5 @@ class Written(unittest.TestCase):
 
     def run_main(self, *arguments, content=None, text=None):
         """(exit code, stdout, stderr) of the script on a file with that content or text."""
-        self.file.write_text(json.dumps(content or self.small) if text is None else text)
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = audit.main([str(self.folder), *arguments])
-        return code, out.getvalue(), err.getvalue()
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""), err)
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir() if path.name != "audit.json"], [])
+        self.write(content or self.small if text is None else text)
+        return self.run_script(self.folder, *arguments)

@@ -10,24 +10,21 @@ import json
 import math
 import pathlib
 import subprocess
-import sys
 import tempfile
 import unittest
 from unittest import mock
 
-HERE = pathlib.Path(__file__).resolve().parent
-PLOTS = HERE.parents[1] / "plots"
-sys.path[:0] = [str(PLOTS), str(HERE)]
+from plot_test_case import PLOTS
 
-import audit  # noqa: E402
-from browser import BROWSER, SKIP_REASON, Browser  # noqa: E402
-from fake_report import EVIL  # noqa: E402
-from page_structure import Structure  # noqa: E402
-from audit_figures.audit_file import CLAIM_VERDICTS, TARGET_VERDICTS  # noqa: E402
-from audit_figures.look import LOOKS  # noqa: E402
-from fake_audit import SIGMAS, claim, coverage, evidence, fake_audit, target  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-from audit_drawn import Written, caption_of, fake_figure, file_with, shown_texts, texts_of  # noqa: E402
+import audit
+from browser import BROWSER, SKIP_REASON, Browser
+from fake_report import EVIL
+from page_structure import Structure
+from audit_figures.audit_file import CLAIM_VERDICTS, TARGET_VERDICTS
+from audit_figures.look import LOOKS
+from fake_audit import SIGMAS, claim, coverage, evidence, fake_audit, target
+from matplotlib.figure import Figure
+from audit_drawn import Written, caption_of, fake_figure, file_with, shown_texts, texts_of
 
 
 class WrittenFiles(Written):
@@ -65,11 +62,7 @@ class WrittenFiles(Written):
             self.assert_refused(self.run_main(), "cannot write", "No space left on device")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as end:
-            audit.main(["--help"])
-        self.assertEqual(end.exception.code, 0)
-        self.assertIn("rcme audit --out audit\n  rcme plot audit audit", out.getvalue())
+        self.assert_help_shows("rcme audit --out audit\n  rcme plot audit audit")
 
 
 class Words(unittest.TestCase):
@@ -131,10 +124,7 @@ class Refusals(Written):
         self.assert_refused(self.run_main(content=self.changed("format", "rcme audit 2")), "'format'", "'rcme audit 1'")
         self.assert_refused(self.run_main(content=self.changed("claims", [])), "no claims", "nothing to draw")
         self.file.unlink()
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = audit.main([str(self.folder)])
-        self.assert_refused((code, out.getvalue(), err.getvalue()), "audit.json", "cannot be read", "No such file")
+        self.assert_refused(self.run_script(self.folder), "audit.json", "cannot be read", "No such file")
 
     def test_every_key_that_is_drawn_is_missed_by_name_and_place(self):
         places = [((), "the file", ("format", "seed", "budget", "confidence_per_target", "claims")),

@@ -1,26 +1,21 @@
 #!/usr/bin/python3
 """Tests of plots/failure_rate.py; run as: /usr/bin/python3 tests/plots/failure_rate_test.py"""
 
-import contextlib
 import csv
-import io
 import os
 import pathlib
 import subprocess
-import sys
-import tempfile
 import unittest
 from unittest import mock
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from plot_test_case import PLOTS, PlotTestCase
 
-import failure_rate  # noqa: E402
-from common import style  # noqa: E402
-from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-from matplotlib.lines import Line2D  # noqa: E402
-from common.summary_csv import read_summary, text_of_cell, where  # noqa: E402
+import failure_rate
+from common import style
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from common.summary_csv import read_summary, text_of_cell, where
 
 HEADER = "study,condition,outlier_ratio,sigma_px,estimator,quantity,kind,value,lower,upper,standard_error,n"
 # Rates and bounds with no relation to n: a script that recomputed any of them would be seen. Lines are not in order of
@@ -70,42 +65,25 @@ class NameTest(unittest.TestCase):
         self.assertEqual({cell: text_of_cell(cell) for cell in cells}, cells)
 
 
-class FailureRateTest(unittest.TestCase):
+class FailureRateTest(PlotTestCase):
+    script, given = failure_rate, ["summary.csv"]
+
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         self.out = self.folder / "figure.v1"  # a dot in the name is not a suffix
 
-    def summary(self, text=TABLE):
-        path = self.folder / "summary.csv"
-        path.write_text(text)
-        return path
-
     def draw(self, text=TABLE, quantities=("failure", "no_candidate"), conditions=(), log_y=False):
-        summary = where(read_summary(str(self.summary(text))), conditions)
+        summary = where(read_summary(self.write(text)), conditions)
         return failure_rate.draw(summary, "outlier_ratio", list(quantities), log_y)
 
     def run_main(self, *arguments, x="outlier_ratio", path=None, text=TABLE):
         """(exit code, stdout, stderr) of the script with the usual arguments and these."""
-        path = path or self.summary(text)
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = failure_rate.main([str(path), "--x", x, "--out", str(self.out), *arguments])
-        return code, out.getvalue(), err.getvalue()
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir() if path.name != "summary.csv"], [])
+        return self.run_script(path or self.write(text), "--x", x, "--out", self.out, *arguments)
 
 
 class WrittenFiles(FailureRateTest):
     def test_the_command_writes_both_files_and_prints_their_paths(self):
-        done = subprocess.run(["/usr/bin/python3", str(PLOTS / "failure_rate.py"), str(self.summary()), "--x",
+        done = subprocess.run(["/usr/bin/python3", str(PLOTS / "failure_rate.py"), self.write(TABLE), "--x",
                                "outlier_ratio", "--out", str(self.out)], capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(done.stdout.split(), [f"{self.out}.png", f"{self.out}.pdf"])
@@ -293,11 +271,7 @@ class Refusals(FailureRateTest):
         self.assert_refused(self.run_main("--out", str(self.folder / "figure.png")), "without .png")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as end:
-            failure_rate.main(["--help"])
-        self.assertEqual(end.exception.code, 0)
-        self.assertIn("rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate", out.getvalue())
+        self.assert_help_shows("rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,8 @@
 """Made-up runs as `rcme report` hands them to plots/report.py, and the tests' common ground."""
 
-import contextlib
-import io
 import json
-import pathlib
-import tempfile
-import unittest
+
+from plot_test_case import PlotTestCase
 
 import report
 
@@ -58,11 +55,11 @@ def quoted(text):
     return '"' + text.replace('"', '""') + '"'
 
 
-class ReportTest(unittest.TestCase):
+class ReportTest(PlotTestCase):
+    script, given = report, ["data"]
+
     def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+        super().setUp()
         self.data, self.out = self.folder / "data", self.folder / "report.html"
         self.data.mkdir()
 
@@ -75,19 +72,8 @@ class ReportTest(unittest.TestCase):
             (folder / "comparison.csv").write_text(comparison_csv or comparison())
 
     def run_main(self, *arguments):
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = report.main([str(self.data), "--out", str(self.out), *arguments])
-        return code, out.getvalue(), err.getvalue()
+        return self.run_script(self.data, "--out", self.out, *arguments)
 
     def page(self):
         self.assertEqual(self.run_main(), (0, f"{self.out}\n", ""))
         return self.out.read_text(encoding="utf-8")
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir()], ["data"])

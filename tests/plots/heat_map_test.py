@@ -1,21 +1,16 @@
 #!/usr/bin/python3
 """Tests of plots/heat_map.py; run as: /usr/bin/python3 tests/plots/heat_map_test.py"""
 
-import contextlib
-import io
 import pathlib
-import sys
-import tempfile
 import unittest
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from plot_test_case import PlotTestCase
 
-import heat_map  # noqa: E402
-from matplotlib.collections import PolyCollection  # noqa: E402
-from common.summary_csv import read_summary, where  # noqa: E402
-from rates.cells import COLORS, LEAST_TOP, luminance, scale_of  # noqa: E402
-from rates.selection import select_rates  # noqa: E402
+import heat_map
+from matplotlib.collections import PolyCollection
+from common.summary_csv import read_summary, where
+from rates.cells import COLORS, LEAST_TOP, luminance, scale_of
+from rates.selection import select_rates
 
 HEADER = "study,condition,noise,sigma_px,estimator,quantity,kind,value,lower,upper,standard_error,n"
 # Rates and bounds with no relation to n: a script that recomputed any of them would be seen. One factor has words.
@@ -49,35 +44,15 @@ def colors_of(axes):
             for box in axes.collections if isinstance(box, PolyCollection)}
 
 
-class HeatMapTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-        self.out = self.folder / "map"
-
-    def summary(self, text=TABLE):
-        path = self.folder / "summary.csv"
-        path.write_text(text)
-        return str(path)
+class HeatMapTest(PlotTestCase):
+    script, given = heat_map, ["summary.csv"]
 
     def draw(self, text=TABLE, quantities=("failure",), estimators=(), conditions=()):
-        summary = where(read_summary(self.summary(text)), conditions)
+        summary = where(read_summary(self.write(text)), conditions)
         return heat_map.draw(summary, "noise", "sigma_px", list(quantities), list(estimators))
 
     def run_main(self, *arguments, text=TABLE, x="noise", y="sigma_px"):
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = heat_map.main([self.summary(text), "--x", x, "--y", y, "--out", str(self.out), *arguments])
-        return code, out.getvalue(), err.getvalue()
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir() if path.name != "summary.csv"], [])
+        return self.run_script(self.write(text), "--x", x, "--y", y, "--out", self.folder / "map", *arguments)
 
 
 class Drawn(HeatMapTest):
@@ -112,7 +87,7 @@ class Drawn(HeatMapTest):
                 self.assertEqual(text.get_color(), "white" if behind < 0.5 else "black")
 
     def test_rates_near_zero_are_not_painted_as_failures(self):
-        scale = scale_of(select_rates(read_summary(self.summary()), ["no_candidate"]))
+        scale = scale_of(select_rates(read_summary(self.write(TABLE)), ["no_candidate"]))
         self.assertEqual((scale.vmin, scale.vmax), (0, LEAST_TOP))
 
     def test_estimators_can_be_chosen_and_the_caption_says_n_and_interval(self):
@@ -160,10 +135,7 @@ class Refusals(HeatMapTest):
         self.assert_refused(self.run_main(text=TABLE.replace("0.30,0.10,0.50", "0.30,0.40,0.50")), "line 2", "interval")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
-            heat_map.main(["--help"])
-        self.assertIn("rcme plot heat_map summary.csv --x outlier_ratio --y sigma_px --out heat_map", out.getvalue())
+        self.assert_help_shows("rcme plot heat_map summary.csv --x outlier_ratio --y sigma_px --out heat_map")
 
 
 if __name__ == "__main__":

@@ -1,18 +1,13 @@
 #!/usr/bin/python3
 """Tests of plots/paired_difference.py; run as: /usr/bin/python3 tests/plots/paired_difference_test.py"""
 
-import contextlib
-import io
 import pathlib
-import sys
-import tempfile
 import unittest
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from plot_test_case import PlotTestCase
 
-import paired_difference  # noqa: E402
-from common.summary_csv import read_comparison, where  # noqa: E402
+import paired_difference
+from common.summary_csv import read_comparison, where
 
 HEADER = ("study,condition,outlier_ratio,estimator,reference,event,n,both,estimator_only,reference_only,neither,"
           "risk_difference,lower,upper,p_mcnemar,p_holm")
@@ -35,35 +30,15 @@ def marks_of(axes, estimator):
             for x, y in zip(*line.get_data()) if y == y}
 
 
-class PairedDifferenceTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-        self.out = self.folder / "difference"
-
-    def comparison(self, text=TABLE):
-        path = self.folder / "comparison.csv"
-        path.write_text(text)
-        return str(path)
+class PairedDifferenceTest(PlotTestCase):
+    script, given = paired_difference, ["comparison.csv"]
 
     def draw(self, text=TABLE, events=("failure",), conditions=()):
-        return paired_difference.draw(where(read_comparison(self.comparison(text)), conditions), "outlier_ratio",
+        return paired_difference.draw(where(read_comparison(self.write(text)), conditions), "outlier_ratio",
                                       list(events))
 
     def run_main(self, *arguments, text=TABLE, x="outlier_ratio"):
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = paired_difference.main([self.comparison(text), "--x", x, "--out", str(self.out), *arguments])
-        return code, out.getvalue(), err.getvalue()
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir() if path.name != "comparison.csv"], [])
+        return self.run_script(self.write(text), "--x", x, "--out", self.folder / "difference", *arguments)
 
 
 class Drawn(PairedDifferenceTest):
@@ -161,10 +136,7 @@ class Refusals(PairedDifferenceTest):
         self.assert_refused(self.run_main(text=TABLE.replace("2,0.8", "2,0.4")), "second failure")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
-            paired_difference.main(["--help"])
-        self.assertIn("rcme plot paired_difference comparison.csv --x outlier_ratio --out difference", out.getvalue())
+        self.assert_help_shows("rcme plot paired_difference comparison.csv --x outlier_ratio --out difference")
 
 
 if __name__ == "__main__":

@@ -15,28 +15,25 @@ import pathlib
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
-import warnings
 from unittest import mock
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "plots"))
+from plot_test_case import PLOTS, PlotTestCase
 
-import fake_audit  # noqa: E402
-import fake_reliability  # noqa: E402
-import fake_tune  # noqa: E402
-import validation_test  # noqa: E402
-from audit_power_test import TABLE as POWER  # noqa: E402
-from common import sheet, style, tikz  # noqa: E402
-from common.summary_csv import read_summary, where  # noqa: E402
-from drawn_text import do_overlap, drawn_texts, problems_of  # noqa: E402
+import fake_audit
+import fake_reliability
+import fake_tune
+import validation_test
+from audit_power_test import TABLE as POWER
+from common import sheet, style, tikz
+from common.summary_csv import read_summary, where
+from drawn_text import do_overlap, drawn_texts, problems_of
 
+ROOT = PLOTS.parent
 RESULTS = ROOT / "results"
 WIDTHS = (3.3, 7.0)
 LATEX = shutil.which("pdflatex")
-warnings.simplefilter("error")  # a layout that was given up is a fault
 
 
 def few_claims():
@@ -173,7 +170,7 @@ class Paper(WithCases):
         self.assertIn("inches", run_script(*many)[1])
 
 
-class Formats(WithCases):
+class Formats(PlotTestCase, WithCases):
     @classmethod
     def setUpClass(cls):
         """{name of a file: its text}, of every kind."""
@@ -182,11 +179,6 @@ class Formats(WithCases):
             code, _, figures = run_script(*cls().arguments(*case, "--width", str(WIDTHS[0])))
             assert code == 0, case[0]
             cls.tikz |= {f"{number}_{case[0]}_{name}.tikz": tikz.tikz_of(figure) for name, figure in sorted(figures.items())}
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
 
     def test_every_format_is_written_alone_and_twice_alike(self):
         case = self.cases[0]

@@ -1,37 +1,20 @@
 #!/usr/bin/python3
 """Tests of plots/reliability.py; run as: /usr/bin/python3 tests/plots/reliability_test.py"""
 
-import contextlib
-import io
-import json
 import math
-import pathlib
-import sys
-import tempfile
 import unittest
-import warnings
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "plots"))
+from plot_test_case import PlotTestCase
 
-import reliability as script  # noqa: E402
-from common.command_line import PlotError  # noqa: E402
-from fake_reliability import content, entry, measured  # noqa: E402
-from reliability_figure.panels import draw  # noqa: E402
-from reliability_figure.reliability_file import read_reliability  # noqa: E402
-
-warnings.simplefilter("error")  # a layout that was given up is a fault
+import reliability as script
+from common.command_line import PlotError
+from fake_reliability import content, entry, measured
+from reliability_figure.panels import draw
+from reliability_figure.reliability_file import read_reliability
 
 
-class ReliabilityTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def write(self, value):
-        path = self.folder / "reliability.json"
-        path.write_text(json.dumps(value))
-        return str(path)
+class ReliabilityTest(PlotTestCase):
+    script, given = script, ["reliability.json"]
 
     def read(self, *entries, **changes):
         return read_reliability(self.write(content(*entries, **changes)))
@@ -86,9 +69,8 @@ class ReliabilityTest(unittest.TestCase):
         self.assertTrue(math.isclose(draw(self.read(never)).axes[-1].get_ylim()[1], 1))
 
     def test_writes_both_files(self):
-        out, said = self.folder / "figure", io.StringIO()
-        with contextlib.redirect_stdout(said):
-            self.assertEqual(script.main([self.write(content(entry(), entry("poselib"))), "--out", str(out)]), 0)
+        out = self.folder / "figure"
+        self.assertEqual(self.run_script(self.write(content(entry(), entry("poselib"))), "--out", out)[0], 0)
         for suffix in (".png", ".pdf"):
             self.assertGreater(out.with_suffix(suffix).stat().st_size, 1000)
 

@@ -4,22 +4,18 @@
 import csv
 import io
 import json
-import pathlib
 import re
-import sys
 import unittest
 from unittest import mock
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from fake_report import EVIL, ReportTest, comparison, facts, quoted, summary
 
-import fake_reliability  # noqa: E402
-from browser import BROWSER, SKIP_REASON, Browser  # noqa: E402
-import report  # noqa: E402
-from fake_report import EVIL, ReportTest, comparison, facts, quoted, summary  # noqa: E402
-from page_structure import Structure  # noqa: E402
-from report_page import figures as report_figures  # noqa: E402
-from page import html as html_of  # noqa: E402
+import fake_reliability
+from browser import BROWSER, SKIP_REASON, Browser
+import report
+from page_structure import Structure
+from report_page import figures as report_figures
+from page import html as html_of
 
 
 class Page(ReportTest):

@@ -1,24 +1,18 @@
 #!/usr/bin/python3
 """Tests of plots/show_trial.py; run as: /usr/bin/python3 tests/plots/show_trial_test.py"""
 
-import contextlib
-import io
 import json
 import pathlib
-import sys
-import tempfile
 import unittest
 
+from plot_test_case import PlotTestCase
+
 import numpy as np
-
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
-
-import show_trial  # noqa: E402
-from common.text_size import fill, width_of  # noqa: E402
-from trial_sheet.images import LOOKS, clip, groups_of, kept_apart  # noqa: E402
-from trial_sheet.scene import limits_of_scene, num_outside  # noqa: E402
-from trial_sheet.trial_file import trial_of  # noqa: E402
+import show_trial
+from common.text_size import fill, width_of
+from trial_sheet.images import LOOKS, clip, groups_of, kept_apart
+from trial_sheet.scene import limits_of_scene, num_outside
+from trial_sheet.trial_file import trial_of
 
 SIZES = ((640, 480), (320, 480))
 HORIZONTAL = [0, 0, 0, 0, 0, -1, 0, 1, 0]  # F of a translation along x: a point's line has its own height
@@ -268,27 +262,12 @@ class Words(unittest.TestCase):
             self.assertEqual(len(set(looks)), len(looks))
 
 
-class Command(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+class Command(PlotTestCase):
+    script, given = show_trial, ["trial.json"]
 
-    def run_main(self, text, out="figure"):
-        path = self.folder / "trial.json"
-        path.write_text(text)
-        stdout, stderr = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
-            code = show_trial.main([str(path), "--out", str(self.folder / out)])
-        return code, stdout.getvalue(), stderr.getvalue()
+    def run_main(self, content, out="figure"):
+        return self.run_script(self.write(content), "--out", self.folder / out)
 
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir()], ["trial.json"])
 
     def test_it_writes_both_files_the_same_each_time(self):
         def run():
@@ -309,10 +288,7 @@ class Command(unittest.TestCase):
         self.assert_refused(self.run_main(json.dumps(trial()), "none/figure"), "no folder")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
-            show_trial.main(["--help"])
-        self.assertIn("plots/show_trial.py trial.json --out trial", out.getvalue())
+        self.assert_help_shows("plots/show_trial.py trial.json --out trial")
 
 
 if __name__ == "__main__":

@@ -1,32 +1,24 @@
 """Tests of plots/time_against_success.py: what it draws from, what it refuses."""
 
-import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "plots"))
+from plot_test_case import PlotTestCase
 
-import time_against_success  # noqa: E402
-from common.command_line import PlotError  # noqa: E402
-from common.summary_csv import read_summary  # noqa: E402
-from rates.time_points import draw, front_of, points_of  # noqa: E402
+import time_against_success
+from common.command_line import PlotError
+from common.summary_csv import read_summary
+from rates.time_points import draw, front_of, points_of
 
 HEAD = "study,condition,estimator,quantity,kind,value,lower,upper,standard_error,n,interval,verdict,trials_to_decide"
 ROWS = ["peers,0,fast,success,rate,0.5,0.4,0.6,,100,exact,,", "peers,0,fast,time_ms,median,0.1,0.09,0.12,,100,,,",
         "peers,0,slow,success,rate,0.9,0.8,0.95,,100,exact,,", "peers,0,slow,time_ms,median,10,9,11,,100,,,"]
 
 
-class TimeAgainstSuccess(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+class TimeAgainstSuccess(PlotTestCase):
+    script, given = time_against_success, ["summary.csv"]
 
-    def summary(self, rows):
-        path = self.folder / "summary.csv"
-        path.write_text("\n".join([HEAD, *rows]) + "\n")
-        return path
+    def summary(self, rows, name=None):
+        return self.write("\n".join([HEAD, *rows]) + "\n", name)
 
     def test_a_point_has_the_numbers_of_the_file(self):
         points = points_of(read_summary(self.summary(ROWS)))
@@ -42,8 +34,7 @@ class TimeAgainstSuccess(unittest.TestCase):
         self.assertLessEqual({(0.1, 0.5), (10.0, 0.9)}, drawn)
 
     def test_a_panel_per_study(self):
-        other = self.folder / "other.csv"
-        other.write_text("\n".join([HEAD, *(row.replace("peers,", "others,") for row in ROWS)]) + "\n")
+        other = self.summary([row.replace("peers,", "others,") for row in ROWS], "other.csv")
         first = read_summary(self.summary(ROWS))
         figure = draw([first, read_summary(other), first])
         panels = [axes for axes in figure.axes if axes.axison]
@@ -55,9 +46,7 @@ class TimeAgainstSuccess(unittest.TestCase):
     def test_no_panel_is_left_empty_with_axes(self):
         summaries = []
         for study in ("one", "two", "three"):
-            path = self.folder / f"{study}.csv"
-            path.write_text("\n".join([HEAD, *(row.replace("peers,", f"{study},") for row in ROWS)]) + "\n")
-            summaries.append(read_summary(path))
+            summaries.append(read_summary(self.summary([row.replace("peers,", f"{study},") for row in ROWS], f"{study}.csv")))
         self.assertEqual([axes.axison for axes in draw(summaries).axes], [True, True, True, False])
 
     def test_refuses_what_is_not_pooled_or_has_no_times(self):
@@ -67,7 +56,7 @@ class TimeAgainstSuccess(unittest.TestCase):
 
     def test_writes_both_files(self):
         out = self.folder / "figure"
-        self.assertEqual(time_against_success.main([str(self.summary(ROWS)), "--out", str(out)]), 0)
+        self.assertEqual(self.run_script(self.summary(ROWS), "--out", out)[0], 0)
         for suffix in (".png", ".pdf"):
             self.assertGreater(out.with_suffix(suffix).stat().st_size, 1000)
 

@@ -1,27 +1,19 @@
 #!/usr/bin/python3
 """Tests of plots/transfer.py; run as: /usr/bin/python3 tests/plots/transfer_test.py"""
 
-import contextlib
-import io
 import json
 import pathlib
-import sys
-import tempfile
 import unittest
-import warnings
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from plot_test_case import PlotTestCase
 
-import fake_tune as fake  # noqa: E402
-import transfer as script  # noqa: E402
-from matplotlib.collections import PolyCollection  # noqa: E402
-from matplotlib.patches import Rectangle  # noqa: E402
-from rates.rate_bands import color_of  # noqa: E402
-from transfer import number_in_cell, shortened  # noqa: E402
-from tuning_figures.tune_file import read_transfer  # noqa: E402
-
-warnings.simplefilter("error")  # a layout that was given up is a fault
+import fake_tune as fake
+import transfer as script
+from matplotlib.collections import PolyCollection
+from matplotlib.patches import Rectangle
+from rates.rate_bands import color_of
+from transfer import number_in_cell, shortened
+from tuning_figures.tune_file import read_transfer
 
 
 def cell(i, j, value, verdict="holds", refusal=0.1):
@@ -63,33 +55,14 @@ def words_of(figure):
     return [text.get_text() for text in figure.texts]
 
 
-class TransferTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-
-    def write(self, value):
-        path = self.folder / "transfer.json"
-        path.write_text(value if isinstance(value, str) else json.dumps(value))
-        return str(path)
+class TransferTest(PlotTestCase):
+    script, given = script, ["transfer.json"]
 
     def draw(self, value, quantity="rate"):
         return script.draw(read_transfer(self.write(value)), quantity, "A title")
 
     def run_main(self, value, out="figure"):
-        stdout, stderr = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
-            code = script.main([self.write(value), "--out", str(self.folder / out)])
-        return code, stdout.getvalue(), stderr.getvalue()
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir()], ["transfer.json"])
+        return self.run_script(self.write(value), "--out", self.folder / out)
 
 
 class Drawn(TransferTest):
@@ -222,11 +195,7 @@ class Command(TransferTest):
         self.assert_refused(self.run_main(whole, "figure.pdf"), "without .png")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
-            script.main(["--help"])
-        self.assertIn("rcme plot transfer transfer.json --out transfer", out.getvalue())
-        self.assertIn("file that 'rcme transfer' wrote", out.getvalue())
+        self.assert_help_shows("rcme plot transfer transfer.json --out transfer", "file that 'rcme transfer' wrote")
 
 
 if __name__ == "__main__":

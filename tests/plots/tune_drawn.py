@@ -1,12 +1,6 @@
 """What the figures of plots/tune.py hold, and the tests' common ground."""
 
-import contextlib
-import io
-import json
-import pathlib
-import tempfile
-import unittest
-import warnings
+from plot_test_case import PlotTestCase
 
 import fake_tune as fake
 import tune as script
@@ -16,7 +10,6 @@ from tuning_figures.tune_file import read_tune
 GRID = [fake.option("mu", ("0", "1", "2"), "nats"), fake.option("lambda", ("2", "0.5"))]  # levels in any order
 FURTHER = [*GRID, fake.option("rank_aware", ("no", "yes"))]
 MANY = [*GRID, fake.option("batch", tuple("abcdefg"))]  # more panels than fit
-warnings.simplefilter("error")  # a layout that was given up is a fault
 
 
 def points_of(axes, label):
@@ -44,30 +37,11 @@ def panels_of(figure):
     return [axes for axes in figure.axes if axes.get_title("left")]
 
 
-class TuneTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
-
-    def write(self, value):
-        path = self.folder / "tune.json"
-        path.write_text(value if isinstance(value, str) else json.dumps(value))
-        return str(path)
+class TuneTest(PlotTestCase):
+    script, given = script, ["tune.json"]
 
     def read(self, value):
         return read_tune(self.write(value))
 
     def run_main(self, value, *arguments, out="figure"):
-        stdout, stderr = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(stdout), contextlib.redirect_stderr(stderr):
-            code = script.main([self.write(value), "--out", str(self.folder / out), *arguments])
-        return code, stdout.getvalue(), stderr.getvalue()
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual([path.name for path in self.folder.iterdir()], ["tune.json"])
+        return self.run_script(self.write(value), "--out", self.folder / out, *arguments)

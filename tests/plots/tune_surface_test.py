@@ -2,21 +2,17 @@
 """Tests of the surface of plots/tune.py; run as: /usr/bin/python3 tests/plots/tune_surface_test.py"""
 
 import math
-import pathlib
-import sys
 import unittest
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from tune_drawn import FURTHER, GRID, TuneTest, caption_of, legend_of, panels_of, points_of
 
-import fake_tune as fake  # noqa: E402
-import numpy as np  # noqa: E402
-from rates.cells import luminance  # noqa: E402
-from matplotlib.colors import to_rgb  # noqa: E402
-from rates.rate_bands import BORDERS, TARGET, color_of  # noqa: E402
-from tuning_figures.marks import LevelAxis  # noqa: E402
-from tuning_figures.surface import Surface, draw_surface, grid_of  # noqa: E402
-from tune_drawn import FURTHER, GRID, TuneTest, caption_of, legend_of, panels_of, points_of  # noqa: E402
+import fake_tune as fake
+import numpy as np
+from rates.cells import luminance
+from matplotlib.colors import to_rgb
+from rates.rate_bands import BORDERS, TARGET, color_of
+from tuning_figures.marks import LevelAxis
+from tuning_figures.surface import Surface, draw_surface, grid_of
 
 
 class TheSurface(TuneTest):

@@ -1,24 +1,19 @@
 #!/usr/bin/python3
 """Tests of plots/tune.py; run as: /usr/bin/python3 tests/plots/tune_test.py"""
 
-import contextlib
-import io
 import json
 import math
 import pathlib
-import sys
 import unittest
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from tune_drawn import FURTHER, GRID, MANY, TuneTest, bars_of, legend_of, panels_of, points_of
 
-import fake_tune as fake  # noqa: E402
-import tune as script  # noqa: E402
-from rates.rate_bands import TARGET  # noqa: E402
-from tuning_figures.front import draw_front  # noqa: E402
-from tuning_figures.roc import draw_roc, kept_apart  # noqa: E402
-from tuning_figures.surface import draw_surface  # noqa: E402
-from tune_drawn import FURTHER, GRID, MANY, TuneTest, bars_of, legend_of, panels_of, points_of  # noqa: E402
+import fake_tune as fake
+import tune as script
+from rates.rate_bands import TARGET
+from tuning_figures.front import draw_front
+from tuning_figures.roc import draw_roc, kept_apart
+from tuning_figures.surface import draw_surface
 
 
 class TheFront(TuneTest):
@@ -210,10 +205,7 @@ class TheCommand(TuneTest):
         self.assert_refused(self.run_main(fake.tune(GRID), out="figure.png"), "without .png")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit):
-            script.main(["--help"])
-        self.assertIn("rcme plot tune tune.json --out tune", out.getvalue())
+        self.assert_help_shows("rcme plot tune tune.json --out tune")
 
 
 if __name__ == "__main__":

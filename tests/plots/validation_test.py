@@ -1,21 +1,11 @@
 #!/usr/bin/python3
 """Tests of plots/validation.py; run as: /usr/bin/python3 tests/plots/validation_test.py"""
 
-import contextlib
-import io
-import json
-import pathlib
-import sys
-import tempfile
 import unittest
-import warnings
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from plot_test_case import PlotTestCase
 
-import validation as script  # noqa: E402
-
-warnings.simplefilter("error")
+import validation as script
 
 
 def test_of(name, ratio, verdict):
@@ -40,21 +30,15 @@ def fake():
     return {"format": script.FORMAT, "nominal_variance": 1.5, "nominal_correlation": 0.05, "sets": sets}
 
 
-class Validation(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+class Validation(PlotTestCase):
+    script, given = script, ["validation.json"]
 
     def run_on(self, content):
-        path = self.folder / "validation.json"
-        path.write_text(content if isinstance(content, str) else json.dumps(content), encoding="utf-8")
-        with contextlib.redirect_stderr(io.StringIO()) as errors, contextlib.redirect_stdout(io.StringIO()):
-            code = script.main([str(path), "--out", str(self.folder / "figure")])
-        return code, errors.getvalue()
+        return self.run_script(self.write(content), "--out", self.folder / "figure")
 
     def test_draws_png_and_pdf(self):
-        self.assertEqual(self.run_on(fake()), (0, ""))
+        code, _, errors = self.run_on(fake())
+        self.assertEqual((code, errors), (0, ""))
         for suffix in ("png", "pdf"):
             self.assertGreater((self.folder / f"figure.{suffix}").stat().st_size, 1000)
 
@@ -69,9 +53,7 @@ class Validation(unittest.TestCase):
 
     def test_what_is_no_validation_is_refused(self):
         for content in ("{", "[]", {"format": "rcme summary 1", "sets": [1]}, {**fake(), "sets": []}):
-            code, errors = self.run_on(content)
-            self.assertEqual(code, 2)
-            self.assertIn("validation.json", errors)
+            self.assert_refused(self.run_on(content), "validation.json")
 
 
 if __name__ == "__main__":

@@ -1,19 +1,14 @@
 #!/usr/bin/python3
 """Tests of plots/validity_map.py; run as: /usr/bin/python3 tests/plots/validity_map_test.py"""
 
-import contextlib
-import io
 import pathlib
-import sys
-import tempfile
 import unittest
 from unittest import mock
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from plot_test_case import PlotTestCase
 
-import validity_map  # noqa: E402
-from matplotlib.collections import LineCollection  # noqa: E402
+import validity_map
+from matplotlib.collections import LineCollection
 
 MAP_HEADER = ("sigma_px,num_points,baseline_m,median_parallax_deg,conditioning,median_conditioning,quantity,n,"
               "num_covered,coverage,lower,upper")
@@ -45,36 +40,21 @@ def texts_of(axes):
             for text in axes.texts if "." in text.get_text() and len(text.get_text()) < 6}
 
 
-class ValidityMapTest(unittest.TestCase):
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.folder = pathlib.Path(scratch.name)
+class ValidityMapTest(PlotTestCase):
+    script, given = validity_map, ["validity_map.csv", "validity_reference.csv"]
 
-    def write(self, coverages=MAP, reference=REFERENCE):
-        (self.folder / "validity_map.csv").write_text(coverages)
-        (self.folder / "validity_reference.csv").write_text(reference)
+    def write_tables(self, coverages=MAP, reference=REFERENCE):
+        """The path of the first."""
+        self.write(reference, self.given[1])
+        return self.write(coverages)
 
     def read(self, text=MAP):
-        self.write(coverages=text)
-        path = str(self.folder / "validity_map.csv")
+        path = self.write_tables(text)
         return path, validity_map.read_coverages(path, validity_map.MAP_KEYS, ["median_parallax_deg"])
 
     def run_main(self, *arguments, coverages=MAP, reference=REFERENCE):
-        self.write(coverages, reference)
-        out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = validity_map.main([str(self.folder), *arguments])
-        return code, out.getvalue(), err.getvalue()
-
-    def assert_refused(self, result, *named):
-        code, out, err = result
-        self.assertEqual((code, out), (2, ""))
-        self.assertEqual(err.count("\n"), 1, err)
-        for name in named:
-            self.assertIn(name, err)
-        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
-                         ["validity_map.csv", "validity_reference.csv"])
+        self.write_tables(coverages, reference)
+        return self.run_script(self.folder, *arguments)
 
 
 class WrittenFiles(ValidityMapTest):
@@ -108,12 +88,10 @@ class DrawnValues(ValidityMapTest):
     def test_a_study_has_its_conditions_in_words_no_reference_and_blank_cells_where_there_is_no_sample(self):
         study = MAP.replace("baseline_m", "condition").replace(",0.5,4.26", ',"scene = room, outlier_ratio = 0.2",4.26')
         none = study.split("\n")[2].split(",4.26")[0] + ",4.26,all,,pose,0,0,,,\n"
-        self.write(coverages=study + none)
+        self.write_tables(study + none)
         (self.folder / "validity_reference.csv").unlink()
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out):
-            self.assertEqual(validity_map.main([str(self.folder)]), 0)
-        self.assertEqual([pathlib.Path(path).stem for path in out.getvalue().split()[::2]], list(FIGURES[:2]))
+        code, out, _ = self.run_script(self.folder)
+        self.assertEqual((code, [pathlib.Path(path).stem for path in out.split()[::2]]), (0, list(FIGURES[:2])))
         path, rows = self.read(study + none)
         axes, = validity_map.draw_map(path, rows).axes  # a quantity without any sample has no panels
         self.assertIn("scene = room, outlier_ratio = 0.2, parallax 4.3\u00b0",
@@ -155,7 +133,7 @@ class DrawnValues(ValidityMapTest):
                                  "without noise: best third": [(0.1, 0.93), (0.5, 0.92)]})
 
     def test_the_reference_shows_its_coverages_with_their_intervals(self):
-        self.write()
+        self.write_tables()
         path = str(self.folder / "validity_reference.csv")
         rows = validity_map.read_coverages(path, validity_map.REFERENCE_KEYS, ["num_samples"])
         axes, = validity_map.draw_reference(path, rows).axes
@@ -173,12 +151,8 @@ class Refusals(ValidityMapTest):
         self.assert_refused(self.run_main(coverages=MAP_HEADER), "validity_map.csv", "no rows")
         self.assert_refused(self.run_main(reference=REFERENCE[:-12]), "validity_reference.csv", "cut off")
         self.assert_refused(self.run_main(reference=MAP), "validity_reference.csv", "has no column covariance")
-        self.write()
         (self.folder / "validity_map.csv").unlink()
-        err = io.StringIO()
-        with contextlib.redirect_stderr(err):
-            self.assertEqual(validity_map.main([str(self.folder)]), 2)
-        self.assertIn("cannot be read", err.getvalue())
+        self.assert_refused(self.run_script(self.folder), "cannot be read")
 
     def test_values_that_cannot_be_drawn(self):
         self.assert_refused(self.run_main(coverages=MAP.replace("0.787,0.70", "nan,0.70")), "line 2", "coverage")
@@ -191,11 +165,7 @@ class Refusals(ValidityMapTest):
         self.assert_refused(self.run_main(coverages=MAP_HEADER + "\n0.5,8,0.5,,all,,f,0,0,,,\n"), "no cell has a sample")
 
     def test_help_teaches_with_an_example(self):
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), self.assertRaises(SystemExit) as end:
-            validity_map.main(["--help"])
-        self.assertEqual(end.exception.code, 0)
-        self.assertIn("rcme plot validity_map map --out figures", out.getvalue())
+        self.assert_help_shows("rcme plot validity_map map --out figures")
 
 
 if __name__ == "__main__":

@@ -5,13 +5,11 @@ import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 
-PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
-sys.path.insert(0, str(PLOTS))
+from plot_test_case import PLOTS, PlotTestCase
 
-from common import whole_file  # noqa: E402
+from common import whole_file
 
 WAITS = """
 import sys, time
@@ -23,12 +21,7 @@ with whole_file.pending_file(sys.argv[2]):
 """
 
 
-class WholeFileTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
+class WholeFileTest(PlotTestCase):
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())
 
