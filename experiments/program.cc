@@ -88,33 +88,38 @@ int RunProgram(int argc, const char* const* argv, const char* installed_share) {
       "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
   app.get_formatter()->column_width(34);
-  app.require_subcommand(0, 1);  // of `rcme plot audit` the second word is no command
+  app.require_subcommand(0, 1);            // of `rcme plot audit` the second word is no command
+  app.group("Studies and their results");  // of the commands that follow
   AddRunCommand(app);
   AddSummarizeCommand(app);
   AddCompareCommand(app);
   AddReliabilityCommand(app);
   AddReportCommand(app);
   AddPlotCommand(app);
-  AddCheckCommand(app);
-  AddMergeCommand(app);
-  AddExportCommand(app);
-  AddImportCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);
+  AddCheckCommand(app);
+  AddMergeCommand(app);
+  app.group("Thresholds, efforts and answers made elsewhere");
   AddTuneCommand(app);
   AddTransferCommand(app);
   AddBudgetCommand(app);
+  AddCheckEstimatorCommand(app);
+  AddExportCommand(app);
+  AddImportCommand(app);
+  app.group("The paper's claims and their limits");
   AddAuditCommand(app);
   AddMapCommand(app);
   AddRareCommand(app);
   AddModelChoiceCommand(app);
-  AddPaperTableCommand(app);
-  AddTwinCommand(app);
-  AddValidateCommand(app);
-  AddCheckEstimatorCommand(app);
+  app.group("Real images");
   AddEstimateCommand(app);
   AddMatchCommand(app);
   AddPairsCommand(app);
+  AddValidateCommand(app);
+  AddTwinCommand(app);
+  AddPaperTableCommand(app);
+  app.group("Help");
   AddListCommand(app);
   AddHelpCommand(app);
   AddCompletionCommand(app);

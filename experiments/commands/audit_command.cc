@@ -119,10 +119,8 @@ void RunAuditCommand(const AuditArguments& arguments) {
 void AddAuditCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "audit",
-      "Check every claim of the paper, and say of each: holds, holds in the small-noise limit only, does not "
-      "hold, "
-      "or undecided\n"
-      "\n"
+      "Check every claim of the paper: it holds, holds at small noise only, does not hold, or is undecided");
+  command->footer(
       "Every claim is a rate or a mean with the range that counts as nominal. Its trials stop when the "
       "verdict is\n"
       "decided; the intervals hold however often they are looked at. Writes DIR/audit.html and "

@@ -6,15 +6,15 @@
 #include <set>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/statistics/summarize.h"
-#include "experiments/core/text/columns.h"
-#include "experiments/core/files/shared_files.h"
-#include "experiments/core/files/yaml_input.h"
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/core/files/shared_files.h"
+#include "experiments/core/files/yaml_input.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
+#include "experiments/statistics/summarize.h"
 #include "experiments/study/study_keys.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"
@@ -170,11 +170,9 @@ void AddListCommand(CLI::App& app) {
                                                                      {"estimator_files", ListEstimatorFiles}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
-  CLI::App* command = app.add_subcommand(
-      "list",
-      "What there is: estimators and their options; scenes, cameras, motions, noise and outliers with their "
-      "settings; keys of a study, quantities, claims; studies and estimator files that come with the "
-      "program");
+  CLI::App* command = app.add_subcommand("list",
+                                         "Estimators, scenes, noise and other parts with their settings, and "
+                                         "what else the program knows by name");
   auto what = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("table");
   command->add_option("what", *what, "one list; default: all but studies and estimator_files")
