@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "estimator/motion_chance.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
 
 void DropDirection(MotionEstimate* estimate) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Eigen::Matrix3d rotation_cov = estimate->pose_cov.topLeftCorner<3, 3>();
   estimate->status = MotionStatus::kDirectionNotObservable;
   estimate->cam2_from_cam1.t.setConstant(kNaN);

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
 #include "parameters/plain_text.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -103,18 +103,17 @@ OutsideAnswer AnswerIn(const Json& object) {
 }  // namespace
 
 std::string ProblemId(const MotionProblem& problem, std::uint32_t seed) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a, a number at a time
-  const auto add = [&hash](double x) { hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3ULL; };
+  Fnv1a hash;
   for (const Camera& c : {problem.camera1, problem.camera2}) {
-    for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) add(x);
+    for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) hash.Add(x);
   }
   for (const Correspondence& m : problem.matches) {
-    for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) add(x);
+    for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) hash.Add(x);
   }
-  add(problem.sigma_px);
-  for (const double scale : problem.noise_scale) add(scale);
-  add(seed);
-  return fmt::format("{:016x}", hash ^ (hash >> 32));
+  hash.Add(problem.sigma_px);
+  for (const double scale : problem.noise_scale) hash.Add(scale);
+  hash.Add(1.0 * seed);
+  return fmt::format("{:016x}", hash.value() ^ (hash.value() >> 32));
 }
 
 std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed) {

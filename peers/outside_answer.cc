@@ -8,6 +8,7 @@
 #include "estimator/problem_check.h"
 #include "parameters/plain_text.h"
 #include "peers/peer_call.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -55,7 +56,6 @@ MotionEstimate MotionFrom(const MotionProblem& problem, const OutsideAnswer& ans
     estimate.pose_cov = TangentCovariance(*answer.pose_cov, answer.t);
   } else if (AreInliers(estimate.inliers, problem.matches.size())) {
     // Inliers that determine no motion give none: an answer without a covariance is not valid.
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     estimate.pose_cov =
         CovarianceOfInliers(problem, pose, estimate.inliers).value_or(Matrix5d::Constant(kNaN));
   }

@@ -19,6 +19,7 @@
 #include "peers/answer_json.h"
 #include "peers/child_process.h"
 #include "peers/peer_registry.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -135,11 +136,6 @@ MotionProblem MakeFirstProblem() {
 // Of a file of answers; `rcme export` writes no more problems.
 constexpr size_t kMaxFileBytes = size_t{1} << 31, kMaxLineBytes = size_t{16} << 20, kMaxAnswers = 1'000'000;
 
-std::uint64_t HashOf(std::string_view text, std::uint64_t hash) {
-  for (const char letter : text) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3ULL;
-  return hash;
-}
-
 struct AnswersFile {
   std::map<std::string, AnswerLine> answers;  // by the id of their problem
   std::string digest;
@@ -162,9 +158,10 @@ std::shared_ptr<const AnswersFile> ReadAnswers(const std::string& path) {
   TextLines lines(path, [&](char* buffer, size_t size) { return BytesFrom(&file, path, buffer, size); },
                   {kMaxLineBytes, kMaxFileBytes});
   auto read = std::make_shared<AnswersFile>();
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  Fnv1a hash;
   for (std::string_view line; lines.Next(&line);) {
-    hash = HashOf(line, HashOf("\n", hash));
+    hash.Add("\n");
+    hash.Add(line);
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
     AnswerLine answer = AnswerFromJson(line);
     if (answer.id.empty())
@@ -175,7 +172,7 @@ std::shared_ptr<const AnswersFile> ReadAnswers(const std::string& path) {
     if (read->answers.size() > kMaxAnswers)
       lines.Fail(fmt::format("too many answers; at most {} are allowed in a file", kMaxAnswers));
   }
-  read->digest = fmt::format("{:016x}", hash);
+  read->digest = fmt::format("{:016x}", hash.value());
   return read;
 }
 

@@ -38,6 +38,7 @@
 #include "peers/outside_answer.h"
 #include "peers/peer_registry.h"
 #include "python/function_estimator.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -55,7 +56,6 @@ py::dict DictOfMotion(const RelativePose& pose, const Matrix5d& pose_cov) {
 
 // Without a direction: nothing is known of t, in the covariance either.
 py::dict DictOfRotation(const MotionEstimate& estimate) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Eigen::MatrixXd pose_cov = Eigen::MatrixXd::Constant(6, 6, kNaN);
   pose_cov.topLeftCorner<3, 3>() = estimate.pose_cov.topLeftCorner<3, 3>();
   return py::dict("R"_a = ArrayOf(estimate.cam2_from_cam1.R),

@@ -5,10 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "stats/constants.h"
+
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Line {

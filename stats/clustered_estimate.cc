@@ -7,13 +7,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/score_mean.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // In rising order of the clusters.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stats/constants.h"
+
 namespace rcme {
 namespace {
 
@@ -15,7 +17,6 @@ using boost::multiprecision::cpp_int;
 constexpr int kUnit = -1074;       // exponent of the smallest double
 constexpr size_t kNumDigits = 68;  // 2^1024 * 2^1074, with room for 2^64 numbers
 constexpr int kAddsToCarry = 1 << 30;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMaxSquared = 1e150;
 

@@ -6,13 +6,13 @@
 #include <limits>
 #include <optional>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/shared_members.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of information in units in which every parameter alone has one: below it a combination is not determined.
 constexpr double kLeastInformation = 1e-9;

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -84,7 +85,6 @@ SharedMemberRate MeasureSharedMemberRate(std::span<const PairEvent> pairs, doubl
 
 SharedMemberMean MeasureSharedMemberMean(std::span<const PairValue> pairs, double confidence) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   std::set<std::int64_t> members;
   double sum = 0.0;
   for (const PairValue& pair : pairs) {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/constants.h"
+
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 bool IsLeftOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());

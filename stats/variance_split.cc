@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -68,7 +68,6 @@ void RepeatedEvents::AddScene(int num_events) {
 }
 
 VarianceSplit RepeatedEvents::Split(double confidence) const {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   VarianceSplit split;
   split.num_scenes = num_scenes_;
   split.num_mixed = num_scenes_ - num_scenes_with_.front() - num_scenes_with_.back();

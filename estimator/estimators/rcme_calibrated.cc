@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "estimator/calibrated/candidates.h"
@@ -19,11 +18,11 @@
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
 #include "parameters/probability_text.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kNegligibleWeight = 1e-5;
 // Of a mode whose observed curvature is not worth ten passes over the matches.
 constexpr double kSmallWeight = 0.01;

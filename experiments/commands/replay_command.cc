@@ -2,14 +2,15 @@
 
 #include <memory>
 
-#include "experiments/real/answer/why.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/real/answer/why.h"
 #include "experiments/run/store/result_store.h"
 #include "experiments/trial/trial_fields.h"
 #include "experiments/trial/trial_outcome.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -53,7 +54,7 @@ void PrintEstimate(const std::string& label, const MotionEstimate& estimate, con
              estimate.message);
   if (!HasRefused(record)) {
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
-               MatrixText(57.29577951308232 * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
+               MatrixText(kDegPerRad * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
   }
   VisitFields(record, [](const std::string& name, const auto& field) {
     if (name != "condition" && name != "trial" && name != "estimator" && name != "status") {

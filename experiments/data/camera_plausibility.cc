@@ -10,6 +10,7 @@
 #include "experiments/core/text/message.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -116,7 +117,6 @@ std::optional<std::string> DoubtOrder(const Numbers& K, const Eigen::Vector2d& s
 }
 
 std::vector<std::string> DoubtFocalLength(const Numbers& K, const Eigen::Vector2d& size) {
-  constexpr double kDegPerRad = 57.29577951308232;
   std::vector<std::string> doubts;
   const double corner = ComputeCornerTangent(K, size), focal = std::max(K[0], K[1]);
   if (corner > kWideCorner)

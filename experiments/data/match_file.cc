@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string_view>
 
 #include "estimator/noise_scale.h"
@@ -17,6 +16,7 @@
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -29,7 +29,6 @@ constexpr size_t kMaxSceneBytes = 200;
 constexpr std::array<std::string_view, 13> kHeaderKeys = {
     "size1",    "size2",       "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit",         "truth_sd",
     "baseline", "noise_level", "image1",         "image2",         "scene",      "seconds_between"};
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 std::string_view Trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r");

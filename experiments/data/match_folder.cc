@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <set>
 
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/files/gzip_lines.h"
+#include "experiments/core/text/field_text.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -39,27 +39,25 @@ void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<s
   }
 }
 
-// FNV-1a over the numbers of a pair and its truth: changed data are another study.
-std::uint64_t Digest(const MatchFile& file, bool is_direction_known, std::uint64_t hash) {
-  const auto add = [&hash](double x) { hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x100000001b3ULL; };
+// The numbers of a pair and its truth: changed data are another study.
+void AddNumbers(const MatchFile& file, bool is_direction_known, Fnv1a* digest) {
   for (const Camera& c : {file.camera1, file.camera2}) {
-    for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) add(x);
+    for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) digest->Add(x);
   }
   for (const Correspondence& m : file.matches) {
-    for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) add(x);
+    for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) digest->Add(x);
   }
   if (const std::optional<RelativePose>& pose = file.cam2_from_cam1_true) {
-    for (const double x : pose->R.reshaped()) add(x);
-    for (const double x : pose->t) add(x);
-    add(is_direction_known ? 1.0 : 0.0);
+    for (const double x : pose->R.reshaped()) digest->Add(x);
+    for (const double x : pose->t) digest->Add(x);
+    digest->Add(is_direction_known ? 1.0 : 0.0);
   }
-  for (const double x : file.sigma_px) add(x);
-  if (file.noise_level != 1.0) add(file.noise_level);
+  for (const double x : file.sigma_px) digest->Add(x);
+  if (file.noise_level != 1.0) digest->Add(file.noise_level);
   if (file.truth_sd) {
-    for (const double x : file.truth_sd->rotation_rad) add(x);
-    for (const double x : file.truth_sd->translation) add(x);
+    for (const double x : file.truth_sd->rotation_rad) digest->Add(x);
+    for (const double x : file.truth_sd->translation) digest->Add(x);
   }
-  return hash;
 }
 
 // Whether the study says how good the file's truth is, and not the file.
@@ -144,7 +142,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   struct Group {
     std::vector<TrialData> pairs;
     std::vector<double> noise_levels;
-    std::uint64_t digest = 0xcbf29ce484222325ULL;
+    Fnv1a digest;
     int num_with_truth_sd = 0, num_assumed = 0;
   };
   const std::vector<fs::path> paths = MatchFilesIn(settings.folder);
@@ -174,7 +172,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
       ++group.num_assumed;
     }
     data.truth.sd = file.truth_sd;
-    group.digest = Digest(file, data.truth.is_direction_known, group.digest);
+    AddNumbers(file, data.truth.is_direction_known, &group.digest);
     data.problem = ProblemOf(std::move(file), settings.sigma_px);
     if (redraw.IsOn()) Redraw::Label(&data);
     group.pairs.push_back(std::move(data));
@@ -182,7 +180,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   warnings.Print();
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;
   for (auto& [scene, group] : groups) {
-    std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest);
+    std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest.value());
     if (group.num_with_truth_sd > 0) identity += fmt::format(", truth_sd in {}", group.num_with_truth_sd);
     if (group.num_assumed > 0) identity += fmt::format(", truth_sd assumed in {}", group.num_assumed);
     sources.emplace_back(

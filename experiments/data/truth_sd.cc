@@ -1,7 +1,8 @@
 #include "experiments/data/truth_sd.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "stats/constants.h"
 
 namespace rcme {
 
@@ -16,7 +17,7 @@ Matrix5d TruthSd::CovarianceAt(const RelativePose& pose) const {
 bool PoseSd::IsDirectionWeak(double baseline) const { return baseline <= 3.0 * std::sqrt(2.0) * position; }
 
 TruthSd SdOfMotion(const PoseSd& pose, double baseline) {
-  const double rotation_rad = std::numbers::pi / 180.0 * pose.rotation_deg;
+  const double rotation_rad = kRadPerDeg * pose.rotation_deg;
   const double translation = std::hypot(std::sqrt(2.0) * pose.position / baseline, rotation_rad);
   return {Eigen::Vector3d::Constant(std::sqrt(2.0) * rotation_rad), Eigen::Vector3d::Constant(translation)};
 }

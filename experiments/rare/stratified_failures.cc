@@ -13,6 +13,7 @@
 #include "experiments/trial/trial.h"
 #include "experiments/trial/trial_range.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -26,7 +27,7 @@ constexpr std::uint32_t kFirstPilotTrial = 4'000'000'000, kNumPilotTrials = 1000
 constexpr std::uint32_t kTrialsOfItem = 100;
 
 double TailOf(double bound_deg, double variance) {
-  return std::erfc(bound_deg * std::numbers::pi / 180.0 / std::sqrt(2.0 * variance));
+  return std::erfc(RadFromDeg(bound_deg) / std::sqrt(2.0 * variance));
 }
 
 // The strata of one condition: what is known of a trial before any estimator is called.

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/constants.h"
 #include "stats/random.h"
 #include "stats/risk_coverage_area.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kNumHistogramBins = 20;
 // Of the outcomes that are drawn here; the streams of trials have other purposes (data_source.h).
 constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200;

@@ -9,6 +9,7 @@
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -40,16 +41,6 @@ std::string Identity(const StudyPlan& plan) {
     if (!data.empty()) identity += fmt::format("# condition {}: {}\n", condition.index, data);
   }
   return identity;
-}
-
-// The FNV-1a hash, whose 64 bits are folded to the 48 of a stream's condition.
-std::uint64_t StreamKey(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char letter : text) {
-    hash ^= static_cast<unsigned char>(letter);
-    hash *= 0x100000001b3;
-  }
-  return (hash >> 48 ^ hash) & 0xffff'ffff'ffff;
 }
 
 // Equal for two conditions that draw the same scenes, noise and outliers: those that mean the same, in any
@@ -100,7 +91,8 @@ StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
     if (is_first && !made.implied_factor.empty()) plan.factor_names.push_back(made.implied_factor);
     for (const auto& [level, source] : made.sources) {
       Condition condition{static_cast<std::uint32_t>(plan.conditions.size()), levels, source,
-                          source->NumTrials(study.trials), StreamKey(WhatIsDrawn(study, settings, level))};
+                          source->NumTrials(study.trials),
+                          HashToStreamKey(WhatIsDrawn(study, settings, level))};
       if (!made.implied_factor.empty()) condition.levels.push_back(level);
       plan.conditions.push_back(std::move(condition));
     }

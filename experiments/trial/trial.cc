@@ -3,18 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "experiments/core/work/thread_time.h"
 #include "experiments/trial/answer_check.h"
 #include "stats/consistency.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Whether the status comes with a rotation, or a whole motion, that is known to be one.
 bool HasMotion(MotionStatus status) {

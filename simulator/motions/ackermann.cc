@@ -1,12 +1,10 @@
 #include <cmath>
-#include <numbers>
 
 #include "simulator/motions/motions.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // The motion of a camera above the rear axle of a car that drives a circular arc on flat ground and turns
 // right by `yaw`: the chord of the arc makes half the yaw with the first heading (Scaramuzza et al. 2009).

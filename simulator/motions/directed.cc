@@ -3,11 +3,10 @@
 #include <numbers>
 
 #include "simulator/motions/motions.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // Back into [0, high] from a place not farther beyond it than its width.
 double Reflected(double x, double high) { return x < 0.0 ? -x : x > high ? 2.0 * high - x : x; }

@@ -1,6 +1,6 @@
-#include <numbers>
 
 #include "simulator/motions/motions.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -20,7 +20,7 @@ class GeneralMotion : public MotionModel {
   Baseline* MutableBaseline() override { return &baseline_; }
 
   Motion Draw(RandomStream& rng) const override {
-    const Eigen::Matrix3d R = DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng);
+    const Eigen::Matrix3d R = DrawRotation(RadFromDeg(max_rotation_deg_), rng);
     return {{R, DrawDirection(rng)}, baseline_.Length()};
   }
 

@@ -1,6 +1,6 @@
-#include <numbers>
 
 #include "simulator/motions/motions.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -23,7 +23,7 @@ class HandHeld : public MotionModel {
   Baseline* MutableBaseline() override { return &baseline_; }
 
   Motion Draw(RandomStream& rng) const override {
-    const double sd = rotation_sd_deg_ * std::numbers::pi / 180.0;
+    const double sd = RadFromDeg(rotation_sd_deg_);
     const double yaw = sd * rng.Normal(), pitch = 0.5 * sd * rng.Normal(), roll = 0.5 * sd * rng.Normal();
     const Eigen::Matrix3d R = RotationFromVector({pitch, yaw, roll});
     const double x = rng.Normal(), y = 0.6 * rng.Normal(), z = 0.5 * rng.Normal();

@@ -1,7 +1,7 @@
 #include <cmath>
-#include <numbers>
 
 #include "simulator/motions/motions.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -22,7 +22,7 @@ class Orbit : public MotionModel {
 
   Motion Draw(RandomStream& rng) const override {
     const double side = rng.Uniform() < 0.5 ? -1.0 : 1.0;
-    const double angle = side * orbit_deg_ * std::numbers::pi / 180.0;
+    const double angle = RadFromDeg(side * orbit_deg_);
     // The chord runs sideways and half the angle towards the point; seen from camera 2, which has turned the
     // other way by the whole angle, camera 1 lies sideways and half the angle towards the point too.
     const Eigen::Matrix3d R = RotationFromVector({0.0, angle, 0.0});

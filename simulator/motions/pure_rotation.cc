@@ -1,6 +1,6 @@
-#include <numbers>
 
 #include "simulator/motions/motions.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -12,7 +12,7 @@ class PureRotation : public MotionModel {
                             "bound of the rotation angle, uniform from 0, about any axis")};
   }
   Motion Draw(RandomStream& rng) const override {
-    return {{DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng), Eigen::Vector3d::UnitX()}, 0.0};
+    return {{DrawRotation(RadFromDeg(max_rotation_deg_), rng), Eigen::Vector3d::UnitX()}, 0.0};
   }
 
  private:

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "parameters/input_error.h"
 #include "simulator/motion_model.h"
 #include "simulator/outliers/outlier_laws.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -56,7 +56,7 @@ class MovingObject : public OutlierLaw {
     const auto num_points = static_cast<std::uint32_t>(scene.points_in_cam1.size());
     MovingBody body;
     body.centre_in_cam1 = scene.points_in_cam1[rng.IntegerBelow(num_points)];
-    body.R = DrawRotation(max_rotation_deg_ * std::numbers::pi / 180.0, rng);
+    body.R = DrawRotation(RadFromDeg(max_rotation_deg_), rng);
     body.shift_m = shift_m_ * DrawDirection(rng);
     return body;
   }

@@ -1,11 +1,10 @@
 #include "simulator/severity/parallax.h"
 
-#include <numbers>
+#include "stats/constants.h"
 
 namespace rcme {
 
 std::vector<double> ParallaxesDeg(const ViewPair& view, const std::vector<Eigen::Vector3d>& points_in_cam1) {
-  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
   std::vector<double> angles_deg;
   angles_deg.reserve(points_in_cam1.size());
   for (const Eigen::Vector3d& point : points_in_cam1) {

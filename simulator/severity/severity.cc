@@ -5,20 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "simulator/severity/homography_share.h"
 #include "simulator/severity/parallax.h"
 #include "simulator/severity/point_information.h"
+#include "stats/constants.h"
 #include "stats/moments.h"
 #include "stats/order_statistic.h"
 #include "stats/spatial_pattern.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 using Points = std::vector<Eigen::Vector3d>;
 

@@ -11,14 +11,13 @@
 #include "estimator/calibrated/mode_covariance.h"
 #include "estimator/calibrated/weigh_modes.h"
 #include "estimator/estimators/rcme_calibrated.h"
+#include "stats/constants.h"
 #include "tests/benchmarks/benchmark_cases.h"
 
 namespace rcme {
 namespace {
 
 using benchmark::DoNotOptimize;
-
-constexpr double kRadPerDeg = 0.017453292519943295;
 
 // What every stage of one trial takes.
 struct Stages {

@@ -11,6 +11,7 @@
 
 #include "estimator/solvers/solver_table.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 #include "tests/test_support/estimator_variants.h"
 #include "tests/test_support/make_ransac.h"
 #include "tests/test_support/two_camera_scene.h"
@@ -123,7 +124,6 @@ TEST_P(EstimatorContract, CountsAddUp) {
 
 // What no estimator may crash, hang or throw at. Every call ends in a named status, and only kOk has inliers.
 TEST_P(EstimatorContract, SurvivesHostileMatches) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Pair good = MakePair(60, 0.5, 0.0, 0);
   const auto with = [&](auto change) {

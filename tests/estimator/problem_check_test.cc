@@ -5,12 +5,12 @@
 
 #include <limits>
 
+#include "stats/constants.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 MotionProblem OrdinaryProblem(int num_matches, std::uint32_t trial = 0) {
@@ -45,7 +45,7 @@ TEST(RefuseUnsolvable, MatchesAllWrongAreNotItsBusiness) {
 }
 
 TEST(RefuseUnsolvable, BadCamera) {
-  for (const double bad : {0.0, -700.0, kNan, kInfinity}) {
+  for (const double bad : {0.0, -700.0, kNaN, kInfinity}) {
     MotionProblem problem = OrdinaryProblem(20);
     problem.camera1.fx = bad;
     ExpectRefusal(problem, MotionStatus::kInvalidInput, "camera");
@@ -59,7 +59,7 @@ TEST(RefuseUnsolvable, BadCamera) {
 }
 
 TEST(RefuseUnsolvable, BadNoiseLevel) {
-  for (const double bad : {0.0, -0.5, kNan, kInfinity}) {
+  for (const double bad : {0.0, -0.5, kNaN, kInfinity}) {
     MotionProblem problem = OrdinaryProblem(20);
     problem.sigma_px = bad;
     ExpectRefusal(problem, MotionStatus::kInvalidInput, "sigma_px");
@@ -70,7 +70,7 @@ TEST(RefuseUnsolvable, NoiseScalesAreOnePerMatchFiniteAndPositive) {
   MotionProblem problem = OrdinaryProblem(20);
   problem.noise_scale.assign(20, 2.0);
   EXPECT_FALSE(RefuseUnsolvable(problem, 8));
-  for (const double bad : {0.0, -1.0, kNan, kInfinity, 1e-7, 1e7}) {
+  for (const double bad : {0.0, -1.0, kNaN, kInfinity, 1e-7, 1e7}) {
     problem.noise_scale[7] = bad;
     ExpectRefusal(problem, MotionStatus::kInvalidInput, "noise_scale of match 7 is ");
   }
@@ -81,7 +81,7 @@ TEST(RefuseUnsolvable, NoiseScalesAreOnePerMatchFiniteAndPositive) {
 }
 
 TEST(RefuseUnsolvable, BadCoordinateIsNamed) {
-  for (const double bad : {kNan, kInfinity, -kInfinity, 1.1e6, -1.1e6}) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity, 1.1e6, -1.1e6}) {
     for (int coordinate = 0; coordinate < 4; ++coordinate) {
       MotionProblem problem = OrdinaryProblem(20);
       Correspondence& match = problem.matches[13];

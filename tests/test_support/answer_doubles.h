@@ -3,13 +3,12 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <vector>
 
 #include "estimator/motion_estimate.h"
 #include "experiments/audit/claims/calibration.h"
 #include "experiments/audit/claims/call_estimator.h"
+#include "stats/constants.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -100,9 +99,6 @@ void ScaleProbability(MotionEstimate* answer, RandomStream&) {
   answer->failure_probability *= 0.01 * kPercent;
 }
 
-inline constexpr double kNaNOfDoubles = std::numeric_limits<double>::quiet_NaN();
-inline constexpr double kDegPerRadOfDoubles = 180.0 / std::numbers::pi;
-
 // A right perturbation, R Exp(w'), has w = R w'.
 inline void ReportInRightCoordinates(MotionEstimate* answer, RandomStream&) {
   Matrix5d turn = Matrix5d::Identity();
@@ -118,15 +114,15 @@ inline const std::vector<AnswerFault>& AnswerFaults() {
       {"sound: P and sigma stated", FoundBy::kNoClaim, FullAnswer, nothing},
       {"NaN in R in 10 % of the answers", FoundBy::kCoverageClaim, PlainAnswer,
        [](MotionEstimate* a, RandomStream& rng) {
-         if (rng.Uniform() < 0.1) a->cam2_from_cam1.R(1, 2) = kNaNOfDoubles;
+         if (rng.Uniform() < 0.1) a->cam2_from_cam1.R(1, 2) = kNaN;
        }},
       {"NaN in t in 10 % of the answers", FoundBy::kCoverageClaim, PlainAnswer,
        [](MotionEstimate* a, RandomStream& rng) {
-         if (rng.Uniform() < 0.1) a->cam2_from_cam1.t(0) = kNaNOfDoubles;
+         if (rng.Uniform() < 0.1) a->cam2_from_cam1.t(0) = kNaN;
        }},
       {"NaN in the covariance in 10 % of the answers", FoundBy::kCoverageClaim, PlainAnswer,
        [](MotionEstimate* a, RandomStream& rng) {
-         if (rng.Uniform() < 0.1) a->pose_cov(3, 3) = kNaNOfDoubles;
+         if (rng.Uniform() < 0.1) a->pose_cov(3, 3) = kNaN;
        }},
       {"t = 0", FoundBy::kCoverageClaim, PlainAnswer,
        [](MotionEstimate* a, RandomStream&) { a->cam2_from_cam1.t.setZero(); }},
@@ -140,8 +136,8 @@ inline const std::vector<AnswerFault>& AnswerFaults() {
        }},
       {"one axis of the covariance in degrees", FoundBy::kCoverageClaim, PlainAnswer,
        [](MotionEstimate* a, RandomStream&) {
-         a->pose_cov.row(1) *= kDegPerRadOfDoubles;
-         a->pose_cov.col(1) *= kDegPerRadOfDoubles;
+         a->pose_cov.row(1) *= kDegPerRad;
+         a->pose_cov.col(1) *= kDegPerRad;
        }},
       {"covariance of a right perturbation", FoundBy::kCoverageClaim, PlainAnswer, ReportInRightCoordinates},
       {"covariance 10 % too small in sigma", FoundBy::kCoverageClaim, PlainAnswer, ScaleCovariance<90>},

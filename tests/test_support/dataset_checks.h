@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -17,13 +16,13 @@
 #include "experiments/data/match_folder.h"
 #include "experiments/real/sequences/layouts.h"
 #include "experiments/real/sequences/make_pairs.h"
+#include "stats/constants.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/rendered_sequence.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
 
-constexpr double kDegPerRadOfTests = 180.0 / std::numbers::pi;
 constexpr int kNumRenderedFrames = 6;
 
 inline RenderedCamera DistortingCamera() {
@@ -93,8 +92,8 @@ inline void ExpectTheMotion(const MatchFile& file, const RelativePose& rendered,
   const MotionEstimate estimate =
       MakeEstimator("rcme_calibrated")->Estimate({file.matches, file.camera1, file.camera2, 0.5}, rng);
   ASSERT_EQ(estimate.status, MotionStatus::kOk) << pair_id;
-  EXPECT_LT(kDegPerRadOfTests * RotationAngleBetween(estimate.cam2_from_cam1.R, rendered.R), 0.25) << pair_id;
-  EXPECT_LT(kDegPerRadOfTests * AngleBetween(estimate.cam2_from_cam1.t, rendered.t), 3.0) << pair_id;
+  EXPECT_LT(kDegPerRad * RotationAngleBetween(estimate.cam2_from_cam1.R, rendered.R), 0.25) << pair_id;
+  EXPECT_LT(kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, rendered.t), 3.0) << pair_id;
 }
 
 // The matches of each pair that was kept, and the motion that they give, are those that was rendered.
@@ -128,8 +127,8 @@ inline void ExpectTheRenderedTruth(const std::vector<PairRow>& rows, const std::
     const MatchFile file = ReadMatchFile(out + "/" + row.pair_id + ".csv");
     const RelativePose rendered = RenderedMotionOf(row.pair_id);
     ASSERT_TRUE(file.cam2_from_cam1_true.has_value()) << row.pair_id;
-    EXPECT_LT(kDegPerRadOfTests * RotationAngleBetween(file.cam2_from_cam1_true->R, rendered.R), within_deg);
-    EXPECT_LT(kDegPerRadOfTests * AngleBetween(file.cam2_from_cam1_true->t, rendered.t), within_deg);
+    EXPECT_LT(kDegPerRad * RotationAngleBetween(file.cam2_from_cam1_true->R, rendered.R), within_deg);
+    EXPECT_LT(kDegPerRad * AngleBetween(file.cam2_from_cam1_true->t, rendered.t), within_deg);
   }
 }
 

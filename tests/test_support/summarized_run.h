@@ -4,18 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "experiments/statistics/summarize.h"
+#include "stats/constants.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
-
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 inline TrialRecord Motion(std::uint32_t trial, double rotation_deg, double direction_deg, double nees) {
   TrialRecord record;

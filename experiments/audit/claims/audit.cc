@@ -8,17 +8,16 @@
 
 #include "experiments/core/work/for_each_index.h"
 #include "parameters/input_error.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
 
-// FNV-1a of the claim's id and the check's number: the condition that names the check's random streams.
+// Of the claim's id and the check's number: the condition that names the check's random streams.
 std::uint32_t StreamCondition(const std::string& id, size_t check) {
-  std::uint32_t hash = 2166136261U;
-  for (const char c : fmt::format("{} {}", id, check)) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
-  }
-  return hash;
+  Fnv1a32 hash;
+  hash.Add(fmt::format("{} {}", id, check));
+  return hash.value();
 }
 
 int CountTargets(const std::vector<Claim>& claims) {

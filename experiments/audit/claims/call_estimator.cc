@@ -9,12 +9,12 @@
 
 #include "experiments/audit/claims/cramer_rao.h"
 #include "experiments/audit/claims/design.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double CountedNees(const TrialRecord& record, const FailureBounds& bounds) {
@@ -65,7 +65,6 @@ std::vector<Target> ReportedCovarianceTargets() {
 
 double DrawShareBeyond(const MotionEstimate& answer, const FailureBounds& bounds, RandomStream& rng) {
   constexpr int kNumDraws = 16;
-  constexpr double kDegPerRad = 180.0 / std::numbers::pi;
   const RelativePose& pose = answer.cam2_from_cam1;
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(answer.pose_cov);  // which may be singular
   const Vector5d sd = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();

@@ -7,13 +7,13 @@
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/model_entropy.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const Sample kFirstEight = {0, 1, 2, 3, 4, 5, 6, 7};
 const char* const kLabel = "eq::score-inliers";
 

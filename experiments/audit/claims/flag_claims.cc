@@ -1,11 +1,10 @@
 #include "experiments/audit/claims/call_estimator.h"
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Of an answer, valid or not: flagged, if it failed; not flagged, if it did not.
 Outcome FlagStatistic(const MotionEstimator& estimator, const Case& made) {

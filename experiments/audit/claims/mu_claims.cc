@@ -10,7 +10,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const Settings kPair = {{"num_matches", "200"}, {"outlier_ratio", "0.2"}};
 
 // The inlier set of a good or a contaminated model of one scene.

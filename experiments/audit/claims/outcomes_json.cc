@@ -10,13 +10,12 @@
 #include <stdexcept>
 
 #include "experiments/core/work/part_file.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // 0 is not -0.
 std::optional<char> AsCharacter(double x) {

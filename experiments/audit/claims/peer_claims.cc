@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/sampson.h"
@@ -9,12 +8,12 @@
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/sample_statistics.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kUsac = "opencv_usac";
 constexpr double kThresholdSigma = 2.0;  // of the calls below, in standard deviations of a true match
 

@@ -1,15 +1,13 @@
 #include "experiments/audit/claims/study_claims.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "experiments/audit/claims/calibration.h"
 #include "experiments/audit/claims/study_cases.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<CaseClaim> CalibrationOf(const StudyPlan& plan) {
   std::vector<CaseClaim> all;

@@ -3,12 +3,12 @@
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/model_entropy.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kSampleSize = 8, kNumTested = 100, kNumForMean = 2000;
 
 // Z of the inliers among a hundred matches at mu = the model's own mean entropy, which two thousand others

@@ -7,11 +7,11 @@
 
 #include "experiments/data/make_data.h"
 #include "simulator/scene_registry.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Shape {

@@ -4,21 +4,19 @@
 
 #include <algorithm>
 #include <mutex>
-#include <numbers>
 #include <optional>
 #include <thread>
 
-#include "experiments/core/work/isolated_call.h"
 #include "experiments/audit/contract/contract_bench.h"
 #include "experiments/audit/contract/estimate_difference.h"
+#include "experiments/core/work/isolated_call.h"
 #include "experiments/study/study.h"
 #include "experiments/trial/answer_check.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // What the score would find, and what only the contract asks for; nothing: sound.
 std::optional<std::string> FaultOf(const MotionEstimate& estimate, const ContractProblem& problem) {

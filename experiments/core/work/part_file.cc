@@ -15,6 +15,7 @@
 #include "experiments/core/text/json_output.h"
 #include "parameters/input_error.h"
 #include "parameters/text_lines.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -182,7 +183,6 @@ Json NumberAsJson(double x) { return std::isfinite(x) ? Json(x) : Json(fmt::form
 double NumberFrom(const Json& json) {
   if (json.is_number()) return json.get<double>();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (const double x : {kInfinity, -kInfinity, kNaN, std::copysign(kNaN, -1.0)}) {
     if (json.get<std::string>() == fmt::format("{}", x)) return x;
   }

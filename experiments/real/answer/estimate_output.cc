@@ -4,21 +4,19 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
+#include "experiments/core/text/field_text.h"
 #include "experiments/real/answer/motion_words.h"
 #include "experiments/real/answer/refusal_advice.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/study/estimator_spec.h"
 #include "parameters/probability_text.h"
 #include "peers/outside_answer.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // The row-major numbers of a matrix.
 std::vector<double> RowMajor(const Eigen::MatrixXd& matrix) {

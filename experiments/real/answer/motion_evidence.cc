@@ -1,8 +1,6 @@
 #include "experiments/real/answer/motion_evidence.h"
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "estimator/calibrated/match_terms.h"
 #include "estimator/model_choice/two_view_models.h"
@@ -10,13 +8,12 @@
 #include "estimator/problem_check.h"
 #include "experiments/data/data_source.h"
 #include "experiments/real/truth_free/twin.h"
+#include "stats/constants.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kLevel = 0.001;
 
 // Of n normal residuals the median of the sizes has an asymptotic efficiency of 0.37: sd / sigma =

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // About x (right) what is forward goes up, about y (down) to the right, about z (forward) what is right goes
 // down, clockwise for who looks forward.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 
 #include "estimator/estimator_registry.h"
 #include "estimator/estimators/rcme_calibrated.h"
@@ -17,11 +16,11 @@
 #include "experiments/real/answer/motion_words.h"
 #include "experiments/study/estimator_spec.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr const char* kStandIn = "msac";
 
 // The estimator's own search and score, without what any estimator can be put behind (a robust covariance,

@@ -13,17 +13,16 @@
 #include <type_traits>
 
 #include "experiments/core/files/file_output.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
 
-constexpr std::uint64_t kFnvStart = 0xcbf29ce484222325ULL;
 constexpr std::uint32_t kMaxScale = 1000;
 
-// FNV-1a. For accidents, not for adversaries.
-std::uint64_t Hash(std::string_view bytes, std::uint64_t hash = kFnvStart) {
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
+std::uint64_t Hash(std::string_view bytes, Fnv1a hash = {}) {
+  hash.Add(bytes);
+  return hash.value();
 }
 
 // In this order at the beginning of a file; the key points, the descriptors and the hash of all before
@@ -41,7 +40,9 @@ static_assert(std::is_trivially_copyable_v<KeyPoint> && sizeof(KeyPoint) == 12);
 std::string NameOf(const std::string& image, const DetectorOptions& options) {
   const std::string about =
       fmt::format("2 {} {} {}", CV_VERSION, static_cast<int>(options.detector), options.max_features);
-  return fmt::format("{:016x}{:016x}.features", Hash(image), Hash(image, Hash(about)));
+  Fnv1a hash_about;
+  hash_about.Add(about);
+  return fmt::format("{:016x}{:016x}.features", Hash(image), Hash(image, hash_about));
 }
 
 }  // namespace

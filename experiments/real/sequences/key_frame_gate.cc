@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <numbers>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/triangulation.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -13,7 +13,6 @@ namespace {
 constexpr size_t kLeastInFront = 50;  // minTriangulated of the program
 constexpr double kShareInFront = 0.9;
 constexpr double kInlierLevelOfGate = 0.05;  // chi-square at 95 %, as the program
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // The angles between the two rays of the matches in front of both cameras, rad, for the best of the four
 // motions.

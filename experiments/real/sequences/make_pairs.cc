@@ -6,24 +6,24 @@
 #include <deque>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kRadPerDegOfPose = std::numbers::pi / 180.0;
 constexpr std::uint32_t kGatePurpose = 0x6761;  // of the gate's random stream; no trial has it
 
-// 48 bits of FNV-1a of a pair's name.
+// The upper 48 bits of the hash of a pair's name.
 std::uint64_t NumberOf(const std::string& pair_id) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : pair_id) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash >> 16;
+  Fnv1a hash;
+  hash.Add(pair_id);
+  return hash.value() >> 16;
 }
 
 void StopIfRequested(const PairJournal& journal) {
@@ -47,7 +47,7 @@ void Decide(MatchFile file, PairRow row, const PairsOptions& options, PairJourna
   row.num_matches = static_cast<int>(file.matches.size());
   if (file.cam2_from_cam1_true) {
     row.rotation_deg =
-        RotationAngleBetween(file.cam2_from_cam1_true->R, Eigen::Matrix3d::Identity()) / kRadPerDegOfPose;
+        RotationAngleBetween(file.cam2_from_cam1_true->R, Eigen::Matrix3d::Identity()) / kRadPerDeg;
     file.baseline = row.baseline;
     if (options.truth_sd && !std::isnan(row.baseline) && row.baseline > 0.0)
       file.truth_sd = SdOfMotion(*options.truth_sd, row.baseline);

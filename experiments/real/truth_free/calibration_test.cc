@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "experiments/real/truth_free/calibration_score.h"
+#include "stats/constants.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr PooledParameter kUnknown = {kNaN, kNaN, {-kNaN, kNaN}, 0.0};
 constexpr double kTooWide = 50.0;  // times what is nominal: half of an interval that says nothing
 // Decomposed from projections the intrinsics of one camera differ by rounding.

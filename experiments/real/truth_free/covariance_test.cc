@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kConfidence = 0.95;
 constexpr int kResamples = 1000;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using ValueList = std::vector<double> UnitValues::*;
 

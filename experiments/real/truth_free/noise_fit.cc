@@ -10,6 +10,7 @@
 #include "experiments/real/truth_free/residual_pattern.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_settings.h"
+#include "stats/fnv1a.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
@@ -119,7 +120,7 @@ RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimat
     PatternSum sum;
     for (const AnsweredTrial* answered : used) {
       for (std::uint32_t draw = 0; draw < kFitDraws; ++draw) {
-        const StreamName name{seed, StreamKeyOf(answered->pair.origin), kFitTrial + draw, 0};
+        const StreamName name{seed, HashToStreamKey(answered->pair.origin), kFitTrial + draw, 0};
         const TrialData drawn = redraw.Draw(*answered->exact, name, answered->noise_level);
         sum.Add(drawn.problem, AnswerTo(drawn.problem, estimator, name));
       }
@@ -144,7 +145,7 @@ RedrawSettings FitSimulatedNoise(const TwinSource& source, const TwinFit& fit, d
     const auto data = MakeSimulatedData(SimulatedTwinData(tried_fit, clustered_share, assumed_sigma_px));
     PatternSum sum;
     for (std::uint32_t number = 0; number < kFitDraws * used.size(); ++number) {
-      const StreamName name{seed, StreamKeyOf(source.scene), kFitTrial + number, 0};
+      const StreamName name{seed, HashToStreamKey(source.scene), kFitTrial + number, 0};
       const TrialData drawn = data->Make(name);
       sum.Add(drawn.problem, AnswerTo(drawn.problem, estimator, name));
     }

@@ -9,6 +9,7 @@
 #include "experiments/core/work/stop_request.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_source.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -33,7 +34,7 @@ std::vector<NamedPair> RemoveFrom(const std::vector<PairAnswers>& answers, const
 }
 
 Answered AnswerPair(NamedPair pair, const MotionEstimator& estimator, std::uint64_t seed) {
-  MotionEstimate estimate = AnswerTo(pair.problem, estimator, {seed, StreamKeyOf(pair.name), 0, 0});
+  MotionEstimate estimate = AnswerTo(pair.problem, estimator, {seed, HashToStreamKey(pair.name), 0, 0});
   return {std::move(pair), std::move(estimate)};
 }
 

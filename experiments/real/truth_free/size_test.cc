@@ -5,14 +5,13 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "estimator/robust_covariance/clustered_covariance.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kConfidenceOfSlope = 0.95;
 constexpr size_t kLeastOfSlope = 20;   // inliers
 constexpr double kLeastSpread = 0.01;  // of log noise_scale^2, mean square

@@ -1,11 +1,11 @@
 #include "experiments/real/truth_free/twin.h"
 
-#include <bit>
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/noise_scale.h"
 #include "experiments/data/data_source.h"
+#include "stats/fnv1a.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
@@ -13,26 +13,18 @@ namespace {
 
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 
-// A key point's stream: by its image and place (FNV-1a, folded to 48 bits).
+// A key point's stream: by its image and place, folded to 48 bits.
 std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  const auto add = [&hash](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3; };
-  for (const char letter : image) add(static_cast<unsigned char>(letter));
-  for (const double x : x_px) add(std::bit_cast<std::uint64_t>(x));
-  hash ^= hash >> 32;
-  return (hash * 0x9e3779b97f4a7c15) >> 16;
+  Fnv1a hash;
+  hash.Add(image);
+  for (const double x : x_px) hash.Add(x);
+  return ((hash.value() ^ hash.value() >> 32) * 0x9e3779b97f4a7c15) >> 16;
 }
 
 }  // namespace
 
 Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose) {
   return FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
-}
-
-std::uint64_t StreamKeyOf(const std::string& name) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char letter : name) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3;
-  return (hash >> 48 ^ hash) & 0xffff'ffff'ffff;
 }
 
 Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match) {

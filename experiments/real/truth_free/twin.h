@@ -10,9 +10,6 @@
 
 namespace rcme {
 
-// Names the random streams of a pair or a set by its name (FNV-1a, folded to the 48 bits of a condition).
-std::uint64_t StreamKeyOf(const std::string& name);
-
 Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose);
 
 // The match moved onto the nearest one that satisfies F, to second order of the distance.

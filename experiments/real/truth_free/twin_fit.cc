@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/triangulation.h"
@@ -12,6 +11,8 @@
 #include "experiments/real/truth_free/twin.h"
 #include "parameters/input_error.h"
 #include "simulator/severity/homography_share.h"
+#include "stats/constants.h"
+#include "stats/fnv1a.h"
 #include "stats/median_ratio.h"
 #include "stats/order_statistic.h"
 #include "stats/spatial_pattern.h"
@@ -19,7 +20,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kFarthestDepth = 1e3;  // baselines; beyond, depth is as good as infinite
 
 // Medians over the templates of a scene.
@@ -111,7 +111,7 @@ class LayoutFit {
 TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed) {
   TwinFit fit;
   fit.noise = FitNoise(source, estimator, seed);
-  RandomStream rng = StreamFor({seed, StreamKeyOf(source.scene), 0, 0}, StreamPurpose::kSeverity);
+  RandomStream rng = StreamFor({seed, HashToStreamKey(source.scene), 0, 0}, StreamPurpose::kSeverity);
   LayoutFit layout;
   for (const AnsweredTrial& answered : source.pairs) {
     if (!answered.exact) continue;

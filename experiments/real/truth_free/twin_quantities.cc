@@ -6,12 +6,13 @@
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/noise_scale.h"
-#include "experiments/trial/answer_check.h"
-#include "experiments/trial/trial.h"
 #include "experiments/real/truth_free/halves.h"
 #include "experiments/real/truth_free/residual_correlation.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_source.h"
+#include "experiments/trial/answer_check.h"
+#include "experiments/trial/trial.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -48,7 +49,6 @@ const std::array<QuantityText, kNumQuantities> kQuantityTexts = {{
 
 namespace {
 
-constexpr double kDegPerRad = 57.29577951308232;
 constexpr double kLeastProducts = 20.0;  // of residuals, for the correlation of a pair
 constexpr double kTailSigmas = 2.0;
 

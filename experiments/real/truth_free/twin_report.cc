@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -13,12 +12,13 @@
 #include "experiments/real/truth_free/twin_quantities.h"
 #include "experiments/real/truth_free/twin_settings.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
+#include "stats/fnv1a.h"
 #include "stats/shared_members.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kLeastPairs = 3;  // for a mean to be compared
 
 double MeanOf(const std::vector<double>& values) {
@@ -131,10 +131,11 @@ std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstim
   std::vector<ComparedPair> pairs;
   for (const AnsweredTrial& one : source.pairs) {
     if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
-    ComparedPair pair{number_of(one.image1, one.pair.origin + "/1"),
-                      number_of(one.image2, one.pair.origin + "/2"),
-                      ValuesOf(one.pair, one.estimate, estimator, {seed, StreamKeyOf(one.pair.origin), 0, 0}),
-                      {}};
+    ComparedPair pair{
+        number_of(one.image1, one.pair.origin + "/1"),
+        number_of(one.image2, one.pair.origin + "/2"),
+        ValuesOf(one.pair, one.estimate, estimator, {seed, HashToStreamKey(one.pair.origin), 0, 0}),
+        {}};
     pairs.push_back(std::move(pair));
   }
   return pairs;
@@ -167,7 +168,7 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
     if (!source.pairs[i].exact) continue;
     for (int k = 1; k <= num_twins; ++k) {
       if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
-      const StreamName name{seed, StreamKeyOf(source.pairs[i].pair.origin),
+      const StreamName name{seed, HashToStreamKey(source.pairs[i].pair.origin),
                             static_cast<std::uint32_t>(k) * kCallsOfOne, 0};
       pairs[i].twins = Joined(
           pairs[i].twins, TwinValues(redraw.Draw(*source.pairs[i].exact, name, source.pairs[i].noise_level),
@@ -186,7 +187,7 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
       for (int k = 1; k <= num_twins; ++k) {
         if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
         const StreamName name{
-            seed, StreamKeyOf(source.scene),
+            seed, HashToStreamKey(source.scene),
             (static_cast<std::uint32_t>(i) * 1000 + static_cast<std::uint32_t>(k)) * kCallsOfOne, 0};
         pairs[i].twins = Joined(pairs[i].twins, TwinValues(data->Make(name), estimator, name));
       }

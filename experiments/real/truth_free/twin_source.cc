@@ -7,9 +7,10 @@
 #include "estimator/geometry/triangulation.h"
 #include "estimator/noise_scale.h"
 #include "experiments/core/work/stop_request.h"
+#include "experiments/real/truth_free/twin.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
-#include "experiments/real/truth_free/twin.h"
+#include "stats/fnv1a.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
@@ -84,7 +85,7 @@ TwinSource AnswerScene(const std::string& scene, const DataSource& data, const I
     const auto named = images.find(answered.pair.origin);
     if (named != images.end()) std::tie(answered.image1, answered.image2) = named->second;
     answered.estimate =
-        AnswerTo(answered.pair.problem, estimator, {seed, StreamKeyOf(answered.pair.origin), 0, 0});
+        AnswerTo(answered.pair.problem, estimator, {seed, HashToStreamKey(answered.pair.origin), 0, 0});
     answered.exact = ExactOf(answered.pair, answered.estimate);
     source.pairs.push_back(std::move(answered));
   }

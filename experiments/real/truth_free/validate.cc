@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "estimator/robust_covariance/disjoint_sets.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/data_source.h"
-#include "experiments/trial/answer_check.h"
 #include "experiments/real/truth_free/advice.h"
 #include "experiments/real/truth_free/closure.h"
 #include "experiments/real/truth_free/halves.h"
 #include "experiments/real/truth_free/residual_correlation.h"
 #include "experiments/real/truth_free/self_calibration.h"
 #include "experiments/real/truth_free/twin.h"
+#include "experiments/trial/answer_check.h"
 #include "stats/consistency.h"
+#include "stats/constants.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -22,7 +23,6 @@ namespace {
 constexpr double kConfidence = 0.95;
 constexpr int kResamples = 1000;          // of pairs
 constexpr double kLeastProducts = 100.0;  // of residuals, for a correlation
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Answered Ask(NamedPair pair, const MotionEstimator& estimator, const StreamName& name) {
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
@@ -53,7 +53,7 @@ void AddHalves(const Answered& answered, const MotionEstimator& estimator, Strea
 PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
                       const ValidationOptions& options, PairAnswers* answers) {
   constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
-  StreamName name{options.seed, StreamKeyOf(pair.name), 0, 0};
+  StreamName name{options.seed, HashToStreamKey(pair.name), 0, 0};
   PairResults results;
   answers->whole = Ask(pair, estimator, name);
   const Answered& whole = answers->whole;
@@ -184,7 +184,7 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
   }
   const std::vector<Loop> loops = FindLoops(set.pairs);
   report.num_loops = CountLoops(loops, answers);
-  RandomStream rng = StreamFor({options.seed, StreamKeyOf(set.name), 0, 0}, StreamPurpose::kMonteCarlo);
+  RandomStream rng = StreamFor({options.seed, HashToStreamKey(set.name), 0, 0}, StreamPurpose::kMonteCarlo);
   report.tests = {TestCovariances("spatial_halves", 5, spatial, rng),
                   TestCovariances("random_halves", 5, random, rng),
                   TestCovariances("closure", 3, CloseLoops(answers, loops, RotationClosure), rng),

@@ -3,16 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "estimator/geometry/sampson.h"
+#include "stats/constants.h"
 #include "stats/intervals.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kSigmaPx = 0.5, kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kSigmaPx = 0.5;
 
 // Noisy matches of points whose displacement by the translation is about `parallax_px`, and a mode that
 // explains all of them: the true rotation, no outliers.

@@ -4,14 +4,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numbers>
 
+#include "stats/constants.h"
 #include "tests/test_support/calibrated_mode.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kBound = 15.0 * std::numbers::pi / 180.0;
+constexpr double kBound = RadFromDeg(15.0);
 
 // Points from `near` to twice as many baselines away, noise 0.5 px; the answer is the fit from `start`.
 struct FarCase {

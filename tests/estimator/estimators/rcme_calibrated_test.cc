@@ -7,11 +7,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/every_target.h"
@@ -29,7 +28,6 @@ MotionEstimate RunOn(const MotionProblem& problem, std::uint32_t trial = 0,
 }
 
 bool IsWrong(const MotionEstimate& estimate, const RelativePose& pose_true) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   return RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R) > 3.0 * kRadPerDeg ||
          AngleBetween(estimate.cam2_from_cam1.t, pose_true.t) > 15.0 * kRadPerDeg;
 }
@@ -190,7 +188,6 @@ TEST_F(RcmeCalibratedOf, BadInputHasAStatus) {
     change(bad);
     return RunOn(bad).status;
   };
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(status_with([](MotionProblem& p) { p.matches[7].x2_px.y() = kNaN; }),
             MotionStatus::kInvalidInput);
   EXPECT_EQ(status_with([](MotionProblem& p) { p.sigma_px = 0.0; }), MotionStatus::kInvalidInput);

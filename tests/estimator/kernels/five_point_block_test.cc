@@ -13,6 +13,7 @@
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/solvers/five_point.h"
+#include "stats/constants.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/random_problem.h"
@@ -195,7 +196,6 @@ TEST_F(FivePointBlockTest, HasTheSolutionsOfTheScalarSolver) {
 }
 
 using Spoil = std::function<void(Rays*)>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::vector<std::pair<std::string, Spoil>>& DegenerateSamples() {
   static const std::vector<std::pair<std::string, Spoil>> all = {

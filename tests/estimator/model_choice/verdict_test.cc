@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 #include "tests/test_support/family_problem.h"
@@ -14,8 +15,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 RandomStream Sampling(std::uint32_t trial) {
   return RandomStream({.seed = 1, .trial = trial, .purpose = 99});

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
@@ -13,6 +12,7 @@
 #include "experiments/statistics/forecast_measures.h"
 #include "experiments/statistics/forecast_output.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 #include "stats/random.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/small_study.h"
@@ -20,8 +20,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // A motion of estimator 0 ("standard") with its probability (NaN: none) and share of inliers of 100 matches.
 TrialRecord Motion(std::uint32_t trial, double probability, int num_inliers, bool failed) {

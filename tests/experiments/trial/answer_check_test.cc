@@ -9,12 +9,12 @@
 #include "estimator/estimator_registry.h"
 #include "experiments/data/make_data.h"
 #include "simulator/scene_registry.h"
+#include "stats/constants.h"
 #include "tests/test_support/estimator_variants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr size_t kNumMatches = 10;
 

@@ -9,14 +9,13 @@
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/summarize.h"
 #include "experiments/tuning/verify_setting.h"
+#include "stats/constants.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 #include "tests/test_support/test_estimators.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Estimator 0 is rcme, estimator 1 the same with the fault in a tenth of its motions; no wrong matches.
 StudyPlan PlanWithFault(const FaultyEstimator::Plant& plant, int num_trials) {

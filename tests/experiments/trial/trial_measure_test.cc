@@ -7,12 +7,12 @@
 #include <limits>
 #include <vector>
 
+#include "stats/constants.h"
 #include "stats/random.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TrialRecord Record(MotionStatus status, double rotation_deg, double direction_deg) {

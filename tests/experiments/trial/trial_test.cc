@@ -7,18 +7,16 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <set>
 
 #include "experiments/data/simulated_data.h"
 #include "experiments/trial/covariance_score.h"
 #include "stats/consistency.h"
+#include "stats/constants.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 std::string AllBits(const TrialResult& result) {
   std::string text;

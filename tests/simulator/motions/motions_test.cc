@@ -8,17 +8,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "simulator/motion_registry.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/goodness_of_fit.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr std::uint32_t kNumMotions = 2000;
 
 Motion Draw(const MotionModel& model, std::uint32_t trial) {

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <numbers>
 
 #include "simulator/noise/noise_laws.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/goodness_of_fit.h"
 #include "tests/simulator/noise/noise_sample.h"
@@ -13,7 +13,7 @@ namespace {
 
 // The covariance (4x4, px^2) by definition, for sigma_px = 1.
 Eigen::Matrix4d Covariance(double axis_ratio, double axis_deg, double image_correlation) {
-  const double angle = axis_deg * std::numbers::pi / 180.0;
+  const double angle = RadFromDeg(axis_deg);
   const double minor = std::sqrt(2.0 / (1.0 + axis_ratio * axis_ratio)), major = axis_ratio * minor;
   Eigen::Matrix2d axes;
   axes << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);

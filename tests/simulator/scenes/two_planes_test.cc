@@ -1,16 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "simulator/scenes/scenes.h"
+#include "stats/constants.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/scene_samples.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Both planes are vertical and go through the edge at the given depth; seen from the camera they make the
 // given angle. The fitted normals point away from the camera: for the left plane of an inner corner to the

@@ -9,14 +9,13 @@
 #include "estimator/geometry/sampson.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "simulator/severity/point_information.h"
+#include "stats/constants.h"
 #include "stats/moments.h"
 #include "stats/spatial_pattern.h"
 #include "tests/test_support/far_and_near_scene.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 struct Trial {
   Scene scene;

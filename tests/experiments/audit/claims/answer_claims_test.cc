@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "experiments/audit/claims/calibration.h"
 #include "experiments/audit/claims/call_estimator.h"
 #include "experiments/audit/claims/decide_check.h"
 #include "experiments/audit/claims/design.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "tests/test_support/answer_doubles.h"
 #include "tests/test_support/coverage_count.h"
@@ -69,7 +69,7 @@ TEST(SigmaStatistic, ByHand) {
 // s^2) (Rayleigh). Catches a bound in other units, a factor that is no root of the covariance, and the wrong
 // block.
 TEST(DrawShareBeyond, IsTheProbabilityByTheCovariance) {
-  constexpr double kBoundDeg = 15.0, kSdDeg = 8.0, kRadPerDeg = std::numbers::pi / 180.0;
+  constexpr double kBoundDeg = 15.0, kSdDeg = 8.0;
   MotionEstimate answer;
   answer.cam2_from_cam1 = kMotionOfDoubles;
   answer.pose_cov = Matrix5d::Zero();
@@ -169,7 +169,7 @@ TEST(AnswerClaims, AreMadeOfWhatIsStated) {
   // One that states its probabilities in one answer of twenty only, and wrong ones.
   const AnswerFault rare = {"rare", FoundBy::kFailureClaim, FullAnswer,
                             [](MotionEstimate* a, RandomStream& rng) {
-                              if (rng.Uniform() < 0.95) a->failure_probability = kNaNOfDoubles;
+                              if (rng.Uniform() < 0.95) a->failure_probability = kNaN;
                               if (!std::isnan(a->failure_probability)) a->failure_probability = 0.9;
                             }};
   EXPECT_EQ(Decide(rare, 1, 1).targets[1].verdict, Verdict::kDoesNotHold);

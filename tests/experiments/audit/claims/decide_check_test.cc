@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "stats/confidence_sequence.h"
+#include "stats/constants.h"
 #include "stats/intervals.h"
 #include "tests/test_support/coverage_count.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Target RateWithin(double low, double high) { return ClaimedRate("rate", 0.5 * (low + high), {low, high}); }
 

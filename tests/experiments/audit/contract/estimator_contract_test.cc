@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 #include "tests/test_support/estimator_variants.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/test_estimators.h"
@@ -22,8 +22,6 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // rcme with something done before and after.
 class ChangedEstimator : public MotionEstimator {

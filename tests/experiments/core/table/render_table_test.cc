@@ -7,11 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "stats/constants.h"
+
 namespace rcme {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-const double kNaN = std::nan("");
 
 // What every renderer has to print: a row of usual values, and one of what is not known or not finite.
 Table MakeExample() {

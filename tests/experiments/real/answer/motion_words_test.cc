@@ -6,15 +6,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "experiments/real/answer/refusal_advice.h"
+#include "stats/constants.h"
 #include "stats/random.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 // A camera that is turned to the right sees what was right of it nearer the middle: the words are held
 // against where an object in front of camera 1 moves, not against another convention.

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "stats/constants.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -128,7 +129,7 @@ TEST(KeyFrameGate, StatesTheFiftiethLargestAngle) {
       angles.push_back(AngleBetween(point, point - center2));
     }
     std::sort(angles.rbegin(), angles.rend());
-    EXPECT_NEAR(verdict.parallax_deg, angles[49] * 57.29577951308232, 1e-3);
+    EXPECT_NEAR(verdict.parallax_deg, kDegPerRad * angles[49], 1e-3);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "stats/constants.h"
 #include "tests/test_support/dataset_checks.h"
 
 namespace rcme {
@@ -36,8 +37,8 @@ TEST_F(MakePairs, NeighboursGiveTriplesAndTheTruthsOwnErrorItsHeader) {
   EXPECT_GE(num_triples, 1);
   const PairRow& row = rows.at(0);
   const TruthSd sd = SdOfMotion(*options.truth_sd, row.baseline);
-  EXPECT_NEAR(sd.rotation_rad.x(), std::sqrt(2.0) * 0.03 / kDegPerRadOfTests, 1e-12);
-  EXPECT_NEAR(sd.translation.y(), std::hypot(std::sqrt(2.0) * 0.012 / row.baseline, 0.03 / kDegPerRadOfTests),
+  EXPECT_NEAR(sd.rotation_rad.x(), std::sqrt(2.0) * 0.03 / kDegPerRad, 1e-12);
+  EXPECT_NEAR(sd.translation.y(), std::hypot(std::sqrt(2.0) * 0.012 / row.baseline, 0.03 / kDegPerRad),
               1e-12);
   for (const PairRow& each : rows) {
     if (each.reason != kKeptPair) continue;
@@ -60,7 +61,7 @@ TEST(TruthSdOfPoses, IsThatOfDraws) {
     const auto draw = [&](double s) {
       return Eigen::Vector3d(s * rng.Normal(), s * rng.Normal(), s * rng.Normal());
     };
-    return CameraPose{pose.R_world_from_cam * RotationFromVector(draw(sd.rotation_deg / kDegPerRadOfTests)),
+    return CameraPose{pose.R_world_from_cam * RotationFromVector(draw(sd.rotation_deg / kDegPerRad)),
                       pose.center + draw(sd.position)};
   };
   constexpr int kDraws = 20'000;

@@ -6,14 +6,13 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
 const RelativePose kToTheSide = {Eigen::Matrix3d::Identity(), Eigen::Vector3d(-1.0, 0.0, 0.0)};
 
 MotionEstimate AnswerToTheSide(size_t num_matches, double rotation_sd_rad, double failure_probability) {
@@ -125,12 +124,12 @@ TEST(MakeTwinReport, ComparesMeans) {
   ExpectComparison(report, "stated_failure", "semi_real", 0.27, 0.47, around(0.47, 0.1), 4);
   ExpectComparison(report, "stated_failure", "simulated", 0.27, 0.47, around(0.47, 0.07), 4);
   // Standard deviations: geometric means, of 1 and 4 mrad 2, intervals symmetric in the logarithm.
-  const double mean_deg = 2e-3 * kDegreesPerRad;
+  const double mean_deg = 2e-3 * kDegPerRad;
   const Interval joint = {mean_deg * std::exp(-half * std::log(2.0)),
                           mean_deg * std::exp(half * std::log(2.0))};
   for (const char* twin : {"semi_real", "simulated"}) {
-    ExpectComparison(report, "rotation_sd_deg", twin, 3e-3 * kDegreesPerRad, mean_deg, joint, 4);
-    const double direction_deg = std::sqrt(2.0) * 1e-3 * kDegreesPerRad;
+    ExpectComparison(report, "rotation_sd_deg", twin, 3e-3 * kDegPerRad, mean_deg, joint, 4);
+    const double direction_deg = std::sqrt(2.0) * 1e-3 * kDegPerRad;
     ExpectComparison(report, "direction_sd_deg", twin, direction_deg, direction_deg,
                      {direction_deg, direction_deg}, 4);
   }

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "experiments/run/store/schema.h"
+#include "stats/constants.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
@@ -19,7 +20,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 using Trials = std::vector<std::uint32_t>;
 
 // Both estimators' records of one trial, no two numbers alike, all within what their columns may hold.
