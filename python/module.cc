@@ -38,6 +38,7 @@
 #include "peers/outside_answer.h"
 #include "peers/peer_registry.h"
 #include "python/function_estimator.h"
+#include "simulator/severity/severity_columns.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -187,7 +188,7 @@ py::dict Simulate(const StudySource& source, std::int64_t condition_index, std::
   const TrialData data = condition.source->Make(name);
   const MotionProblem& problem = data.problem;
   py::dict severity;
-  VisitSeverity(data.severity, [&](const char* key, const double& value) { severity[key] = value; });
+  for (const SeverityColumn& column : kSeverityColumns) severity[column.name] = data.severity.*column.field;
   return py::dict("x1"_a = PointsOf(problem.matches, &Correspondence::x1_px),
                   "x2"_a = PointsOf(problem.matches, &Correspondence::x2_px),
                   "camera1"_a = DictOf(problem.camera1), "camera2"_a = DictOf(problem.camera2),

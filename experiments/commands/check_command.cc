@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/statistics/summarize_counts.h"
-#include "experiments/core/text/columns.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/run/store/new_trials.h"
 #include "experiments/run/store/salvage.h"
+#include "experiments/statistics/summarize_counts.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -110,6 +110,7 @@ void CheckFile(const CheckArguments& arguments) {
   }
   try {
     const ResultStore store = ResultStore::OpenForReading(arguments.run);
+    store.CheckTrials();
     PrintSound(arguments.run, store);
   } catch (const DamagedFileError& error) {
     ReportDamage(arguments, error);
@@ -125,13 +126,13 @@ void AddCheckCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("check", "Is a result file sound? If not: what is damaged, and what can be saved");
   command->footer(
-      "Every command checks the result file that it reads, and refuses a damaged one: the tables and their\n"
+      "Every command checks what it reads of a result file, and refuses a damaged one: the tables and their\n"
       "columns, the type and range of every number, one record per estimator in every trial, a checksum\n"
       "(CRC-32) per trial, and per condition how many trials there are and the sum of their checksums.\n"
-      "This command goes on where those stop. It names the trials that are not sound; with --save-good it\n"
-      "writes the sound ones to a new file, whole or not at all, which `rcme run` then completes: a trial is "
-      "a function of the\n"
-      "study, its seed and its number, so that the result is the same as if nothing had happened.\n"
+      "This command reads all of it and goes on where those stop. It names the trials that are not sound;\n"
+      "with --save-good it writes the sound ones to a new file, whole or not at all, which `rcme run` then\n"
+      "completes: a trial is a function of the study, its seed and its number, so that the result is the\n"
+      "same as if nothing had happened.\n"
       "The exit code is 0 for a sound file and where the sound trials were saved, 2 for a damaged one.\n"
       "\n"
       "Examples:\n"

@@ -8,19 +8,12 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/real/answer/why.h"
 #include "experiments/run/store/result_store.h"
-#include "experiments/trial/trial_fields.h"
+#include "experiments/trial/trial_columns.h"
 #include "experiments/trial/trial_outcome.h"
 #include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-std::string FieldText(const MotionStatus& status) { return StatusName(status); }
-std::string FieldText(bool flag) { return flag ? "yes" : "no"; }
-template <typename Number>
-std::string FieldText(const Number& number) {
-  return fmt::format("{}", number);
-}
 
 std::string MatrixText(const Eigen::MatrixXd& matrix) {
   std::string text;
@@ -56,9 +49,10 @@ void PrintEstimate(const std::string& label, const MotionEstimate& estimate, con
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
                MatrixText(kDegPerRad * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
   }
-  VisitFields(record, [](const std::string& name, const auto& field) {
-    if (name != "condition" && name != "trial" && name != "estimator" && name != "status") {
-      fmt::print("  {:<26}{}\n", name, FieldText(field));
+  VisitColumns(record, [](const StoredColumn& column, const auto& field) {
+    if constexpr (!std::is_same_v<std::decay_t<decltype(field)>, MotionStatus>) {
+      if (column.role != StoredColumn::Role::kKey)
+        fmt::print("  {:<26}{}\n", column.name, FormatField(field));
     }
   });
 }
@@ -67,8 +61,8 @@ void PrintEstimate(const std::string& label, const MotionEstimate& estimate, con
 bool AreEqual(const TrialRecord& a, const TrialRecord& b) {
   const auto text_of = [](const TrialRecord& record) {
     std::string text;
-    VisitFields(record, [&](const std::string& name, const auto& field) {
-      if (name != "seconds") text += FieldText(field) + " ";
+    VisitColumns(record, [&](const StoredColumn& column, const auto& field) {
+      if (column.role != StoredColumn::Role::kTime) text += FormatField(field) + " ";
     });
     return text;
   };
@@ -83,12 +77,12 @@ struct ReplayArguments {
 
 void Replay(const ReplayArguments& arguments) {
   const auto& [run, condition_index, trial, allow_process] = arguments;
-  const ResultStore store = ResultStore::OpenForSingleTrials(run);
+  const ResultStore store = ResultStore::OpenForReading(run);
   const StudyPlan plan = PlanOfStored(store, allow_process);
   const Condition& condition = ChosenCondition(plan, condition_index);
+  const std::vector<TrialRecord> stored = store.RecordsOf(condition_index, trial);
   const TrialResult result = RunTrial(plan, condition, trial);
   PrintData(plan, condition, trial, result.data);
-  const std::vector<TrialRecord> stored = store.RecordsOf(condition_index, trial);
   for (size_t e = 0; e < result.records.size(); ++e) {
     PrintEstimate(plan.study.estimators[e].label, result.estimates[e], result.records[e], plan.study.failure);
     const bool is_stored = e < stored.size();

@@ -5,18 +5,18 @@
 #include <fstream>
 #include <memory>
 
-#include "experiments/statistics/trial_output.h"
-#include "experiments/real/answer/why.h"
-#include "experiments/core/files/file_name.h"
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/files/scratch_folder.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/core/files/file_name.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/files/scratch_folder.h"
+#include "experiments/core/text/message.h"
+#include "experiments/real/answer/why.h"
 #include "experiments/run/store/result_store.h"
+#include "experiments/statistics/trial_output.h"
 #include "parameters/input_error.h"
 #include "parameters/suggestion.h"
 
@@ -49,7 +49,7 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
                     "and --seed go with a study file (YAML)",
                     arguments.study));
   }
-  return PlanOfStored(ResultStore::OpenForSingleTrials(arguments.study), arguments.changes.allow_process);
+  return PlanOfStored(ResultStore::OpenForReading(arguments.study), arguments.changes.allow_process);
 }
 
 // Numbers of the estimators with these labels, each once, in the order asked for.

@@ -5,6 +5,7 @@
 
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/trial/trial_measure.h"
+#include "simulator/severity/severity_columns.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -161,17 +162,13 @@ const std::vector<ProblemQuantity>& ProblemQuantities() {
          }},
         {"num_inliers_true", SummaryRow::Kind::kMean, "true matches",
          [](const ProblemRecord& p, const FailureBounds&) { return If(true, p.num_inliers_true); }}};
-    Severity names;
-    VisitSeverity(names, [&](const std::string& name, const double&) {
-      quantities.push_back({name, SummaryRow::Kind::kMean, "severity of the problem (simulator/severity)",
-                            [name](const ProblemRecord& p, const FailureBounds&) {
-                              double value = Severity::kUnknown;
-                              VisitSeverity(p.severity, [&](const std::string& other, const double& field) {
-                                if (other == name) value = field;
-                              });
-                              return If(true, value);
+    for (const SeverityColumn& column : kSeverityColumns) {
+      quantities.push_back({column.name, SummaryRow::Kind::kMean,
+                            "severity of the problem (simulator/severity)",
+                            [field = column.field](const ProblemRecord& p, const FailureBounds&) {
+                              return If(true, p.severity.*field);
                             }});
-    });
+    }
     return quantities;
   }();
   return all;

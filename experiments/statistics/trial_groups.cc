@@ -7,32 +7,21 @@
 #include <cmath>
 
 #include "parameters/input_error.h"
+#include "simulator/severity/severity_columns.h"
 
 namespace rcme {
 namespace {
 
 constexpr size_t kNumGroups = 5;
 
-// The place of a number in VisitSeverity.
-size_t PlaceOf(const std::string& quantity) {
+const SeverityColumn& FindSeverityColumn(const std::string& name) {
   std::vector<std::string> names;
-  const Severity severity;
-  VisitSeverity(severity, [&](const char* name, double) { names.emplace_back(name); });
-  const auto found = std::ranges::find(names, quantity);
-  if (found == names.end()) {
-    throw InputError(fmt::format("fifths-of: no number of the problem is called '{}'; there are {}", quantity,
-                                 fmt::join(names, ", ")));
+  for (const SeverityColumn& column : kSeverityColumns) {
+    if (column.name == name) return column;
+    names.emplace_back(column.name);
   }
-  return static_cast<size_t>(found - names.begin());
-}
-
-double ValueAt(size_t place, const Severity& severity) {
-  double found = Severity::kUnknown;
-  size_t i = 0;
-  VisitSeverity(severity, [&](const char*, double value) {
-    if (i++ == place) found = value;
-  });
-  return found;
+  throw InputError(fmt::format("fifths-of: no number of the problem is called '{}'; there are {}", name,
+                               fmt::join(names, ", ")));
 }
 
 // The greatest values of the first four groups.
@@ -58,11 +47,11 @@ TrialGroups OneGroup() {
 }
 
 TrialGroups GroupByFifth(const ResultStore& store, const std::string& quantity) {
-  const size_t place = PlaceOf(quantity);
+  const auto field = FindSeverityColumn(quantity).field;
   std::vector<double> values;
   bool is_unknown_of_some = false;
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>&) {
-    const double value = ValueAt(place, problem.severity);
+    const double value = problem.severity.*field;
     if (std::isnan(value)) {
       is_unknown_of_some = true;
     } else {
@@ -78,8 +67,8 @@ TrialGroups GroupByFifth(const ResultStore& store, const std::string& quantity) 
   }
   groups.levels.push_back({std::to_string(kNumGroups), fmt::format("above {:.3g}", bounds.back())});
   if (is_unknown_of_some) groups.levels.push_back({"unknown", "unknown"});
-  groups.group_of = [place, bounds](const ProblemRecord& problem) {
-    const double value = ValueAt(place, problem.severity);
+  groups.group_of = [field, bounds](const ProblemRecord& problem) {
+    const double value = problem.severity.*field;
     if (std::isnan(value)) return kNumGroups;
     return static_cast<size_t>(std::ranges::lower_bound(bounds, value) - bounds.begin());
   };

@@ -21,8 +21,9 @@ TrialGroups GroupByCondition(const RunDescription& run);
 TrialGroups OneGroup();
 
 // Five groups with equally many trials, those with the least value of a number of the problem first
-// (VisitSeverity: "crb_direction_deg"); equal values are in one group, and the trials of which it is unknown
-// in a sixth. Reads the run once. Throws InputError if there is no such number, or it is unknown of all.
+// (kSeverityColumns: "crb_direction_deg"); equal values are in one group, and the trials of which it is
+// unknown in a sixth. Reads the run once. Throws InputError if there is no such number, or it is unknown of
+// all.
 TrialGroups GroupByFifth(const ResultStore& store, const std::string& quantity);
 
 }  // namespace rcme

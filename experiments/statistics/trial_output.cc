@@ -11,6 +11,7 @@
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/trial_outcome.h"
+#include "simulator/severity/severity_columns.h"
 
 namespace rcme {
 namespace {
@@ -177,8 +178,8 @@ Json Header(const StudyPlan& plan, const TrialResult& result) {
   for (const auto& [part, name] : condition.source->ChosenParts()) parts.push_back(Json::array({part, name}));
   bounds["max_rotation_error_deg"] = plan.study.failure.max_rotation_error_deg;
   bounds["max_direction_error_deg"] = plan.study.failure.max_direction_error_deg;
-  VisitSeverity(result.problem.severity,
-                [&](const char* name, double value) { severity[name] = JsonNumber(value); });
+  for (const SeverityColumn& column : kSeverityColumns)
+    severity[column.name] = JsonNumber(result.problem.severity.*column.field);
   return {{"study", plan.study.name},
           {"seed", plan.study.seed},
           {"condition", condition.index},
@@ -258,9 +259,10 @@ std::string TrialAsText(const StudyPlan& plan, const TrialResult& result) {
     parts += fmt::format("{}{} {}", parts.empty() ? "  " : ", ", part, name);
   }
   text += fmt::format("{}{}  {}\n", parts, parts.empty() ? "" : "\n", MatchesInWords(result.data));
-  VisitSeverity(result.problem.severity, [&](const std::string& name, double value) {
-    if (!std::isnan(value)) text += fmt::format("  {:<24}{:.4g}\n", name, value);
-  });
+  for (const SeverityColumn& column : kSeverityColumns) {
+    const double value = result.problem.severity.*column.field;
+    if (!std::isnan(value)) text += fmt::format("  {:<24}{:.4g}\n", column.name, value);
+  }
   std::vector<std::vector<std::string>> rows = {{"estimator", "outcome", "status", "rotation error",
                                                  "direction error", "inliers", "precision", "recall"}};
   for (size_t e = 0; e < result.records.size(); ++e) {

@@ -8,39 +8,36 @@
 #include <vector>
 
 #include "experiments/core/text/field_text.h"
-#include "experiments/trial/trial_fields.h"
+#include "experiments/run/store/record_table.h"
 #include "experiments/trial/trial_outcome.h"
 
 namespace rcme {
 namespace {
 
-template <typename Field>
-std::string FieldText(const Field& field) {
-  if constexpr (std::is_same_v<Field, double>) {
-    return std::isnan(field) ? std::string() : fmt::format("{}", field);
-  } else {
-    return fmt::format("{}", static_cast<std::int64_t>(field));
-  }
+// As the file has it: a flag is a number, and what is not known is nothing.
+std::string FieldAsStored(double number) { return std::isnan(number) ? std::string() : FormatField(number); }
+template <typename Integer>
+std::string FieldAsStored(Integer number) {
+  return FormatField(static_cast<std::int64_t>(number));
 }
 
-// Visits the columns of a row after the outcome: those of the record, then those of the problem.
+// Visits the columns of a row after the outcome and their fields: those of the record, then those of the
+// problem.
 template <typename Visit>
 void VisitNumbers(const TrialRecord& record, const ProblemRecord& problem, bool with_times, Visit visit) {
-  VisitFields(record, [&](const std::string& name, const auto& field) {
+  using Role = StoredColumn::Role;
+  const auto visit_number = [&](const StoredColumn& column, const auto& field) {
     if constexpr (!std::is_same_v<std::decay_t<decltype(field)>, MotionStatus>) {
-      const bool is_key = name == "condition" || name == "trial" || name == "estimator";
-      if (!is_key && (with_times || name != "seconds")) visit(name, FieldText(field));
+      if (column.role == Role::kNumber || (with_times && column.role == Role::kTime)) visit(column, field);
     }
-  });
-  VisitProblemFields(problem, [&](const std::string& name, const auto& field) {
-    if (name != "condition" && name != "trial") visit(name, FieldText(field));
-  });
+  };
+  VisitColumns(record, visit_number);
+  VisitColumns(problem, visit_number);
 }
 
 std::string Header(const std::vector<std::string>& factors, bool with_times) {
   std::vector<std::string> before = {"study", "condition"}, after = {"trial", "estimator", "outcome"};
-  VisitNumbers({}, {}, with_times,
-               [&](const std::string& name, const std::string&) { after.push_back(name); });
+  for (const ResultColumn& column : TrialTableNumbers(with_times)) after.push_back(column.name);
   const auto is_taken = [&](const std::string& name) {
     return std::ranges::count(before, name) + std::ranges::count(after, name) > 0;
   };
@@ -60,8 +57,17 @@ std::string BeginningOf(const RunDescription& run, std::uint32_t condition) {
 
 }  // namespace
 
+std::vector<ResultColumn> TrialTableNumbers(bool with_times) {
+  std::vector<ResultColumn> columns;
+  VisitNumbers({}, {}, with_times, [&](const StoredColumn& column, const auto& field) {
+    columns.push_back(DescribeColumn(column, field));
+  });
+  return columns;
+}
+
 void WriteTrialTable(const ResultStore& store, bool with_times,
                      const std::function<void(const std::string&)>& write) {
+  store.CheckTrials();
   const RunDescription run = store.Description();
   write(Header(run.factors, with_times));
   std::vector<std::string> beginnings, labels;
@@ -72,8 +78,10 @@ void WriteTrialTable(const ResultStore& store, bool with_times,
     for (const TrialRecord& record : records) {
       rows += fmt::format("{},{},{},{}", beginnings[record.condition], record.trial, labels[record.estimator],
                           OutcomeInFull(record, run.failure));
-      VisitNumbers(record, problem, with_times,
-                   [&](const std::string&, const std::string& text) { rows += "," + text; });
+      VisitNumbers(record, problem, with_times, [&](const StoredColumn&, const auto& field) {
+        rows += ',';
+        rows += FieldAsStored(field);
+      });
       rows += "\n";
     }
     write(rows);

@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "experiments/run/store/result_store.h"
+#include "experiments/run/store/schema.h"
 
 namespace rcme {
 
@@ -12,8 +14,12 @@ namespace rcme {
 // column per factor (its level), trial, estimator (its label), outcome (trial_outcome.h), then every column
 // of the records and the problems (docs/result_file.md) but the status, which the outcome tells. What is not
 // known is an empty field. A factor that is called as one of the other columns is written as "level_NAME".
-// Wall times, which no two runs share, only if asked for. Numbers have all their digits.
+// Wall times, which no two runs share, only if asked for. Numbers have all their digits. Throws InputError
+// before the first line if a trial is not sound.
 void WriteTrialTable(const ResultStore& store, bool with_times,
                      const std::function<void(const std::string&)>& write);
+
+// Its columns after the outcome, as the file stores them.
+std::vector<ResultColumn> TrialTableNumbers(bool with_times);
 
 }  // namespace rcme

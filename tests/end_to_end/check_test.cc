@@ -38,6 +38,9 @@ TEST_F(Check, EveryCommandRefusesADamagedFile) {
   folder_.Write("run.sqlite", bytes);
   for (std::vector<std::string> command :
        std::vector<std::vector<std::string>>{{"summarize", run_},
+                                             {"summarize", run_, "--raw", "csv"},
+                                             {"summarize", run_, "--fifths-of", "planarity"},
+                                             {"reliability", run_},
                                              {"compare", run_},
                                              {"report", run_, "--out", folder_.Path("page.html")},
                                              // not in the file, or lost
@@ -50,6 +53,9 @@ TEST_F(Check, EveryCommandRefusesADamagedFile) {
     EXPECT_THAT(result.err, HasSubstr(run_)) << command[0];
     EXPECT_THAT(result.err, HasSubstr("damaged")) << command[0];
     EXPECT_THAT(result.err, HasSubstr("rcme check")) << command[0];
+    if (command[0] != "check") {
+      EXPECT_EQ(result.out, "") << command[0];
+    }
   }
   EXPECT_EQ(ReadBytes(run_), bytes) << "a refusal changed the file";
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("page.html")));

@@ -53,12 +53,12 @@ TEST_F(ChangedResultFile, EveryColumnOfEveryTable) {
       {"totals WHERE condition = 1", "checksum"},
       {"problems WHERE condition = 1 AND trial = 3", "checksum"}};
   TrialRecord record;
-  VisitFields(record, [&](const std::string& name, const auto&) {
-    columns.emplace_back("trials WHERE condition = 1 AND trial = 3 AND estimator = 1", name);
+  VisitColumns(record, [&](const StoredColumn& column, const auto&) {
+    columns.emplace_back("trials WHERE condition = 1 AND trial = 3 AND estimator = 1", column.name);
   });
   ProblemRecord problem;
-  VisitProblemFields(problem, [&](const std::string& name, const auto&) {
-    columns.emplace_back("problems WHERE condition = 1 AND trial = 3", name);
+  VisitColumns(problem, [&](const StoredColumn& column, const auto&) {
+    columns.emplace_back("problems WHERE condition = 1 AND trial = 3", column.name);
   });
   int num_refused = 0, num_same = 0, num_impossible = 0;
   for (const auto& [rows, column] : columns) {
@@ -85,7 +85,7 @@ TEST_F(ChangedResultFile, EveryColumnOfEveryTable) {
 TEST_F(ChangedResultFile, TheMessageNamesTheColumn) {
   const auto refuses = [&](const std::string& sql, const std::vector<std::string>& fragments) {
     EXPECT_TRUE(Change(sql)) << sql;
-    return ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, fragments);
+    return ThrowsInputError([&] { ResultStore::OpenForReading(path_).CheckTrials(); }, fragments);
   };
   EXPECT_TRUE(refuses("UPDATE trials SET num_inliers = 'many'",
                       {path_, "condition 0, trial 0", "num_inliers", "is text", "rcme check"}));
@@ -174,7 +174,7 @@ TEST_F(ChangedResultFile, RowsLostDoubledSwappedAndForeign) {
 // To read one trial not all are read: the one that is must be sound, and one that is not found is looked for.
 TEST_F(ChangedResultFile, ASingleTrialIsNeverTakenForAnother) {
   const auto read = [&](std::uint32_t trial) {
-    return ResultStore::OpenForSingleTrials(path_).RecordsOf(1, trial).size();
+    return ResultStore::OpenForReading(path_).RecordsOf(1, trial).size();
   };
   const std::string trial = " WHERE condition = 1 AND trial = 3";
   ASSERT_TRUE(Change("UPDATE trials SET seconds = seconds + 1e-9" + trial));
@@ -189,6 +189,39 @@ TEST_F(ChangedResultFile, ASingleTrialIsNeverTakenForAnother) {
   Write(*bytes_);
   EXPECT_EQ(read(3), 2u);
   EXPECT_EQ(read(99), 0u);
+}
+
+// The last trial is damaged: the file opens, and who uses its trials is refused before anything is written.
+TEST_F(ChangedResultFile, DamageIsMetWhereTrialsAreReadBeforeAnythingIsWritten) {
+  const std::string sql = fmt::format(
+      "UPDATE trials SET seconds = seconds + 1e-9 WHERE condition = 1 AND trial = {}", kTrials - 1);
+  ASSERT_TRUE(Change(sql));
+  const auto refuses = [&](auto use) {
+    return ThrowsInputError([&] { use(ResultStore::OpenForReading(path_)); }, {path_, "checksum"});
+  };
+  std::string written;
+  EXPECT_TRUE(refuses([&](const ResultStore& store) {
+    WriteTrialTable(store, /*with_times=*/true, [&](const std::string& rows) { written += rows; });
+  }));
+  EXPECT_EQ(written, "");
+  EXPECT_TRUE(refuses([](const ResultStore& store) { Summarize(store, /*with_times=*/false); }));
+  EXPECT_TRUE(refuses([](const ResultStore& store) { Compare(store, ""); }));
+  EXPECT_TRUE(refuses([](const ResultStore& store) { store.CheckTrials(); }));
+  EXPECT_TRUE(refuses([](ResultStore&& store) { store.MissingTrials(0, kTrials); }));
+  const auto ignore = [](const ProblemRecord&, const std::vector<TrialRecord>&) {};
+  EXPECT_TRUE(refuses([&](const ResultStore& store) { store.ForEachTrial(ignore, 1); }));
+  ResultStore::OpenForReading(path_).ForEachTrial(ignore, 0);  // of a sound condition
+  EXPECT_EQ(ResultStore::OpenForReading(path_).Plan().conditions.size(), 2u);
+}
+
+// Under a stopping rule the totals say how many trials there are: a plan is made of sound ones alone.
+TEST_F(ChangedResultFile, APlanUnderAStoppingRuleChecksTheTrials) {
+  Write(*bytes_);
+  ResultStore::OpenForRun(path_, *plan_).NoteStoppingRule("narrow enough");
+  EXPECT_EQ(ResultStore::OpenForReading(path_).Plan().conditions[1].num_trials, kTrials);
+  ASSERT_TRUE(Execute(path_, "UPDATE totals SET num_trials = 3 WHERE condition = 1"));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ResultStore::OpenForReading(path_).Plan(); }, {path_, "3 trials were counted"}));
 }
 
 TEST_F(ChangedResultFile, AnotherSchema) {

@@ -8,7 +8,7 @@
 
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
-#include "experiments/trial/trial_fields.h"
+#include "experiments/trial/trial_columns.h"
 
 namespace rcme {
 
@@ -35,13 +35,9 @@ inline Study SmallStudy() { return ParseStudy(SmallStudyYaml(), "small.yaml"); }
 // Every field of a record but the time, as text with all bits.
 inline std::string RecordText(const TrialRecord& record) {
   std::string text;
-  VisitFields(record, [&](const std::string& name, const auto& field) {
-    if (name == "seconds") return;
-    if constexpr (std::is_same_v<std::decay_t<decltype(field)>, MotionStatus>) {
-      text += name + "=" + StatusName(field) + " ";
-    } else {
-      text += fmt::format("{}={} ", name, field);
-    }
+  VisitColumns(record, [&](const StoredColumn& column, const auto& field) {
+    if (column.role != StoredColumn::Role::kTime)
+      text += fmt::format("{}={} ", column.name, FormatField(field));
   });
   return text;
 }

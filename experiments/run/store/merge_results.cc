@@ -11,7 +11,7 @@
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/store/new_trials.h"
-#include "experiments/trial/trial_fields.h"
+#include "experiments/trial/trial_columns.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -35,17 +35,11 @@ void ReadPart(const std::string& path, const std::string& identity,
 // Field by field as text, the time aside; the estimator's number leads.
 Settings FieldsOf(const StoredTrial& trial) {
   Settings fields;
-  const auto add = [&](const std::string& name, const auto& field) {
-    using Field = std::decay_t<decltype(field)>;
-    if (name == "seconds") return;
-    if constexpr (std::is_same_v<Field, MotionStatus>) {
-      fields.emplace_back(name, StatusName(field));
-    } else {
-      fields.emplace_back(name, fmt::format("{}", field));
-    }
+  const auto add = [&](const StoredColumn& column, const auto& field) {
+    if (column.role != StoredColumn::Role::kTime) fields.emplace_back(column.name, FormatField(field));
   };
-  VisitProblemFields(trial.problem, add);
-  for (const TrialRecord& record : trial.records) VisitFields(record, add);
+  VisitColumns(trial.problem, add);
+  for (const TrialRecord& record : trial.records) VisitColumns(record, add);
   return fields;
 }
 

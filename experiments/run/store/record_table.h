@@ -1,5 +1,5 @@
 // The two tables of records, problems and trials: their SQL, writing and reading a row. Everything about them
-// follows from the fields of the records (trial_fields.h).
+// follows from the columns of the records (trial_columns.h).
 #pragma once
 
 #include <fmt/format.h>
@@ -9,11 +9,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "experiments/run/store/column_meaning.h"
-#include "experiments/run/store/column_range.h"
 #include "experiments/core/files/database.h"
 #include "experiments/run/store/schema.h"
-#include "experiments/trial/trial_fields.h"
+#include "experiments/trial/trial_columns.h"
 
 namespace rcme {
 
@@ -24,51 +22,40 @@ template <>
 struct RecordTable<ProblemRecord> {
   static constexpr const char* kName = "problems";
   static constexpr const char* kKey = "condition, trial";
-  static constexpr int kNumExtra = 1;  // the checksum
-  static void Visit(auto& record, auto&& visit) { VisitProblemFields(record, visit); }
+  static constexpr size_t kNumExtra = 1;  // the checksum
 };
 template <>
 struct RecordTable<TrialRecord> {
   static constexpr const char* kName = "trials";
   static constexpr const char* kKey = "condition, trial, estimator";
-  static constexpr int kNumExtra = 0;
-  static void Visit(auto& record, auto&& visit) { VisitFields(record, visit); }
+  static constexpr size_t kNumExtra = 0;
 };
 
-// "condition, trial, ..." with `make(name, field)` for each field.
-template <typename Record, typename Make>
-std::string JoinFields(Make make) {
-  Record record;
-  std::vector<std::string> parts;
-  RecordTable<Record>::Visit(
-      record, [&](const char* name, const auto& field) { parts.push_back(make(name, field)); });
-  return fmt::format("{}", fmt::join(parts, ", "));
+// How the file stores a field.
+template <typename Field>
+ResultColumn DescribeColumn(const StoredColumn& column, const Field&) {
+  const char* type = std::is_same_v<Field, double>         ? "REAL"
+                     : std::is_same_v<Field, MotionStatus> ? "TEXT"
+                                                           : "INTEGER";
+  const bool may_be_null = std::is_same_v<Field, double> && column.range.may_be_unknown;
+  return {column.name, type, column.unit, column.meaning, may_be_null};
 }
 
-// The columns of the table, `extra` after those of the fields.
-template <typename Record, typename... Extra>
-std::vector<ResultColumn> RecordColumns(const Extra&... extra) {
+// The columns of the table but the extra ones.
+template <typename Record>
+std::vector<ResultColumn> RecordColumns() {
   std::vector<ResultColumn> columns;
-  Record record;
-  RecordTable<Record>::Visit(record, [&](const char* name, const auto& field) {
-    using Field = std::decay_t<decltype(field)>;
-    const char* type = std::is_same_v<Field, double>         ? "REAL"
-                       : std::is_same_v<Field, MotionStatus> ? "TEXT"
-                                                             : "INTEGER";
-    const bool may_be_null = std::is_same_v<Field, double> && RangeOf(name).may_be_unknown;
-    const ColumnMeaning& meaning = MeaningOf(name);
-    columns.push_back({name, type, meaning.unit, meaning.text, may_be_null});
+  const Record record;
+  VisitColumns(record, [&](const StoredColumn& column, const auto& field) {
+    columns.push_back(DescribeColumn(column, field));
   });
-  (columns.push_back(extra), ...);
   return columns;
 }
 
 template <typename Record>
 std::string InsertIntoRecordTable() {
-  using Table = RecordTable<Record>;
-  return fmt::format("INSERT INTO {} VALUES ({}{})", Table::kName,
-                     JoinFields<Record>([](const char*, const auto&) { return "?"; }),
-                     Table::kNumExtra > 0 ? ", ?" : "");
+  const std::vector<const char*> places(RecordColumns<Record>().size() + RecordTable<Record>::kNumExtra, "?");
+  return fmt::format("INSERT INTO {} VALUES ({})", RecordTable<Record>::kName, fmt::join(places, ", "));
 }
 
 // `rest` begins with " WHERE" or " ORDER BY"; empty: all rows, in the table's own order.
@@ -82,7 +69,7 @@ std::string SelectFromRecordTable(const std::string& rest = {}) {
 template <typename Record>
 int BindFields(SQLite::Statement& statement, const Record& record) {
   int parameter = 1;
-  RecordTable<Record>::Visit(record, [&](const char*, const auto& field) {
+  VisitColumns(record, [&](const StoredColumn&, const auto& field) {
     using Field = std::decay_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, MotionStatus>) {
       statement.bindNoCopy(parameter, StatusName(field));
@@ -130,18 +117,10 @@ void ReadField(const SQLite::Column& column, const char* table, const ColumnRang
 // of its range or, where a number is always known, NULL.
 template <typename Record>
 Record ReadRecord(SQLite::Statement& row) {
-  using Table = RecordTable<Record>;
-  static const std::vector<ColumnRange> ranges = [] {
-    std::vector<ColumnRange> all;
-    Record record;
-    Table::Visit(record, [&](const char* name, const auto&) { all.push_back(RangeOf(name)); });
-    return all;
-  }();
   Record record;
   int index = 0;
-  Table::Visit(record, [&](const char*, auto& field) {
-    ReadField(row.getColumn(index), Table::kName, ranges[static_cast<size_t>(index)], &field);
-    ++index;
+  VisitColumns(record, [&](const StoredColumn& column, auto& field) {
+    ReadField(row.getColumn(index++), RecordTable<Record>::kName, column.range, &field);
   });
   return record;
 }

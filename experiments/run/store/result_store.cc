@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "estimator/instruction_set.h"
-#include "experiments/core/text/program_name.h"
 #include "experiments/core/files/first_difference.h"
+#include "experiments/core/text/program_name.h"
 #include "experiments/run/store/open_for_run.h"
 #include "experiments/run/store/trial_writer.h"
 #include "experiments/study/command_permission.h"
@@ -66,12 +66,13 @@ ResultStore::~ResultStore() {
 ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& plan, const Shard& shard) {
   return NamingFile(path, [&] {
     auto connection = std::make_unique<Connection>(OpenFileForRun(path, plan, shard, Keep::kTrials));
+    connection->are_trials_checked = true;
     connection->writer.emplace(&connection->file);
     return ResultStore(std::move(connection));
   });
 }
 
-ResultStore ResultStore::OpenUnchecked(const std::string& path) {
+ResultStore ResultStore::OpenForReading(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
   return NamingFile(path, [&] {
     // Read-write where that is allowed: rolling back the journal of a run that was killed needs to write.
@@ -85,21 +86,9 @@ ResultStore ResultStore::OpenUnchecked(const std::string& path) {
 }
 
 void ResultStore::CheckTrials() const {
+  if (connection_->are_trials_checked) return;
   NamingFile(connection_->file.path, [&] { connection_->file.CheckTrials(); });
   connection_->are_trials_checked = true;
-}
-
-ResultStore ResultStore::OpenForReading(const std::string& path) {
-  ResultStore store = OpenUnchecked(path);
-  store.CheckTrials();
-  return store;
-}
-
-ResultStore ResultStore::OpenForSingleTrials(const std::string& path) {
-  ResultStore store = OpenUnchecked(path);
-  // Under a stopping rule the number of trials is that of the totals, which only the trials can confirm.
-  if (!store.Description().stopping_rule.empty()) store.CheckTrials();
-  return store;
 }
 
 RunDescription ResultStore::Description() const {
@@ -122,6 +111,7 @@ StudyPlan ResultStore::Plan(const Study& stored, PlanEstimators estimators) cons
   const std::string& path = connection_->file.path;
   if (estimators == PlanEstimators::kMade) RequireAllowedCommands(stored.estimators);
   const RunDescription run = Description();
+  if (!run.stopping_rule.empty()) CheckTrials();
   StudyPlan plan = NamingProgram(run, [&] { return PlanOf(stored, path, estimators); });
   if (plan.identity != run.identity) {
     throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
@@ -136,6 +126,7 @@ StudyPlan ResultStore::Plan(const Study& stored, PlanEstimators estimators) cons
 
 std::vector<TrialRange> ResultStore::MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
                                                    const ShardTrials& shard) {
+  CheckTrials();
   return NamingFile(connection_->file.path, [&] {
     SQLite::Statement query(connection_->file.database,
                             "SELECT trial FROM problems WHERE condition = ? AND trial < ? ORDER BY trial");
@@ -211,6 +202,7 @@ void ResultStore::ForEachTrial(
     connection_->file.ForEachTrial(condition,
                                    [&](const StoredTrial& trial) { visit(trial.problem, trial.records); });
   });
+  if (!condition) connection_->are_trials_checked = true;
 }
 
 std::vector<TrialRecord> ResultStore::RecordsOf(std::uint32_t condition, std::uint32_t trial) const {
@@ -219,7 +211,7 @@ std::vector<TrialRecord> ResultStore::RecordsOf(std::uint32_t condition, std::ui
     return ReadStoredTrial(file.database, file.Frame(), condition, trial);
   });
   if (found) return found->records;
-  if (!connection_->writer && !connection_->are_trials_checked) CheckTrials();
+  CheckTrials();
   return {};
 }
 

@@ -1,9 +1,9 @@
 // The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and
 // again. docs/result_file.md has its tables.
 //
-// Who reads results opens the file with a check of all of it, every checksum included, so that no command
-// takes a damaged file for a sound one. Damage is an InputError; `rcme check` (check_result_file.h) says
-// more.
+// Opening a file checks its tables and what describes the run; a trial and its condition's total are checked
+// as they are read, so that no command takes a damaged file for a sound one. Damage is an InputError;
+// `rcme check` (salvage.h) says more.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/study/run_description.h"
 #include "experiments/core/work/shard.h"
+#include "experiments/study/run_description.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial.h"
 #include "experiments/trial/trial_range.h"
@@ -32,11 +32,9 @@ class ResultStore {
   // file or a damaged one, is in use by another run, or holds another study (the message says what differs)
   // or another shard of it.
   static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan, const Shard& shard = {});
-  // Opens an existing file to read. Throws InputError if it is not a result file, or damaged.
+  // Opens an existing file to read, without a pass over its trials. Throws InputError if it is not a result
+  // file, or what describes its run is damaged.
   static ResultStore OpenForReading(const std::string& path);
-  // The same to run or read single trials, without a pass over all of them: RecordsOf checks the one it
-  // reads, and all of them where it finds none, so that a lost trial is not taken for one that was never run.
-  static ResultStore OpenForSingleTrials(const std::string& path);
 
   ResultStore(ResultStore&&) noexcept;
   ~ResultStore();  // commits what has been added
@@ -47,12 +45,13 @@ class ResultStore {
   // The study in the file. Whoever made the file may have put commands into it (study/command_permission.h).
   Study StoredStudy() const;
   // That study made ready to run: needed to compute its trials again, not to read them. Throws InputError if
-  // its data (a folder of pairs) are gone or have changed, or for a command that nobody has allowed.
+  // its data (a folder of pairs) are gone or have changed, or for a command that nobody has allowed. Under a
+  // stopping rule the trials alone confirm how many there are: all are checked.
   StudyPlan Plan(const Study& stored, PlanEstimators estimators = PlanEstimators::kMade) const;
   StudyPlan Plan() const { return Plan(StoredStudy()); }
 
   // Those of the first `num_trials` trials of a condition that the shard has and the file lacks, by their
-  // place in the shard, ascending.
+  // place in the shard, ascending. Checks all trials of a file that is read.
   std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
                                         const ShardTrials& shard = {});
 
@@ -81,19 +80,23 @@ class ResultStore {
   // or instruction set, else nothing.
   std::string NoteOrigin(const TrialOrigin& origin);
 
+  // Reads all trials and so checks them, unless that has been done. Call this before you write anything while
+  // trials are still to be read: the functions below throw InputError at the first trial that is not sound,
+  // or at the end where trials are lost.
+  void CheckTrials() const;
+
   // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
   void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;
   // Calls `visit` for every trial, ordered by condition and trial; its records are ordered by estimator. Only
   // the trials of one condition, if it is given.
   void ForEachTrial(const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&)>& visit,
                     std::optional<std::uint32_t> condition = std::nullopt) const;
-  // The records of one trial, ordered by estimator.
+  // The records of one trial, ordered by estimator. Where there is none all trials are checked, so that a
+  // lost one is not taken for one that was never run.
   std::vector<TrialRecord> RecordsOf(std::uint32_t condition, std::uint32_t trial) const;
 
  private:
   struct Connection;
-  static ResultStore OpenUnchecked(const std::string& path);
-  void CheckTrials() const;
   void Set(const RunDescription& run);
   explicit ResultStore(std::unique_ptr<Connection> connection);
   std::unique_ptr<Connection> connection_;

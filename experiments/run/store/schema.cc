@@ -44,11 +44,17 @@ std::map<std::string, std::string> SchemaOf(SQLite::Database& database) {
   return entries;
 }
 
-const ResultColumn kCondition = {"condition", "INTEGER", "", "number of the condition, from 0"};
+// A column of numbers that tell rows apart, as the tables of trials have it too.
+ResultColumn KeyColumn(const StoredColumn& column) {
+  return {column.name, "INTEGER", column.unit, column.meaning};
+}
 
-const ResultColumn kChecksumColumn = {
-    "checksum", "INTEGER", "",
-    "CRC-32 of the problem and its trials, begun with that of the study's identity"};
+std::vector<ResultColumn> ProblemColumns() {
+  std::vector<ResultColumn> columns = RecordColumns<ProblemRecord>();
+  columns.push_back({"checksum", "INTEGER", "",
+                     "CRC-32 of the problem and its trials, begun with that of the study's identity"});
+  return columns;
+}
 
 }  // namespace
 
@@ -66,36 +72,37 @@ const std::vector<ResultTable>& ResultTables() {
        {"factor"}},
       {"conditions",
        "The conditions of the study: one combination of levels each.",
-       {kCondition, {"num_trials", "INTEGER", "trials", "trials asked for, by whichever run asked for most"}},
+       {KeyColumn(kConditionColumn),
+        {"num_trials", "INTEGER", "trials", "trials asked for, by whichever run asked for most"}},
        {"condition"}},
       {"levels",
        "The level of every factor in every condition.",
-       {kCondition,
+       {KeyColumn(kConditionColumn),
         {"factor", "INTEGER", "", "number of the factor, from 0"},
         {"level", "TEXT", "of the factor", "its level, as the study has it"}},
        {"condition", "factor"}},
       {"estimators",
        "The estimators of the study.",
-       {{"estimator", "INTEGER", "", "number of the estimator, from 0"},
+       {KeyColumn(kEstimatorColumn),
         {"label", "TEXT", "", "what tables and figures call it; unique"},
         {"name", "TEXT", "", "what `rcme list estimators` calls it"},
         {"effort", "TEXT", "", "what limits the work of a call, in words; empty: unknown"}},
        {"estimator"}},
       {"options",
        "Every option of every estimator, defaults included; the program that reads need not know them.",
-       {{"estimator", "INTEGER", "", "number of the estimator, from 0"},
+       {KeyColumn(kEstimatorColumn),
         {"name", "TEXT", "", "name of the option"},
         {"value", "TEXT", "of the option", "its value as text"}},
        {"estimator", "name"}},
       {"totals",
        "What the file holds of every condition, written together with the trials: lost trials are noticed.",
-       {kCondition,
+       {KeyColumn(kConditionColumn),
         {"num_trials", "INTEGER", "trials", "trials in the file"},
         {"checksum", "INTEGER", "", "sum of their checksums"}},
        {"condition"}},
       {"counted",
        "Which trials the counts are of; empty unless the run keeps counts.",
-       {kCondition,
+       {KeyColumn(kConditionColumn),
         {"shard", "TEXT", "", "the shard that has them, as `3/64`; empty: all trials"},
         {"places", "TEXT", "", "their places in the shard, from 0: `0-499,600`"},
         {"checksum", "INTEGER", "", "CRC-32 of the row, begun with that of the study's identity"}},
@@ -104,7 +111,7 @@ const std::vector<ResultTable>& ResultTables() {
        "What the summary needs of all trials, exactly; empty unless the run keeps counts. A sum is a "
        "hexadecimal "
        "whole number and a power of two, `-1a3p-20`.",
-       {kCondition,
+       {KeyColumn(kConditionColumn),
         {"estimator", "INTEGER", "", "number of the estimator; the one after the last: the problems"},
         {"quantity", "TEXT", "", "its name (`rcme list quantities`)"},
         {"n", "INTEGER", "trials", "trials that give it a number"},
@@ -118,7 +125,7 @@ const std::vector<ResultTable>& ResultTables() {
        {"condition", "estimator", "quantity"}},
       {"problems",
        "One row per trial: the problem, whoever solves it.",
-       RecordColumns<ProblemRecord>(kChecksumColumn),
+       ProblemColumns(),
        {"condition", "trial"}},
       {"trials",
        "One row per trial and estimator: what became of the call.",

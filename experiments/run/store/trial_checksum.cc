@@ -1,7 +1,7 @@
 #include "experiments/run/store/trial_checksum.h"
 
 #include "experiments/core/files/checksum.h"
-#include "experiments/trial/trial_fields.h"
+#include "experiments/trial/trial_columns.h"
 
 namespace rcme {
 namespace {
@@ -11,11 +11,14 @@ class FieldBytes {
  public:
   explicit FieldBytes(size_t expected_size) : bytes_(expected_size) {}
 
-  void operator()(const char*, const std::string& text) { bytes_.Add(text); }
-  void operator()(const char*, MotionStatus status) { bytes_.Add(std::string(StatusName(status))); }
-  void operator()(const char*, double number) { bytes_.Add(number); }
+  template <typename Field>
+  void operator()(const StoredColumn&, const Field& field) {
+    Add(field);
+  }
+  void Add(MotionStatus status) { bytes_.Add(std::string(StatusName(status))); }
+  void Add(double number) { bytes_.Add(number); }
   template <typename Integer>
-  void operator()(const char*, Integer number) {
+  void Add(Integer number) {
     bytes_.Add(static_cast<std::uint64_t>(number));
   }
 
@@ -30,9 +33,9 @@ class FieldBytes {
 std::uint32_t ChecksumOfTrial(std::uint32_t identity, const ProblemRecord& problem,
                               std::span<const TrialRecord> records) {
   FieldBytes bytes(200 + 300 * records.size());
-  bytes("", identity);
-  VisitProblemFields(problem, bytes);
-  for (const TrialRecord& record : records) VisitFields(record, bytes);
+  bytes.Add(identity);
+  VisitColumns(problem, bytes);
+  for (const TrialRecord& record : records) VisitColumns(record, bytes);
   return bytes.Checksum();
 }
 

@@ -28,7 +28,7 @@ std::vector<TrialRecord> RecordsOfTrial(std::uint32_t condition, std::uint32_t t
   for (std::uint32_t estimator = 0; estimator < 2; ++estimator) {
     TrialRecord record;
     int next = static_cast<int>(100'000 * condition + 1000 * trial + 100 * estimator);
-    VisitFields(record, [&]([[maybe_unused]] const char* name, auto& field) {
+    VisitColumns(record, [&](const StoredColumn&, auto& field) {
       using Field = std::decay_t<decltype(field)>;
       if constexpr (std::is_same_v<Field, double>) {
         field = (++next + 1.0 / 3.0) / 1e6;

@@ -1,0 +1,127 @@
+// The columns of the tables problems and trials, each described once, beside the field that holds it.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <type_traits>
+
+#include "experiments/trial/trial.h"
+#include "parameters/stored_column.h"
+#include "simulator/severity/severity_columns.h"
+
+namespace rcme {
+
+inline constexpr StoredColumn kConditionColumn = {"condition", "", "number of the condition, from 0",
+                                                  kAnyNumber, StoredColumn::Role::kKey};
+inline constexpr StoredColumn kTrialColumn = {"trial", "", "number of the trial within its condition, from 0",
+                                              kAnyNumber, StoredColumn::Role::kKey};
+inline constexpr StoredColumn kEstimatorColumn = {"estimator", "", "number of the estimator, from 0",
+                                                  kAnyNumber, StoredColumn::Role::kKey};
+
+template <typename Record, typename Wanted>
+concept IsRecord = std::is_same_v<std::remove_const_t<Record>, Wanted>;
+
+// Calls `visit` with the StoredColumn and the field of each column, in the file's order.
+template <IsRecord<TrialRecord> Record, typename Visitor>
+void VisitColumns(Record& record, Visitor&& visit) {
+  visit(kConditionColumn, record.condition);
+  visit(kTrialColumn, record.trial);
+  visit(kEstimatorColumn, record.estimator);
+  visit(StoredColumn{"status", "", "`ok`, the reason of a refusal, or what is not valid about the answer"},
+        record.status);
+  visit(StoredColumn{"rotation_error_deg", "deg",
+                     "error of the rotation; NULL without a rotation or its truth", kNotNegative},
+        record.rotation_error_deg);
+  visit(StoredColumn{"direction_error_deg", "deg", "error of the direction of translation; NULL likewise",
+                     kNotNegative},
+        record.direction_error_deg);
+  visit(
+      StoredColumn{"nees", "",
+                   "normalised estimation error squared, 5 degrees of freedom; infinite: nothing is covered"},
+      record.nees);
+  visit(StoredColumn{"num_matches", "matches", "matches of the problem", kNotNegative}, record.num_matches);
+  visit(StoredColumn{"num_inliers", "matches", "final inliers", kNotNegative}, record.num_inliers);
+  visit(StoredColumn{"inlier_precision", "share",
+                     "true ones among the final inliers, undetectable wrong ones left aside", kShare},
+        record.inlier_precision);
+  // Beyond 1 for an estimator that names a match twice.
+  visit(StoredColumn{"inlier_recall", "share", "final inliers among the true matches", kNotNegative},
+        record.inlier_recall);
+  visit(StoredColumn{"num_support", "matches", "n_j of the selected hypothesis"}, record.num_support);
+  visit(StoredColumn{"mean_entropy", "nats", "psi_j of the selected hypothesis; NULL without one"},
+        record.mean_entropy);
+  visit(StoredColumn{"z_statistic", "", "Z_j of the selected hypothesis; NULL without one"},
+        record.z_statistic);
+  visit(StoredColumn{"num_consistent_before", "matches",
+                     "n_I: consistent with the motion before its refinement"},
+        record.num_consistent_before);
+  visit(StoredColumn{"num_consistent_after", "matches", "n*_I: the same after it"},
+        record.num_consistent_after);
+  visit(StoredColumn{"failed_by_kappa", "0 or 1", "the paper's failure flag: n*_I / n_I <= kappa"},
+        record.failed_by_kappa);
+  visit(StoredColumn{"num_explained", "matches", "matches that agree with the refined motion"},
+        record.num_explained);
+  visit(StoredColumn{"num_hypotheses", "", "minimal samples drawn"}, record.counts.num_hypotheses);
+  visit(StoredColumn{"num_degenerate_samples", "", "of these without a motion"},
+        record.counts.num_degenerate_samples);
+  visit(StoredColumn{"num_inconsistent_samples", "", "of these refused by the sample test"},
+        record.counts.num_inconsistent_samples);
+  visit(StoredColumn{"num_poor_inlier_sets", "", "hypotheses whose mean entropy exceeded mu"},
+        record.counts.num_poor_inlier_sets);
+  visit(StoredColumn{"num_too_small_inlier_sets", "", "hypotheses with too few inliers"},
+        record.counts.num_too_small_inlier_sets);
+  visit(StoredColumn{"num_candidates", "", "hypotheses that passed every test"},
+        record.counts.num_candidates);
+  visit(StoredColumn{"failure_probability", "",
+                     "probability that the motion is beyond the bounds, as the estimator states it; NULL: it "
+                     "states none",
+                     kShare},
+        record.failure_probability);
+  visit(StoredColumn{"sigma_estimated_px", "px",
+                     "noise per coordinate, estimated from the residuals; NULL likewise", kNotNegative},
+        record.sigma_estimated_px);
+  visit(StoredColumn{"sigma_estimated_sd_px", "px",
+                     "its standard deviation, as the estimator states it; NULL likewise", kNotNegative},
+        record.sigma_estimated_sd_px);
+  visit(StoredColumn{"inlier_brier", "",
+                     "mean squared error of the inlier probabilities, undetectable wrong matches left aside",
+                     kShare},
+        record.inlier_brier);
+  visit(
+      StoredColumn{
+          "doubt", "",
+          "what makes the motion uncertain: 0 nothing, 1 another motion, 2 a plane, 3 few influential "
+          "matches, 4 the opposite direction, 5 low parallax, 6 few matches"},
+      record.doubt);
+  visit(
+      StoredColumn{
+          "seconds", "s",
+          "processor time of the call, of the thread that makes it; the only number that another run "
+          "does not repeat",
+          kFiniteAndKnown, StoredColumn::Role::kTime},
+      record.seconds);
+}
+
+template <IsRecord<ProblemRecord> Record, typename Visitor>
+void VisitColumns(Record& record, Visitor&& visit) {
+  visit(kConditionColumn, record.condition);
+  visit(kTrialColumn, record.trial);
+  visit(StoredColumn{"weight", "",
+                     "of the trial: 1, unless its number of outliers was drawn by importance (`tilted_to`)",
+                     kFiniteAndKnown},
+        record.weight);
+  visit(StoredColumn{"num_inliers_true", "matches", "true matches; NULL for real pairs", kFiniteOrUnknown},
+        record.num_inliers_true);
+  for (const SeverityColumn& column : kSeverityColumns) visit(column, record.severity.*column.field);
+}
+
+// A field with all its digits; a status by its name.
+inline std::string FormatField(MotionStatus status) { return StatusName(status); }
+inline std::string FormatField(bool flag) { return flag ? "yes" : "no"; }
+template <typename Number>
+std::string FormatField(Number number) {
+  return fmt::format("{}", number);
+}
+
+}  // namespace rcme

@@ -1,0 +1,45 @@
+// What each number of a problem's severity is, for tables and printing.
+#pragma once
+
+#include "parameters/stored_column.h"
+#include "simulator/severity/severity.h"
+
+namespace rcme {
+
+struct SeverityColumn : StoredColumn {
+  double Severity::*field;
+};
+
+inline constexpr SeverityColumn kSeverityColumns[] = {
+    {{"image_coverage", "share", "of image 1 within the convex hull of the true matches"},
+     &Severity::image_coverage},
+    {{"inlier_clark_evans", "",
+      "Clark-Evans index of the true matches in image 1: 1 random, below 1 clustered"},
+     &Severity::inlier_clark_evans},
+    {{"outlier1_clark_evans", "", "the same of the wrong matches in image 1"},
+     &Severity::outlier1_clark_evans},
+    {{"outlier2_clark_evans", "", "the same of the wrong matches in image 2"},
+     &Severity::outlier2_clark_evans},
+    {{"parallax_median_deg", "deg", "angle at a point between the rays to the two centres: median",
+      kAngleDeg},
+     &Severity::parallax_median_deg},
+    {{"parallax_p10_deg", "deg", "the same, 10th percentile", kAngleDeg}, &Severity::parallax_p10_deg},
+    {{"planarity", "",
+      "rms distance of the points from their plane over that from their centroid: 0 for a plane"},
+     &Severity::planarity},
+    {{"homography_share", "share", "of the true matches that one homography explains", kShare},
+     &Severity::homography_share},
+    {{"log10_condition", "", "log10 of the condition number of the motion's information matrix (5x5, rad)"},
+     &Severity::log10_condition},
+    {{"crb_rotation_deg", "deg", "Cramer-Rao bound of the rotation: least rms error without bias",
+      kNotNegative},
+     &Severity::crb_rotation_deg},
+    {{"crb_direction_deg", "deg", "the same of the direction of translation", kNotNegative},
+     &Severity::crb_direction_deg},
+    {{"chance_inlier_share", "share", "of uniform wrong matches that the true motion would accept at 95 %",
+      kNotNegative},
+     &Severity::chance_inlier_share},
+    {{"undetectable_share", "share", "of all matches: wrong, but on the true epipolar line", kShare},
+     &Severity::undetectable_share}};
+
+}  // namespace rcme
