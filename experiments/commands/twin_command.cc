@@ -4,15 +4,18 @@
 #include <memory>
 #include <set>
 
+#include "experiments/commands/estimator_source.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/shard_options.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_name.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
-#include "experiments/commands/estimator_source.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/twin_commands.h"
 #include "experiments/data/match_folder.h"
-#include "experiments/study/study_file.h"
 #include "experiments/real/truth_free/twin_output.h"
+#include "experiments/study/estimator_file.h"
+#include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -20,7 +23,7 @@ namespace rcme {
 namespace {
 
 struct TwinArguments {
-  std::string pairs, out;
+  std::string pairs, out, max_time;
   EstimatorChoice estimator;
   std::string scene;  // empty: all
   double sigma_px = 0.5;
@@ -77,12 +80,25 @@ void WriteStudy(const TwinReport& report, const std::string& kind, const Setting
   WriteFileWhole(path.string(), ToYaml(study));
 }
 
+using Scenes = std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>>;
+
+WorkPlan PlanTwinSteps(const TwinArguments& arguments, const EstimatorSpec& spec, const Scenes& scenes,
+                       const ImageNames& images) {
+  std::string identity = fmt::format("seed: {}\ntwins: {}\nsigma: {} px\n{}", arguments.seed,
+                                     arguments.num_twins, arguments.sigma_px, EstimatorFileText(spec, {}));
+  for (const auto& [scene, data] : scenes) identity += fmt::format("{}: {}\n", scene, data->Identity());
+  for (const auto& [file, names] : images)
+    identity += fmt::format("{}: {}, {}\n", file, names.first, names.second);
+  return {"twins", "step", identity, {}, true};
+}
+
 void RunTwin(const TwinArguments& arguments) {
   const StopOnSignals stop;
+  StartTimeLimit(arguments.max_time);
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
   CheckProcessEstimators({spec});
-  auto scenes = LoadMatchFolder({arguments.pairs, arguments.sigma_px, {}});
+  Scenes scenes = LoadMatchFolder({arguments.pairs, arguments.sigma_px, {}});
   const ImageNames images = ImageNamesIn(arguments.pairs);
   std::string names;
   for (const auto& [scene, data] : scenes) names += (names.empty() ? "" : ", ") + scene;
@@ -106,13 +122,17 @@ void RunTwin(const TwinArguments& arguments) {
       throw InputError(
           fmt::format("scene {}: its files would be those of another scene; give --scene", Quoted(scene)));
   }
+  Runner runner = MakeRunner(
+      PlanTwinSteps(arguments, spec, scenes, images),
+      is_one_study ? FindCheckpointBeside(arguments.out) : FindCheckpointInFolder(arguments.out), 1);
+  KeptSteps steps(&runner);
   std::vector<TwinReport> reports;
   for (const auto& [scene, data] : scenes) {
     const auto seed = static_cast<std::uint64_t>(arguments.seed);
     const TwinPlaces places = PlacesOf(out, scene);
-    const TwinSource source = AnswerScene(scene, *data, images, *estimator, seed);
+    const TwinSource source = AnswerScene(scene, *data, images, *estimator, seed, &steps);
     reports.push_back(MakeTwinReport(source, *estimator, places.templates.filename().string(),
-                                     arguments.sigma_px, seed, arguments.num_twins));
+                                     arguments.sigma_px, seed, arguments.num_twins, &steps));
     const TwinReport& report = reports.back();
     WriteTemplates(source, places.templates);
     WriteStudy(report, "semi_real", report.semi_real, 20, spec, places.study);
@@ -125,6 +145,7 @@ void RunTwin(const TwinArguments& arguments) {
     WriteFileWhole((out / "twin.csv").string(), csv);
     WriteFileWhole((out / "twin.json").string(), json);
   }
+  runner.RemoveCheckpoint();
   fmt::print("{}", arguments.format == "json" ? json : arguments.format == "csv" ? csv : text);
 }
 
@@ -148,6 +169,8 @@ void AddTwinCommand(CLI::App& app) {
       "estimated noise, inlier test, tails, stated deviations, halves, correlation of residuals) beside what "
       "it\n"
       "does on the twins, with a test of each difference, and what is not explained.\n"
+      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part, or beside\n"
+      "STUDY.yaml, until the end.\n"
       "\n"
       "Examples:\n"
       "  rcme twin PAIRS --out twins\n"
@@ -172,6 +195,7 @@ void AddTwinCommand(CLI::App& app) {
   command->add_option("--twins", arguments->num_twins, "of either kind for each pair")
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();
+  AddTimeLimit(command, "pairs", &arguments->max_time);
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
       ->check(OneOf({"table", "csv", "json"}))
       ->capture_default_str();

@@ -3,17 +3,21 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/study/estimator_spec.h"
-#include "experiments/study/study_file.h"
+#include "experiments/commands/shard_options.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/real/truth_free/advice.h"
+#include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/planted_fault.h"
 #include "experiments/real/truth_free/validate_output.h"
+#include "experiments/study/estimator_file.h"
+#include "experiments/study/estimator_spec.h"
+#include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 
@@ -22,7 +26,7 @@ namespace {
 
 struct ValidateArguments {
   std::vector<std::string> pairs;
-  std::string out;
+  std::string out, max_time;
   EstimatorChoice estimator;
   std::vector<std::string> data;  // key=value each, of a study
   std::string scene;              // empty: all
@@ -64,9 +68,7 @@ std::vector<PairSet> ReadAllSets(const ValidateArguments& arguments) {
 }
 
 // The chosen estimator, with what is planted in its covariances.
-AdvisedEstimator ChooseAdvised(const EstimatorChoice& choice, const PlantedFaults& planted) {
-  const EstimatorSpec spec = ChosenEstimator(choice);
-  CheckProcessEstimators({spec});
+AdvisedEstimator ChooseAdvised(const EstimatorSpec& spec, const PlantedFaults& planted) {
   AdvisedEstimator advised;
   advised.make = [spec, factor = planted.covariance](const Settings& options) {
     EstimatorSpec changed = spec;
@@ -81,10 +83,7 @@ AdvisedEstimator ChooseAdvised(const EstimatorChoice& choice, const PlantedFault
   return advised;
 }
 
-void RunValidate(const ValidateArguments& arguments) {
-  const StopOnSignals stop;
-  const PlantedFaults planted = ParsePlantedFaults(arguments.planted);
-  const AdvisedEstimator estimator = ChooseAdvised(arguments.estimator, planted);
+std::vector<PairSet> ChooseSets(const ValidateArguments& arguments, const PlantedFaults& planted) {
   std::vector<PairSet> sets = ReadAllSets(arguments);
   if (!arguments.scene.empty()) {
     std::string names;
@@ -93,14 +92,36 @@ void RunValidate(const ValidateArguments& arguments) {
     if (sets.empty())
       throw InputError(fmt::format("--scene: '{}' is not there; give one of: {}", arguments.scene, names));
   }
+  for (PairSet& set : sets) set = PlantFaultsIn(std::move(set), planted);
+  return sets;
+}
+
+WorkPlan PlanValidationSteps(const ValidateArguments& arguments, const EstimatorSpec& spec,
+                             const PlantedFaults& planted, const std::vector<PairSet>& sets) {
+  std::string identity = fmt::format("seed: {}\ntwins: {}\nadvice: {}\ncovariances times: {}\n{}",
+                                     arguments.seed, arguments.num_twins, !arguments.tests_alone,
+                                     planted.covariance, EstimatorFileText(spec, {}));
+  for (const PairSet& set : sets) identity += DescribePairs(set) + "\n";
+  return {"validation", "step", identity, {}, true};
+}
+
+void RunValidate(const ValidateArguments& arguments) {
+  const StopOnSignals stop;
+  StartTimeLimit(arguments.max_time);
+  const PlantedFaults planted = ParsePlantedFaults(arguments.planted);
+  const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
+  CheckProcessEstimators({spec});
+  const AdvisedEstimator estimator = ChooseAdvised(spec, planted);
+  const std::vector<PairSet> sets = ChooseSets(arguments, planted);
   if (!arguments.out.empty()) MakeResultFolder(arguments.out);
+  Runner runner = MakeRunner(PlanValidationSteps(arguments, spec, planted, sets),
+                             arguments.out.empty() ? "" : FindCheckpointInFolder(arguments.out), 1);
+  KeptSteps steps(&runner);
   const ValidationOptions options = {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins};
   std::vector<SetReport> reports;
-  for (const PairSet& set : sets) {
-    const PairSet faulty = PlantFaultsIn(set, planted);
-    reports.push_back(arguments.tests_alone ? Validate(faulty, *estimator.make({}), options)
-                                            : ValidateAndAdvise(faulty, estimator, options));
-  }
+  for (const PairSet& set : sets)
+    reports.push_back(arguments.tests_alone ? Validate(set, *estimator.make({}), options, &steps)
+                                            : ValidateAndAdvise(set, estimator, options, &steps));
   const std::string table = ValidationAsTable(reports);
   fmt::print("{}", table);
   if (arguments.out.empty()) return;
@@ -111,6 +132,7 @@ void RunValidate(const ValidateArguments& arguments) {
   WriteFileWhole(json, ValidationAsJson(reports));
   if (!arguments.draws_no_figure)
     DrawFigures("validation", {json, "--out", (folder / "validation").string()});
+  runner.RemoveCheckpoint();
 }
 
 }  // namespace
@@ -136,6 +158,7 @@ void AddValidateCommand(CLI::App& app) {
       "residuals of neighbours. A verdict for each scene (holds, too small by ..., undecided and what it\n"
       "would take), what it comes from (the data, or the estimator itself), and what to change: each change\n"
       "is made and the scene validated again, and the advice says what came of it.\n"
+      "Stopped or killed, the same command with --out goes on: what is done is kept in OUT/unfinished.part.\n"
       "\n"
       "Examples:\n"
       "  rcme validate PAIRS --out validation\n"
@@ -174,6 +197,7 @@ void AddValidateCommand(CLI::App& app) {
           "is 1 %). NAME is one of: " +
               PlantableFaults())
       ->allow_extra_args(false);
+  AddTimeLimit(command, "pairs", &arguments->max_time);
   command->add_flag("--no-advice", arguments->tests_alone, "the tests alone: no change is tried");
   command->add_flag("--no-figure", arguments->draws_no_figure, "write the tables alone");
   command->callback([arguments] { RunValidate(*arguments); });

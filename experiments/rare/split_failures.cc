@@ -17,18 +17,6 @@ RandomStream StreamOf(std::uint64_t seed, const Condition& condition, std::uint3
   return RandomStream({seed, condition.stream_key, number, kSplittingPurpose});
 }
 
-Json NumbersAsJson(const std::vector<double>& numbers) {
-  Json json = Json::array();
-  for (const double x : numbers) json.push_back(NumberAsJson(x));
-  return json;
-}
-
-std::vector<double> NumbersFrom(const Json& json) {
-  std::vector<double> numbers;
-  for (const Json& x : json) numbers.push_back(NumberFrom(x));
-  return numbers;
-}
-
 std::string PilotAsJson(const SplittingPilot& pilot) {
   return Json::array({static_cast<int>(pilot.end), NumbersAsJson(pilot.levels.levels),
                       NumbersAsJson(pilot.levels.steps), NumberAsJson(pilot.last_level), pilot.num_values})

@@ -189,6 +189,19 @@ double NumberFrom(const Json& json) {
   throw std::invalid_argument("a number that is none");
 }
 
+Json NumbersAsJson(std::span<const double> numbers) {
+  Json json = Json::array();
+  for (const double x : numbers) json.push_back(NumberAsJson(x));
+  return json;
+}
+
+std::vector<double> NumbersFrom(const Json& json) {
+  if (!json.is_array()) throw std::invalid_argument("it is no list of numbers");
+  std::vector<double> numbers;
+  for (const Json& x : json) numbers.push_back(NumberFrom(x));
+  return numbers;
+}
+
 Json ParsePiece(const std::string& json) {
   return Json::parse(json, [](int depth, Json::parse_event_t, Json&) {
     if (depth > kMaxPieceDepth) throw std::invalid_argument("lists within lists within lists");

@@ -10,8 +10,10 @@
 
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "experiments/core/text/program_name.h"
 #include "experiments/core/work/work_plan.h"
@@ -45,6 +47,8 @@ std::string AsStored(const std::string& text);
 // print it. NumberFrom throws std::invalid_argument for what is no number.
 nlohmann::ordered_json NumberAsJson(double x);
 double NumberFrom(const nlohmann::ordered_json& json);
+nlohmann::ordered_json NumbersAsJson(std::span<const double> numbers);
+std::vector<double> NumbersFrom(const nlohmann::ordered_json& json);
 
 // What a piece gave, for who counts it. Throws std::exception for what is no JSON, or lists within lists
 // deeper than any piece has them.

@@ -63,6 +63,7 @@ void RequireTogether(const std::string& path, const Part& part, const std::strin
 }
 
 std::string DescribeItem(const WorkPlan& plan, const ItemPlace& place) {
+  if (plan.is_open) return fmt::format("{} {}", plan.item_name, place.item);
   if (!plan.Has(place)) return fmt::format("item {} of group {}", place.item, place.group);
   return fmt::format("{} {} of {}", plan.item_name, place.item, plan.groups[place.group].name);
 }
@@ -139,8 +140,23 @@ void Runner::OpenFile() {
 void Runner::Get(const std::vector<ItemPlace>& places, const ComputeItem& compute, const ProgressUnit& unit) {
   if (kind_ == Kind::kParts)
     return RequireNoneMissing(plan_, FindMissingAmong(places, results_), results_.num_shards);
+  KeepUntilStopped([&] { ComputeAll(places, compute, unit); });
+  Write();
+}
+
+const std::string& Runner::GetOne(const ItemPlace& place, const ComputeItem& compute) {
+  if (!results_.results.contains(place)) {
+    KeepUntilStopped([&] {
+      if (IsStopRequested()) throw Stopped("stopped");
+      ComputeOne(place, compute);
+    });
+  }
+  return results_.results.at(place).json;
+}
+
+void Runner::KeepUntilStopped(const std::function<void()>& work) {
   try {
-    ComputeAll(places, compute, unit);
+    work();
   } catch (const Stopped&) {
     Write();
     throw Stopped(DescribeProgress());
@@ -148,7 +164,6 @@ void Runner::Get(const std::vector<ItemPlace>& places, const ComputeItem& comput
     Write();  // the items before the error are good
     throw;
   }
-  Write();
 }
 
 void Runner::ComputeAll(const std::vector<ItemPlace>& places, const ComputeItem& compute,
@@ -165,13 +180,17 @@ void Runner::ComputeAll(const std::vector<ItemPlace>& places, const ComputeItem&
   Progress progress(unit.amount ? unit.name : plan_.item_name + "s", total, done);
   ForEachIndex(std::ssize(left), num_threads_, [&](std::int64_t index) {
     const ItemPlace& place = left[static_cast<size_t>(index)];
-    // Several items run at the same time, or one that has threads of its own.
-    const auto seconds = NumThreads(num_threads_) > 1 ? ThreadSeconds : ProcessSeconds;
-    const double before = seconds();
-    std::string json = compute(place);
-    Keep(place, {std::move(json), seconds() - before});
+    ComputeOne(place, compute);
     progress.Advance(amount_in(place));
   });
+}
+
+void Runner::ComputeOne(const ItemPlace& place, const ComputeItem& compute) {
+  // Several items run at the same time, or one that has threads of its own.
+  const auto seconds = NumThreads(num_threads_) > 1 ? ThreadSeconds : ProcessSeconds;
+  const double before = seconds();
+  std::string json = compute(place);
+  Keep(place, {std::move(json), seconds() - before});
 }
 
 void Runner::Keep(const ItemPlace& place, ItemResult result) {
@@ -197,8 +216,10 @@ void Runner::Write() {
 
 std::string Runner::DescribeProgress() const {
   if (path_.empty()) return "stopped; nothing was kept";
-  return fmt::format("stopped; {} has {} of at most {} {}s, the same command goes on", path_,
-                     results_.results.size(), ListItems(plan_, part_.shard).size(), plan_.item_name);
+  const std::string most =
+      plan_.is_open ? "" : fmt::format("of at most {} ", ListItems(plan_, part_.shard).size());
+  return fmt::format("stopped; {} has {} {}{}s, the same command goes on", path_, results_.results.size(),
+                     most, plan_.item_name);
 }
 
 void Runner::RemoveCheckpoint() {
@@ -259,22 +280,25 @@ std::string DescribeCosts(const WorkPlan& plan, const WorkResults& merged) {
       DescribeItem(plan, where));
 }
 
-void ReadResults(const WorkPlan& plan, const WorkResults& merged, size_t first, size_t end,
-                 const std::function<void(const ItemPlace&, const std::string&)>& read) {
-  const auto stop = merged.results.lower_bound({end, 0});
-  for (auto one = merged.results.lower_bound({first, 0}); one != stop; ++one) {
-    const auto& [place, result] = *one;
-    try {
-      read(place, result.json);
-    } catch (const std::bad_alloc&) {
-      throw;  // no damage of the part's
-    } catch (const std::exception& error) {
-      const auto path = merged.paths.find(place);
-      throw InputError(fmt::format("{}: damaged: {}: {}",
-                                   path == merged.paths.end() ? merged.kept_in : path->second,
-                                   DescribeItem(plan, place), error.what()));
-    }
+void ReadResult(const WorkPlan& plan, const WorkResults& results, const ItemPlace& place,
+                const ReadItem& read) {
+  try {
+    read(place, results.results.at(place).json);
+  } catch (const std::bad_alloc&) {
+    throw;  // no damage of the part's
+  } catch (const std::exception& error) {
+    const auto path = results.paths.find(place);
+    throw ResultIsDamaged(fmt::format("{}: damaged: {}: {}",
+                                      path == results.paths.end() ? results.kept_in : path->second,
+                                      DescribeItem(plan, place), error.what()));
   }
+}
+
+void ReadResults(const WorkPlan& plan, const WorkResults& results, size_t first, size_t end,
+                 const ReadItem& read) {
+  const auto stop = results.results.lower_bound({end, 0});
+  for (auto one = results.results.lower_bound({first, 0}); one != stop; ++one)
+    ReadResult(plan, results, one->first, read);
 }
 
 }  // namespace rcme

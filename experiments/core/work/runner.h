@@ -72,6 +72,9 @@ class Runner {
   // ItemsAreMissing where only parts are read.
   void Get(const std::vector<ItemPlace>& places, const ComputeItem& compute, const ProgressUnit& unit = {});
 
+  // The result of one item of an open plan, which follows those before it. Throws as Get.
+  const std::string& GetOne(const ItemPlace& place, const ComputeItem& compute);
+
   const WorkPlan& plan() const { return plan_; }
   const WorkResults& results() const { return results_; }
   const Shard& shard() const { return part_.shard; }
@@ -86,6 +89,8 @@ class Runner {
 
   void OpenFile();
   void ComputeAll(const std::vector<ItemPlace>& places, const ComputeItem& compute, const ProgressUnit& unit);
+  void ComputeOne(const ItemPlace& place, const ComputeItem& compute);
+  void KeepUntilStopped(const std::function<void()>& work);
   void Keep(const ItemPlace& place, ItemResult result);
   void Write();
   std::string DescribeProgress() const;
@@ -114,9 +119,16 @@ Part JoinParts(const std::vector<std::string>& paths);
 // which no shard can take less than.
 std::string DescribeCosts(const WorkPlan& plan, const WorkResults& results);
 
-// Hands over the results of these groups, in their order. What `read` cannot read (it throws std::exception)
-// is an InputError that names the file and the item.
+// What `read` cannot read (it throws std::exception): the message names the file and the item.
+class ResultIsDamaged : public InputError {
+  using InputError::InputError;
+};
+using ReadItem = std::function<void(const ItemPlace&, const std::string& json)>;
+// Hands over the result of an item. Throws ResultIsDamaged.
+void ReadResult(const WorkPlan& plan, const WorkResults& results, const ItemPlace& place,
+                const ReadItem& read);
+// Those of these groups, in their order.
 void ReadResults(const WorkPlan& plan, const WorkResults& results, size_t first, size_t end,
-                 const std::function<void(const ItemPlace&, const std::string& json)>& read);
+                 const ReadItem& read);
 
 }  // namespace rcme

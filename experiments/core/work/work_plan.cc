@@ -5,7 +5,7 @@
 namespace rcme {
 
 bool WorkPlan::Has(const ItemPlace& place) const {
-  return place.group < groups.size() && place.item < groups[place.group].num_items;
+  return is_open || (place.group < groups.size() && place.item < groups[place.group].num_items);
 }
 
 size_t WorkPlan::NumItems() const {

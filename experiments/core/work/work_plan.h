@@ -27,6 +27,7 @@ struct WorkPlan {
   std::string item_name;  // "block"
   std::string identity;   // what the results depend on, a line for each thing
   std::vector<ItemGroup> groups;
+  bool is_open = false;  // how many items there are shows as they are computed: there are no groups
 
   bool Has(const ItemPlace& place) const;
   size_t NumItems() const;

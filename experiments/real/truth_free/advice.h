@@ -29,6 +29,6 @@ struct AdvisedEstimator {
 //                         measured on that
 // A change after which its own fault is still found is withdrawn, and the advice says so.
 SetReport ValidateAndAdvise(const PairSet& set, const AdvisedEstimator& estimator,
-                            const ValidationOptions& options);
+                            const ValidationOptions& options, KeptSteps* steps = nullptr);
 
 }  // namespace rcme

@@ -44,8 +44,9 @@ double Misfit(const SetReport& report) {
 
 class Follower {
  public:
-  Follower(const PairSet& set, const AdvisedEstimator& estimator, const ValidationOptions& options)
-      : estimator_(estimator), options_(options), set_(set), now_(Run(set_, {})) {}
+  Follower(const PairSet& set, const AdvisedEstimator& estimator, const ValidationOptions& options,
+           KeptSteps* steps)
+      : estimator_(estimator), options_(options), steps_(steps), set_(set), now_(Run(set_, {})) {}
 
   SetReport Take() {
     SetReport report = now_;
@@ -59,7 +60,7 @@ class Follower {
 
  private:
   SetReport Run(const PairSet& set, const Settings& settings) const {
-    return Validate(set, *estimator_.make(settings), options_);
+    return Validate(set, *estimator_.make(settings), options_, steps_);
   }
 
   void FollowSigma() {
@@ -82,7 +83,7 @@ class Follower {
       return;
     }
     const std::unique_ptr<MotionEstimator> estimator = estimator_.make({});
-    const PairSet corrected = CorrectPairs(set_, now_.calibration, *estimator, options_.seed);
+    const PairSet corrected = CorrectPairs(set_, now_.calibration, *estimator, options_.seed, steps_);
     SetReport after = Run(corrected, {});
     if (after.calibration.verdict == TruthFreeVerdict::kTooLarge) {
       NameNothing(fmt::format("what they look like, corrected, leaves p = {:.2g}", after.calibration.p_value),
@@ -134,6 +135,7 @@ class Follower {
 
   const AdvisedEstimator& estimator_;
   const ValidationOptions& options_;
+  KeptSteps* steps_;
   PairSet set_;
   SetReport now_;  // of what has been followed so far
   std::vector<std::string> advice_;
@@ -142,8 +144,8 @@ class Follower {
 }  // namespace
 
 SetReport ValidateAndAdvise(const PairSet& set, const AdvisedEstimator& estimator,
-                            const ValidationOptions& options) {
-  return Follower(set, estimator, options).Take();
+                            const ValidationOptions& options, KeptSteps* steps) {
+  return Follower(set, estimator, options, steps).Take();
 }
 
 }  // namespace rcme

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "experiments/data/make_data.h"
+#include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/residual_pattern.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_settings.h"
@@ -108,14 +109,15 @@ void FitShares(const ResidualPattern& observed, const ResidualPattern& independe
 
 }  // namespace
 
-RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed) {
+RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed,
+                        KeptSteps* steps) {
   RedrawSettings noise;
   const std::vector<const AnsweredTrial*> used = UsedOf(source);
   const ResidualPattern observed = ObservedPattern(used);
   if (used.empty() || !(observed.sigma_px > 0.0)) return noise;
   noise.noise_px = observed.sigma_px;
   noise.within_px = FarthestAccepted(used);
-  const PatternOf pattern_of = [&](const RedrawSettings& tried) {
+  const PatternOf draw_pattern = [&](const RedrawSettings& tried) {
     const Redraw redraw(tried);
     PatternSum sum;
     for (const AnsweredTrial* answered : used) {
@@ -127,6 +129,9 @@ RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimat
     }
     return sum.Take();
   };
+  const PatternOf pattern_of = [&](const RedrawSettings& tried) {
+    return TakePattern([&] { return draw_pattern(tried); }, steps);
+  };
   FitShares(observed, pattern_of(noise), &noise);
   FitSizeAndTails(observed, pattern_of, &noise);
   return noise;
@@ -134,13 +139,13 @@ RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimat
 
 RedrawSettings FitSimulatedNoise(const TwinSource& source, const TwinFit& fit, double clustered_share,
                                  const MotionEstimator& estimator, double assumed_sigma_px,
-                                 std::uint64_t seed) {
+                                 std::uint64_t seed, KeptSteps* steps) {
   RedrawSettings noise = fit.noise;
   const std::vector<const AnsweredTrial*> used = UsedOf(source);
   const ResidualPattern observed = ObservedPattern(used);
   if (used.empty() || !(observed.sigma_px > 0.0)) return noise;
   TwinFit tried_fit = fit;
-  const PatternOf pattern_of = [&](const RedrawSettings& tried) {
+  const PatternOf draw_pattern = [&](const RedrawSettings& tried) {
     tried_fit.simulated_noise = tried;
     const auto data = MakeSimulatedData(SimulatedTwinData(tried_fit, clustered_share, assumed_sigma_px));
     PatternSum sum;
@@ -150,6 +155,9 @@ RedrawSettings FitSimulatedNoise(const TwinSource& source, const TwinFit& fit, d
       sum.Add(drawn.problem, AnswerTo(drawn.problem, estimator, name));
     }
     return sum.Take();
+  };
+  const PatternOf pattern_of = [&](const RedrawSettings& tried) {
+    return TakePattern([&] { return draw_pattern(tried); }, steps);
   };
   FitSizeAndTails(observed, pattern_of, &noise);
   return noise;

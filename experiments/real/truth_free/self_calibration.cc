@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "experiments/core/work/stop_request.h"
+#include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_source.h"
 #include "stats/fnv1a.h"
@@ -33,18 +33,19 @@ std::vector<NamedPair> RemoveFrom(const std::vector<PairAnswers>& answers, const
   return pairs;
 }
 
-Answered AnswerPair(NamedPair pair, const MotionEstimator& estimator, std::uint64_t seed) {
-  MotionEstimate estimate = AnswerTo(pair.problem, estimator, {seed, HashToStreamKey(pair.name), 0, 0});
+Answered AnswerPair(NamedPair pair, const MotionEstimator& estimator, std::uint64_t seed, KeptSteps* steps) {
+  MotionEstimate estimate =
+      TakeAnswer(pair.problem, estimator, {seed, HashToStreamKey(pair.name), 0, 0}, steps);
   return {std::move(pair), std::move(estimate)};
 }
 
 // Answers to the pairs without faults.
 std::vector<PairAnswers> AnswerWithout(const FaultVector& faults, const std::vector<PairAnswers>& answers,
-                                       const MotionEstimator& estimator, std::uint64_t seed) {
+                                       const MotionEstimator& estimator, std::uint64_t seed,
+                                       KeptSteps* steps) {
   std::vector<PairAnswers> corrected;
   for (NamedPair& pair : RemoveFrom(answers, faults)) {
-    if (IsStopRequested()) throw Stopped("stopped; nothing is written");
-    corrected.push_back({AnswerPair(std::move(pair), estimator, seed), {}});
+    corrected.push_back({AnswerPair(std::move(pair), estimator, seed, steps), {}});
   }
   return corrected;
 }
@@ -60,8 +61,9 @@ struct Fit {
 
 class Steps {
  public:
-  Steps(const std::vector<PairAnswers>& answers, const MotionEstimator& estimator, std::uint64_t seed)
-      : answers_(answers), estimator_(estimator), seed_(seed), start_(EstimateFaults(answers)) {}
+  Steps(const std::vector<PairAnswers>& answers, const MotionEstimator& estimator, std::uint64_t seed,
+        KeptSteps* kept)
+      : answers_(answers), estimator_(estimator), seed_(seed), kept_(kept), start_(EstimateFaults(answers)) {}
 
   const FaultEstimates& start() const { return start_; }
 
@@ -75,7 +77,7 @@ class Steps {
         theta += fit.pooled.parameters[j].value;
         if (!(std::abs(theta) <= GreatestFault(faults[j], start_.camera))) return std::nullopt;
       }
-      fit.estimates = EstimateFaults(AnswerWithout(fit.theta, answers_, estimator_, seed_));
+      fit.estimates = EstimateFaults(AnswerWithout(fit.theta, answers_, estimator_, seed_, kept_));
       if (fit.estimates.units.empty()) return std::nullopt;
       fit.pooled = PoolFaults(fit.estimates.units, faults);
       if (!AreSmall(fit.pooled)) continue;
@@ -99,6 +101,7 @@ class Steps {
   const std::vector<PairAnswers>& answers_;
   const MotionEstimator& estimator_;
   std::uint64_t seed_;
+  KeptSteps* kept_;
   FaultEstimates start_;
 };
 
@@ -155,11 +158,11 @@ void CorrectNamed(const Steps& steps, CalibrationReport* report) {
 }  // namespace
 
 CalibrationReport Calibrate(const std::vector<PairAnswers>& answers, const MotionEstimator& estimator,
-                            std::uint64_t seed) {
+                            std::uint64_t seed, KeptSteps* steps) {
   CalibrationReport report = TestCalibration(answers);
   if (!NamesFault(report)) return report;
-  const Steps steps(answers, estimator, seed);
-  const std::optional<Fit> all = steps.Take(steps.start().asked);
+  const Steps corrections(answers, estimator, seed, steps);
+  const std::optional<Fit> all = corrections.Take(corrections.start().asked);
   if (!all) {
     NameNothing(fmt::format("{} steps do not converge", kMostSteps), &report);
     return report;
@@ -171,16 +174,16 @@ CalibrationReport Calibrate(const std::vector<PairAnswers>& answers, const Motio
     if (report.why_unnamed.empty()) report.why_unnamed = "none is left once the steps have converged";
     return report;
   }
-  CorrectNamed(steps, &report);
+  CorrectNamed(corrections, &report);
   return report;
 }
 
 PairSet CorrectPairs(const PairSet& set, const CalibrationReport& report, const MotionEstimator& estimator,
-                     std::uint64_t seed) {
+                     std::uint64_t seed, KeptSteps* steps) {
   FaultVector theta = FaultVector::Zero();
   for (const FaultReport& each : report.faults) theta(IndexOf(each.fault)) = each.correction;
   std::vector<PairAnswers> answers;
-  for (const NamedPair& pair : set.pairs) answers.push_back({AnswerPair(pair, estimator, seed), {}});
+  for (const NamedPair& pair : set.pairs) answers.push_back({AnswerPair(pair, estimator, seed, steps), {}});
   return {set.name, RemoveFrom(answers, theta)};
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/motion_estimator.h"
+#include "experiments/core/work/kept_steps.h"
 #include "experiments/real/truth_free/calibration_test.h"
 #include "experiments/real/truth_free/pair_answers.h"
 
@@ -21,13 +22,13 @@ inline constexpr int kMostSteps = 10;
 //     fault looks like one of those that are;
 //   - the faults that are named, corrected alone, leave something: `p_corrected` < 0.05. What is left decides
 //     then whether further ones are taken with them, the most certain first.
-// Pure in the seed and the pairs' names.
+// Every answer is a step. Pure in the seed and the pairs' names.
 CalibrationReport Calibrate(const std::vector<PairAnswers>& answers, const MotionEstimator& estimator,
-                            std::uint64_t seed);
+                            std::uint64_t seed, KeptSteps* steps = nullptr);
 
 // The pairs without the faults that a report names; a readout is removed along the motions that are
 // estimated.
 PairSet CorrectPairs(const PairSet& set, const CalibrationReport& report, const MotionEstimator& estimator,
-                     std::uint64_t seed);
+                     std::uint64_t seed, KeptSteps* steps = nullptr);
 
 }  // namespace rcme

@@ -108,9 +108,10 @@ class LayoutFit {
 
 }  // namespace
 
-TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed) {
+TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed,
+                KeptSteps* steps) {
   TwinFit fit;
-  fit.noise = FitNoise(source, estimator, seed);
+  fit.noise = FitNoise(source, estimator, seed, steps);
   RandomStream rng = StreamFor({seed, HashToStreamKey(source.scene), 0, 0}, StreamPurpose::kSeverity);
   LayoutFit layout;
   for (const AnsweredTrial& answered : source.pairs) {

@@ -22,7 +22,8 @@ struct TwinFit {
   double clark_evans = 0.0;              // of the right key points in image 1: 1 random, less: clustered
   double twice_share = 0.0;              // of the right matches: another is within 1 px in image 1
 };
-// Throws InputError where no pair of the scene has a template.
-TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed);
+// The noise in steps (noise_fit.h). Throws InputError where no pair of the scene has a template.
+TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed,
+                KeptSteps* steps = nullptr);
 
 }  // namespace rcme

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <utility>
 
-#include "experiments/core/work/stop_request.h"
 #include "experiments/data/make_data.h"
+#include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/noise_fit.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_quantities.h"
@@ -117,12 +119,40 @@ Values Joined(Values a, const Values& b) {
 
 constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
 
-Values TwinValues(const TrialData& twin, const MotionEstimator& estimator, const StreamName& name) {
-  return ValuesOf(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
+std::string ValuesAsJson(const Values& values) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const std::vector<double>& of_quantity : values) json.push_back(NumbersAsJson(of_quantity));
+  return json.dump();
+}
+
+Values ValuesFrom(const std::string& text) {
+  const nlohmann::ordered_json json = ParsePiece(text);
+  RequireSize(json, kNumQuantities);
+  Values values;
+  for (size_t q = 0; q < kNumQuantities; ++q) {
+    values[q] = NumbersFrom(json[q]);
+    const auto is_event = [](double x) { return x == 0.0 || x == 1.0; };
+    if (kQuantityTexts[q].is_rate && !std::ranges::all_of(values[q], is_event))
+      throw std::invalid_argument("an event that neither is nor is not");
+  }
+  return values;
+}
+
+Values TakeValues(const std::function<Values()>& compute, KeptSteps* steps) {
+  return TakeStep<Values>(steps, compute, {ValuesAsJson, ValuesFrom});
+}
+
+Values TakeTwin(const std::function<TrialData()>& make, const MotionEstimator& estimator,
+                const StreamName& name, KeptSteps* steps) {
+  const auto compute = [&] {
+    const TrialData twin = make();
+    return ValuesOf(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
+  };
+  return TakeValues(compute, steps);
 }
 
 std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstimator& estimator,
-                                     std::uint64_t seed) {
+                                     std::uint64_t seed, KeptSteps* steps) {
   std::map<std::string, std::int64_t> numbers;
   const auto number_of = [&](const std::string& image, const std::string& otherwise) {
     const std::string& name = image.empty() ? otherwise : image;
@@ -130,13 +160,12 @@ std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstim
   };
   std::vector<ComparedPair> pairs;
   for (const AnsweredTrial& one : source.pairs) {
-    if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
-    ComparedPair pair{
-        number_of(one.image1, one.pair.origin + "/1"),
-        number_of(one.image2, one.pair.origin + "/2"),
-        ValuesOf(one.pair, one.estimate, estimator, {seed, HashToStreamKey(one.pair.origin), 0, 0}),
-        {}};
-    pairs.push_back(std::move(pair));
+    const StreamName name{seed, HashToStreamKey(one.pair.origin), 0, 0};
+    const std::int64_t image1 = number_of(one.image1, one.pair.origin + "/1"),
+                       image2 = number_of(one.image2, one.pair.origin + "/2");
+    const Values observed =
+        TakeValues([&] { return ValuesOf(one.pair, one.estimate, estimator, name); }, steps);
+    pairs.push_back({image1, image2, observed, {}});
   }
   return pairs;
 }
@@ -156,43 +185,44 @@ int TwinReport::NumWithin(const std::string& twin, bool fitted) const {
 
 TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estimator,
                           const std::string& folder, double assumed_sigma_px, std::uint64_t seed,
-                          int num_twins) {
+                          int num_twins, KeptSteps* steps) {
   TwinReport report;
   report.scene = source.scene;
   report.num_pairs = static_cast<int>(source.pairs.size());
-  report.fit = FitTwin(source, estimator, seed);
+  report.fit = FitTwin(source, estimator, seed, steps);
   report.semi_real = SemiRealData(report.fit, folder, assumed_sigma_px);
-  std::vector<ComparedPair> pairs = ObservedOf(source, estimator, seed);
+  std::vector<ComparedPair> pairs = ObservedOf(source, estimator, seed, steps);
   const Redraw redraw(report.fit.noise);
   for (size_t i = 0; i < pairs.size(); ++i) {
     if (!source.pairs[i].exact) continue;
     for (int k = 1; k <= num_twins; ++k) {
-      if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
-      const StreamName name{seed, HashToStreamKey(source.pairs[i].pair.origin),
+      const AnsweredTrial& of = source.pairs[i];
+      const StreamName name{seed, HashToStreamKey(of.pair.origin),
                             static_cast<std::uint32_t>(k) * kCallsOfOne, 0};
-      pairs[i].twins = Joined(
-          pairs[i].twins, TwinValues(redraw.Draw(*source.pairs[i].exact, name, source.pairs[i].noise_level),
-                                     estimator, name));
+      const auto make = [&] { return redraw.Draw(*of.exact, name, of.noise_level); };
+      pairs[i].twins = Joined(pairs[i].twins, TakeTwin(make, estimator, name, steps));
     }
   }
   AddComparisons(pairs, "semi_real", &report);
   try {
     const double clustered_share = ClusteredShareOf(report.fit);
     report.fit.simulated_noise =
-        FitSimulatedNoise(source, report.fit, clustered_share, estimator, assumed_sigma_px, seed);
+        FitSimulatedNoise(source, report.fit, clustered_share, estimator, assumed_sigma_px, seed, steps);
     report.simulated = SimulatedTwinData(report.fit, clustered_share, assumed_sigma_px);
     const std::shared_ptr<const SimulatedData> data = MakeSimulatedData(report.simulated);
     for (size_t i = 0; i < pairs.size(); ++i) {
       pairs[i].twins = Values();
       for (int k = 1; k <= num_twins; ++k) {
-        if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
         const StreamName name{
             seed, HashToStreamKey(source.scene),
             (static_cast<std::uint32_t>(i) * 1000 + static_cast<std::uint32_t>(k)) * kCallsOfOne, 0};
-        pairs[i].twins = Joined(pairs[i].twins, TwinValues(data->Make(name), estimator, name));
+        const auto make = [&] { return data->Make(name); };
+        pairs[i].twins = Joined(pairs[i].twins, TakeTwin(make, estimator, name, steps));
       }
     }
     AddComparisons(pairs, "simulated", &report);
+  } catch (const ResultIsDamaged&) {
+    throw;
   } catch (const InputError& error) {
     report.simulated.clear();
     report.why_not_simulated = error.what();

@@ -39,10 +39,10 @@ struct TwinReport {
   int NumWithin(const std::string& twin, bool fitted) const;
 };
 
-// `folder`: where the templates of the scene will be. `num_twins`: of each pair, of either kind. Pure in the
-// seed and the pairs' names.
+// `folder`: where the templates of the scene will be. `num_twins`: of each pair, of either kind; what a pair
+// or a twin gives is a step. Pure in the seed and the pairs' names.
 TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estimator,
                           const std::string& folder, double assumed_sigma_px, std::uint64_t seed,
-                          int num_twins);
+                          int num_twins, KeptSteps* steps = nullptr);
 
 }  // namespace rcme

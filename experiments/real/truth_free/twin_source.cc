@@ -6,7 +6,7 @@
 #include "estimator/geometry/sampson.h"
 #include "estimator/geometry/triangulation.h"
 #include "estimator/noise_scale.h"
-#include "experiments/core/work/stop_request.h"
+#include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
@@ -75,17 +75,16 @@ MotionEstimate AnswerTo(const MotionProblem& problem, const MotionEstimator& est
 }
 
 TwinSource AnswerScene(const std::string& scene, const DataSource& data, const ImageNames& images,
-                       const MotionEstimator& estimator, std::uint64_t seed) {
+                       const MotionEstimator& estimator, std::uint64_t seed, KeptSteps* steps) {
   TwinSource source{scene, {}};
   const auto num_pairs = static_cast<std::uint32_t>(data.NumTrials(1));
   for (std::uint32_t number = 0; number < num_pairs; ++number) {
-    if (IsStopRequested()) throw Stopped("stopped; nothing more is written");
     AnsweredTrial answered;
     answered.pair = data.Make({seed, 0, number, 0});
     const auto named = images.find(answered.pair.origin);
     if (named != images.end()) std::tie(answered.image1, answered.image2) = named->second;
-    answered.estimate =
-        AnswerTo(answered.pair.problem, estimator, {seed, HashToStreamKey(answered.pair.origin), 0, 0});
+    answered.estimate = TakeAnswer(answered.pair.problem, estimator,
+                                   {seed, HashToStreamKey(answered.pair.origin), 0, 0}, steps);
     answered.exact = ExactOf(answered.pair, answered.estimate);
     source.pairs.push_back(std::move(answered));
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/motion_estimator.h"
+#include "experiments/core/work/kept_steps.h"
 #include "experiments/data/data_source.h"
 #include "experiments/data/match_folder.h"
 
@@ -32,9 +33,9 @@ struct TwinSource {
   std::string scene;
   std::vector<AnsweredTrial> pairs;
 };
-// Of every pair of a real scene. Pure in the seed and the pairs' names.
+// Of every pair of a real scene, each answer a step. Pure in the seed and the pairs' names.
 TwinSource AnswerScene(const std::string& scene, const DataSource& data, const ImageNames& images,
-                       const MotionEstimator& estimator, std::uint64_t seed);
+                       const MotionEstimator& estimator, std::uint64_t seed, KeptSteps* steps = nullptr);
 
 // The answer of an estimator to a problem, judged; its samples are of that stream.
 MotionEstimate AnswerTo(const MotionProblem& problem, const MotionEstimator& estimator,

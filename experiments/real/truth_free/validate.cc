@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
 
 #include "estimator/robust_covariance/disjoint_sets.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/data/data_source.h"
 #include "experiments/real/truth_free/advice.h"
 #include "experiments/real/truth_free/closure.h"
 #include "experiments/real/truth_free/halves.h"
+#include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/residual_correlation.h"
 #include "experiments/real/truth_free/self_calibration.h"
 #include "experiments/real/truth_free/twin.h"
@@ -19,6 +21,8 @@
 
 namespace rcme {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr double kConfidence = 0.95;
 constexpr int kResamples = 1000;          // of pairs
@@ -32,6 +36,7 @@ Answered Ask(NamedPair pair, const MotionEstimator& estimator, const StreamName&
 
 // What is computed of each pair and its twins.
 struct PairResults {
+  PairAnswers answers;
   UnitValues spatial, random;
   std::vector<double> twin_errors;  // normalised and squared, of the twins' answers against their truth
   ResidualProducts products, twin_products;
@@ -49,22 +54,21 @@ void AddHalves(const Answered& answered, const MotionEstimator& estimator, Strea
   for (const Split split : kRandomSplits) add(split, random);
 }
 
-// Answers a pair and its twins too.
 PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
-                      const ValidationOptions& options, PairAnswers* answers) {
+                      const ValidationOptions& options) {
   constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
   StreamName name{options.seed, HashToStreamKey(pair.name), 0, 0};
   PairResults results;
-  answers->whole = Ask(pair, estimator, name);
-  const Answered& whole = answers->whole;
+  results.answers.whole = Ask(pair, estimator, name);
+  const Answered& whole = results.answers.whole;
   if (!whole.IsOk()) return results;
   AddHalves(whole, estimator, name, &results.spatial.observed, &results.random.observed);
   results.products = ProductsOf(pair.problem, whole.estimate);
   for (int k = 1; k <= options.num_twins; ++k) {
     const auto number = static_cast<std::uint32_t>(k);
     name.trial = number * kCallsOfOne;
-    answers->twins.push_back(Ask(TwinOf(pair, whole.estimate, options.seed, number), estimator, name));
-    const Answered& twin = answers->twins.back();
+    results.answers.twins.push_back(Ask(TwinOf(pair, whole.estimate, options.seed, number), estimator, name));
+    const Answered& twin = results.answers.twins.back();
     if (!twin.IsOk()) continue;
     AddHalves(twin, estimator, name, &results.spatial.null, &results.random.null);
     results.twin_errors.push_back(
@@ -72,6 +76,39 @@ PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
                                twin.estimate.pose_cov));
     results.twin_products += ProductsOf(twin.pair.problem, twin.estimate);
   }
+  return results;
+}
+
+std::string ResultsAsJson(const PairResults& results) {
+  Json twins = Json::array();
+  for (const Answered& twin : results.answers.twins) twins.push_back(AnswerAsJson(twin.estimate));
+  return Json::array({AnswerAsJson(results.answers.whole.estimate), std::move(twins),
+                      NumbersAsJson(results.spatial.observed), NumbersAsJson(results.spatial.null),
+                      NumbersAsJson(results.random.observed), NumbersAsJson(results.random.null),
+                      NumbersAsJson(results.twin_errors), ProductsAsJson(results.products),
+                      ProductsAsJson(results.twin_products)})
+      .dump();
+}
+
+// The twins' matches are made again.
+PairResults ResultsFrom(const std::string& text, const NamedPair& pair, const ValidationOptions& options) {
+  const Json json = ParsePiece(text);
+  RequireSize(json, 9);
+  const size_t num_matches = pair.problem.matches.size();
+  PairResults results;
+  results.answers.whole = {pair, AnswerFrom(json[0], num_matches)};
+  const Answered& whole = results.answers.whole;
+  RequireSize(json[1], whole.IsOk() ? static_cast<size_t>(options.num_twins) : 0);
+  for (const Json& answer : json[1]) {
+    const auto number = static_cast<std::uint32_t>(results.answers.twins.size()) + 1;
+    results.answers.twins.push_back(
+        {TwinOf(pair, whole.estimate, options.seed, number), AnswerFrom(answer, num_matches)});
+  }
+  results.spatial = {NumbersFrom(json[2]), NumbersFrom(json[3])};
+  results.random = {NumbersFrom(json[4]), NumbersFrom(json[5])};
+  results.twin_errors = NumbersFrom(json[6]);
+  results.products = ProductsFrom(json[7]);
+  results.twin_products = ProductsFrom(json[8]);
   return results;
 }
 
@@ -163,7 +200,8 @@ TruthFreeVerdict JudgeSigma(const ComparedMedians& estimated_px, double assumed_
 
 }  // namespace
 
-SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options) {
+SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options,
+                   KeptSteps* steps) {
   SetReport report;
   report.name = set.name;
   report.num_pairs = static_cast<int>(set.pairs.size());
@@ -171,8 +209,10 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
   std::vector<PairResults> results;
   std::vector<TestUnit> simulation, spatial, random;
   for (const NamedPair& pair : set.pairs) {
-    if (IsStopRequested()) throw Stopped("stopped; nothing is written");
-    results.push_back(ResultsOf(pair, estimator, options, &answers.emplace_back()));
+    results.push_back(TakeStep<PairResults>(
+        steps, [&] { return ResultsOf(pair, estimator, options); },
+        {ResultsAsJson, [&](const std::string& json) { return ResultsFrom(json, pair, options); }}));
+    answers.push_back(std::move(results.back().answers));
     report.num_answered += answers.back().whole.IsOk();
   }
   const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
@@ -195,7 +235,7 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
   report.sigma_px = SigmaOf(answers, rng);
   report.sigma_verdict = JudgeSigma(report.sigma_px, report.assumed_sigma_px);
   report.correlations = CorrelationsOf(results, rng);
-  report.calibration = Calibrate(answers, estimator, options.seed);
+  report.calibration = Calibrate(answers, estimator, options.seed, steps);
   report.sizes = TestKeyPointSizes(answers);
   report.advice = FindReasons(report);
   return report;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/motion_estimator.h"
+#include "experiments/core/work/kept_steps.h"
 #include "experiments/real/truth_free/calibration_test.h"
 #include "experiments/real/truth_free/covariance_test.h"
 #include "experiments/real/truth_free/pair_set.h"
@@ -48,10 +49,12 @@ struct ValidationOptions {
   int num_twins = 3;  // of each pair
 };
 
-// Pure in the options' seed and the pairs' names. The random numbers of a pair are named by it.
+// What is computed of a pair is a step. Pure in the options' seed and the pairs' names. The random numbers of
+// a pair are named by it.
 //
 // Tests: `simulation`, the answers to the twins against the motion that these were made of, is of the
 // estimator alone; the others are of the pairs, with the same of their twins.
-SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options);
+SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options,
+                   KeptSteps* steps = nullptr);
 
 }  // namespace rcme

@@ -1,0 +1,31 @@
+// What `rcme twin` and `rcme validate` keep of their steps (core/work/kept_steps.h).
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "experiments/core/work/kept_steps.h"
+#include "experiments/real/truth_free/pair_set.h"
+#include "experiments/real/truth_free/residual_correlation.h"
+#include "experiments/real/truth_free/residual_pattern.h"
+#include "experiments/real/truth_free/twin_source.h"
+
+namespace rcme {
+
+// Of an answer what is used here: status, motion, covariance, inliers, estimated noise, probabilities.
+nlohmann::ordered_json AnswerAsJson(const MotionEstimate& estimate);
+// Throws std::exception for what no estimator answers to so many matches.
+MotionEstimate AnswerFrom(const nlohmann::ordered_json& json, size_t num_matches);
+
+nlohmann::ordered_json ProductsAsJson(const ResidualProducts& products);
+ResidualProducts ProductsFrom(const nlohmann::ordered_json& json);
+
+// AnswerTo (twin_source.h) as a step.
+MotionEstimate TakeAnswer(const MotionProblem& problem, const MotionEstimator& estimator,
+                          const StreamName& name, KeptSteps* steps);
+ResidualPattern TakePattern(const std::function<ResidualPattern()>& compute, KeptSteps* steps);
+
+// What is asked about a set, for the identity of a plan: "kitti00: 30 pairs, checksum 1f2e3d4c".
+std::string DescribePairs(const PairSet& set);
+
+}  // namespace rcme
