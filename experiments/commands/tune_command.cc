@@ -66,6 +66,19 @@ void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const
                spec.label, plan.study.seed + 1, path);
 }
 
+// Kept beside the table's file; without one nowhere.
+void RunRepetitions(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings) {
+  const std::string& out = arguments.out;
+  if (!out.empty()) CheckIsNoInput(out, {arguments.study});
+  if (!out.empty()) CheckCanBeWritten(out);
+  Runner runner = MakeRunner(PlanRepetitions(plan, arguments.repeat),
+                             out.empty() ? "" : FindCheckpointBeside(out), arguments.threads);
+  const std::string table = RepetitionsAsTable(plan, settings, RepeatTuning(plan, settings, &runner));
+  if (!out.empty()) WriteFileWhole(out, table);
+  runner.RemoveCheckpoint();
+  fmt::print("{}", table);
+}
+
 void RunTune(const TuneArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
@@ -73,8 +86,7 @@ void RunTune(const TuneArguments& arguments) {
   if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   if (arguments.repeat > 0) {
-    fmt::print("{}", RepetitionsAsTable(plan, settings,
-                                        RepeatTuning(plan, settings, arguments.repeat, arguments.threads)));
+    RunRepetitions(arguments, plan, settings);
     return;
   }
   if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
@@ -147,9 +159,10 @@ void AddTuneCommand(CLI::App& app) {
       "  rcme estimate matches.csv.gz --estimator-file tuned.yaml");
   auto arguments = std::make_shared<TuneArguments>();
   AddTuningOptions(command, arguments.get());
-  CLI::Option* out = command->add_option("-o,--out", arguments->out,
-                                         "the tuned estimator, a file for studies "
-                                         "and `rcme estimate`; with --shard the file of the part");
+  command->add_option("-o,--out", arguments->out,
+                      "the tuned estimator, a file for studies "
+                      "and `rcme estimate`; with --shard the file of the part, with "
+                      "--repeat a file for the table");
   CLI::Option* figures =
       command->add_option("--figures", arguments->figures,
                           "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
@@ -162,10 +175,11 @@ void AddTuneCommand(CLI::App& app) {
   command
       ->add_option(
           "--repeat", arguments->repeat,
-          "number of repetitions: tune again with fresh seeds, and count how often the target is violated")
+          "number of repetitions: tune again with fresh seeds, and count how often the target is violated; "
+          "what is done is kept beside --out, if that is given")
       ->transform(WholeNumberIn(1, 100'000))
-      ->excludes(out)
       ->excludes(figures)
+      ->excludes(shards.shard)
       ->excludes(shards.merge);
   command->callback([arguments] { RunTune(*arguments); });
 }

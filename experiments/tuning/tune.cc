@@ -16,11 +16,6 @@ std::vector<std::uint32_t> AllConditions(const StudyPlan& plan) {
   return all;
 }
 
-std::vector<SettingCount> CountAll(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials,
-                                   int num_threads, Progress* progress) {
-  return SumOver(CountOutcomes(plan, settings, trials, num_threads, progress), AllConditions(plan));
-}
-
 // What the plain estimator does must be what was decided from traces.
 void CheckAgreement(const VerifiedEstimator& plain, const SettingCount& decided) {
   if (plain.failure.errors == decided.failures && plain.refusal.errors == decided.refusals) return;
@@ -93,38 +88,6 @@ Choice ChooseFrom(const StudyPlan& plan, const SettingPlan& settings, const Tuni
   const auto count_all = [&](TrialRange range) { return SumOver(source.count(range), AllConditions(plan)); };
   return ChooseSetting(tuning, SettingsInWords(tuning, settings), count_all(trials.explore),
                        count_all(trials.calibrate));
-}
-
-Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int n, int num_threads) {
-  const Tuning& tuning = *plan.study.tuning;
-  CheckTrialsSuffice(tuning, plan.conditions.size());
-  if (tuning.target == TuneTarget::kRisk) {
-    throw InputError("--repeat: target: risk: the least risk is no limit that a repetition could violate");
-  }
-  const TuningTrials trials(tuning);
-  const std::vector<std::string> names = SettingsInWords(tuning, settings);
-  Repetitions repetitions;
-  const std::int64_t per_condition = n * (tuning.explore + 1LL * tuning.calibrate) + tuning.verify;
-  Progress progress("trials", per_condition * static_cast<std::int64_t>(plan.conditions.size()));
-  repetitions.reference = CountAll(plan, settings, trials.verify, num_threads, &progress);
-  repetitions.num_chosen.resize(names.size());
-  for (int r = 1; r <= n; ++r) {
-    StudyPlan fresh = plan;
-    fresh.study.seed += static_cast<std::uint64_t>(r);
-    const Choice choice =
-        ChooseSetting(tuning, names, CountAll(fresh, settings, trials.explore, num_threads, &progress),
-                      CountAll(fresh, settings, trials.calibrate, num_threads, &progress));
-    ++repetitions.num_done;
-    if (!choice.setting) {
-      ++repetitions.num_without_choice;
-      continue;
-    }
-    ++repetitions.num_chosen[*choice.setting];
-    const Verdict verdict = VerdictOf(tuning, repetitions.reference[*choice.setting]);
-    repetitions.num_violated += verdict == Verdict::kDoesNotHold;
-    repetitions.num_undecided += verdict == Verdict::kUndecided;
-  }
-  return repetitions;
 }
 
 }  // namespace rcme

@@ -61,8 +61,4 @@ struct Repetitions {
   std::vector<SettingCount> reference;               // per setting: many trials that no repetition saw
 };
 
-// Explores and calibrates with the seeds seed + 1, ..., seed + n; the reference are the study's trials for
-// verification. Throws as Tune; InputError for a target on the risk, which nothing can violate.
-Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, int n, int num_threads);
-
 }  // namespace rcme

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <stdexcept>
+
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -196,6 +199,28 @@ std::int64_t NumTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
   return trials.end - trials.first;
 }
 
+// What the tuning of another seed chooses: the number of a setting, or null.
+std::string ComputeRepetition(const StudyPlan& plan, const SettingPlan& settings, size_t number) {
+  StudyPlan fresh = plan;
+  fresh.study.seed += number + 1;
+  const auto count = [&](TrialRange range) { return CountOutcomes(fresh, settings, range, 1, nullptr); };
+  const Choice choice = ChooseFrom(fresh, settings, {count, {}});
+  return (choice.setting ? Json(*choice.setting) : Json()).dump();
+}
+
+void AddRepetition(const Json& json, const Tuning& tuning, Repetitions* repetitions) {
+  ++repetitions->num_done;
+  if (json.is_null()) {
+    ++repetitions->num_without_choice;
+    return;
+  }
+  const auto chosen = static_cast<size_t>(CountFrom(json, std::ssize(repetitions->num_chosen) - 1));
+  ++repetitions->num_chosen[chosen];
+  const Verdict verdict = VerdictOf(tuning, repetitions->reference[chosen]);
+  repetitions->num_violated += verdict == Verdict::kDoesNotHold;
+  repetitions->num_undecided += verdict == Verdict::kUndecided;
+}
+
 }  // namespace
 
 TuningWork PlanTuningWork(const StudyPlan& plan) {
@@ -278,6 +303,46 @@ EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningWork& work, con
                              &entropies);
               });
   return entropies;
+}
+
+// The reference in the groups that a tuning has for its verification; those before it are empty. The tunings
+// in one more.
+WorkPlan PlanRepetitions(const StudyPlan& plan, int n) {
+  const Tuning& tuning = *plan.study.tuning;
+  CheckTrialsSuffice(tuning, plan.conditions.size());
+  if (tuning.target == TuneTarget::kRisk)
+    throw InputError("--repeat: target: risk: the least risk is no limit that a repetition could violate");
+  WorkPlan work = PlanWork(plan, "repeated tuning", 3, 3).items;
+  for (size_t group = 0; group < FirstGroup(plan, Kind::kVerify); ++group) work.groups[group].num_items = 0;
+  work.groups.push_back({"repetitions", static_cast<size_t>(n)});
+  work.item_name = "piece";
+  return work;
+}
+
+Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, Runner* runner) {
+  const Tuning& tuning = *plan.study.tuning;
+  const WorkPlan& work = runner->plan();
+  const size_t tunings = work.groups.size() - 1;
+  const auto compute = [&](const ItemPlace& place) {
+    return place.group == tunings ? ComputeRepetition(plan, settings, place.item)
+                                  : ComputeBlock(plan, settings, {}, place);
+  };
+  const auto num_trials = [&](const ItemPlace& place) {
+    return place.group == tunings
+               ? (tuning.explore + std::int64_t{tuning.calibrate}) * std::ssize(plan.conditions)
+               : NumTrialsOf(plan, place);
+  };
+  runner->Get(ListItems(work, {}), compute, {"trials", num_trials});
+  Repetitions repetitions;
+  const TuningSource reference = CountsIn(plan, settings, {work, 0, 0}, runner->results());
+  std::vector<std::uint32_t> conditions(plan.conditions.size());
+  std::iota(conditions.begin(), conditions.end(), 0u);
+  repetitions.reference = SumOver(reference.count(TuningTrials(tuning).verify), conditions);
+  repetitions.num_chosen.resize(settings.settings.size());
+  ReadResults(work, runner->results(), tunings, tunings + 1, [&](const ItemPlace&, const std::string& json) {
+    AddRepetition(ParsePiece(json), tuning, &repetitions);
+  });
+  return repetitions;
 }
 
 }  // namespace rcme

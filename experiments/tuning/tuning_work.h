@@ -1,5 +1,5 @@
 // The work of `rcme tune` and `rcme transfer` (core/work/work_plan.h): an item is ten trials of one
-// condition.
+// condition, or a whole tuning that is repeated.
 //
 // A tuning has two rounds, for its last trials depend on what its first have chosen: the plain calls of the
 // tuned estimator and the study's. Everything else is in the first round: every setting in the trials to
@@ -42,5 +42,12 @@ MissingItems GetTuningShard(const StudyPlan& plan, const SettingPlan& settings, 
 TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const TuningWork& work,
                       const WorkResults& results);
 EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningWork& work, const WorkResults& results);
+
+// n tunings again: explores and calibrates with the seeds seed + 1, ..., seed + n; the reference are the
+// study's trials for verification. Throws as Tune; InputError for a target on the risk, which nothing can
+// violate.
+WorkPlan PlanRepetitions(const StudyPlan& plan, int n);
+// Throws as Runner::Get and CountOutcomes; InputError for a result that is damaged.
+Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, Runner* runner);
 
 }  // namespace rcme

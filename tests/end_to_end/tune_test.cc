@@ -116,7 +116,7 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(refuses("target=speed", {"target", "'speed'", "false_refusal, failure, accepted_failure, risk"}));
   EXPECT_TRUE(refuses("estimator=theirs", {"estimator", "'theirs'", "standard, ours"}));
   EXPECT_TRUE(IsRefused(Tune({}), {"--out"}));
-  EXPECT_TRUE(IsRefused(Tune({"--out", out_, "--repeat", "3"}), {"--repeat", "--out"}));
+  EXPECT_TRUE(IsRefused(Tune({"--shard", "1/2", "--out", out_, "--repeat", "3"}), {"--repeat", "--shard"}));
   EXPECT_TRUE(IsRefused(Tune({"--figures", folder_.Path("f"), "--repeat", "3"}), {"--repeat", "--figures"}));
   EXPECT_TRUE(IsRefused(Tune({"--repeat", "0"}), {"--repeat", "0"}));
   study_ = folder_.Write("repeated.yaml", "repeats_per_scene: 2\n" + ReadBytes(study_));
@@ -157,6 +157,9 @@ TEST_F(TuneProgram, Repetitions) {
   EXPECT_NE(result.out.find("tuned 5 times"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("promised at most 5 %"), std::string::npos) << result.out;
   EXPECT_EQ(Tune({"--repeat", "5", "--threads", "1"}).out, result.out);
+  EXPECT_EQ(Tune({"--repeat", "5", "--out", out_}).out, result.out);
+  EXPECT_EQ(ReadBytes(out_), result.out);
+  EXPECT_TRUE(IsRefused(Tune({"--repeat", "5", "--out", study_}), {study_}));
 }
 
 TEST_F(TuneProgram, Transfer) {

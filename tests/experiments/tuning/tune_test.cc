@@ -8,6 +8,7 @@
 
 #include "experiments/trial/trial.h"
 #include "experiments/tuning/tune_json.h"
+#include "experiments/tuning/tuning_work.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/in_memory.h"
 #include "tests/test_support/match_text.h"
@@ -223,7 +224,8 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
   plan.study.tuning->at_most = 0.25;
   WatchedData::Log log;
   const StudyPlan watched = Watched(plan, &log);
-  const Repetitions repetitions = RepeatTuning(watched, SettingsOf(watched), 8, 2);
+  Runner runner = Runner::InMemory(PlanRepetitions(watched, 8), 2);
+  const Repetitions repetitions = RepeatTuning(watched, SettingsOf(watched), &runner);
   EXPECT_EQ(log.seeds.size(), 9u);
   std::vector<std::int64_t> num_chosen(6, 0);
   std::int64_t num_without = 0;
@@ -253,7 +255,7 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
 TEST(RepeatTuning, ARiskIsNoPromise) {
   StudyPlan plan = TunedPlan(kBlock);
   plan.study.tuning->target = TuneTarget::kRisk;
-  EXPECT_TRUE(ThrowsInputError([&] { RepeatTuning(plan, SettingsOf(plan), 1, 1); }, {"--repeat", "risk"}));
+  EXPECT_TRUE(ThrowsInputError([&] { PlanRepetitions(plan, 1); }, {"--repeat", "risk"}));
 }
 
 }  // namespace
