@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 namespace rcme {
 namespace {
@@ -23,13 +25,33 @@ std::string PilotAsJson(const SplittingPilot& pilot) {
       .dump();
 }
 
-SplittingPilot PilotFrom(const Json& json) {
+// What no run can have given is damage, whatever the checksums say.
+void RequirePossible(bool is_possible, const char* what) {
+  if (!is_possible) throw std::invalid_argument(fmt::format("its numbers cannot be: {}", what));
+}
+
+bool AreShares(const std::vector<double>& numbers) {
+  constexpr double kRounding = 1e-9;  // of a mean of shares
+  return std::ranges::all_of(numbers, [](double x) { return x >= 0.0 && x <= 1.0 + kRounding; });
+}
+
+// Of every particle: its first, and one for each move above each of so many levels.
+std::int64_t NumValues(const SplittingEffort& effort, size_t num_levels) {
+  return effort.num_particles * (1 + static_cast<std::int64_t>(num_levels) * effort.num_moves);
+}
+
+SplittingPilot PilotFrom(const Json& json, const SplittingEffort& effort) {
   RequireSize(json, 5);
   const auto last = static_cast<std::int64_t>(PilotEnd::kTooRare);
-  return {static_cast<PilotEnd>(CountFrom(json[0], last)),
-          {NumbersFrom(json[1]), NumbersFrom(json[2])},
-          NumberFrom(json[3]),
-          CountFrom(json[4], kMost)};
+  const SplittingPilot pilot{static_cast<PilotEnd>(CountFrom(json[0], last)),
+                             {NumbersFrom(json[1]), NumbersFrom(json[2])},
+                             NumberFrom(json[3]),
+                             CountFrom(json[4], kMost)};
+  const std::vector<double>& levels = pilot.levels.levels;
+  RequirePossible(levels.size() == pilot.levels.steps.size(), "levels without steps");
+  RequirePossible(std::ranges::is_sorted(levels) && AreShares(pilot.levels.steps), "levels that fall");
+  RequirePossible(pilot.num_values == NumValues(effort, levels.size()), "another number of values");
+  return pilot;
 }
 
 std::string ReplicateAsJson(const SplittingReplicate& r) {
@@ -38,12 +60,24 @@ std::string ReplicateAsJson(const SplittingReplicate& r) {
       .dump();
 }
 
-SplittingReplicate ReplicateFrom(const Json& json) {
+SplittingReplicate ReplicateFrom(const Json& json, const SplittingEffort& effort) {
   RequireSize(json, 7);
-  return {NumberFrom(json[0]),       NumbersFrom(json[1]),
-          NumbersFrom(json[2]),      CountFrom(json[3], kMost),
-          CountFrom(json[4], kMost), static_cast<int>(CountFrom(json[5], std::numeric_limits<int>::max())),
-          CountFrom(json[6], kMost)};
+  const std::int64_t num_particles = effort.num_particles;
+  const SplittingReplicate replicate{NumberFrom(json[0]),
+                                     NumbersFrom(json[1]),
+                                     NumbersFrom(json[2]),
+                                     CountFrom(json[3], num_particles),
+                                     CountFrom(json[4], num_particles),
+                                     static_cast<int>(CountFrom(json[5], num_particles)),
+                                     CountFrom(json[6], kMost)};
+  double product = 1.0;
+  for (const double share : replicate.shares) product *= share;
+  RequirePossible(AreShares(replicate.shares) && AreShares(replicate.acceptance), "a share that is none");
+  RequirePossible(replicate.estimate == product, "the estimate is not the product of the shares");
+  RequirePossible(replicate.num_drawn == num_particles, "another number of particles");
+  RequirePossible(replicate.num_values == NumValues(effort, replicate.acceptance.size()),
+                  "another number of values");
+  return replicate;
 }
 
 // Every estimator in every condition, without results.
@@ -92,7 +126,7 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
     return PilotAsJson(FindLevels(systems[place.group], effort.splitting, rng));
   });
   ReadResults(work, runner->results(), 0, num_cells, [&](const ItemPlace& place, const std::string& json) {
-    cells[place.group].pilot = PilotFrom(ParsePiece(json));
+    cells[place.group].pilot = PilotFrom(ParsePiece(json), effort.splitting);
   });
   std::vector<ItemPlace> replicates = ListItems(work, {}, num_cells, 2 * num_cells);
   std::erase_if(replicates, [&](const ItemPlace& place) {
@@ -106,7 +140,8 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
   });
   ReadResults(work, runner->results(), num_cells, 2 * num_cells,
               [&](const ItemPlace& place, const std::string& json) {
-                cells[place.group - num_cells].replicates.push_back(ReplicateFrom(ParsePiece(json)));
+                cells[place.group - num_cells].replicates.push_back(
+                    ReplicateFrom(ParsePiece(json), effort.splitting));
               });
   for (RareCell& cell : cells) cell.rate = RateOf(cell.pilot, cell.replicates);
   return cells;

@@ -1,5 +1,7 @@
 #include "experiments/rare/stratified_failures.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -119,13 +121,16 @@ class StrataSum {
         StratumCount& count = strata_[e][k];
         ++count.num_trials;
         if (!is_run) continue;
-        const bool failed = has_failed[e].at(num_run) == '1';
+        const bool failed = FailedAt(has_failed[e], num_run);
         ++count.num_run;
         count.num_failed += failed;
-        events_[e].Add(NumberFrom(json[1].at(num_run)), failed);
+        events_[e].Add(WeightAt(json[1], num_run), failed);
       }
       num_run += is_run;
     }
+    RequireSize(json[1], num_run);
+    if (!std::ranges::all_of(has_failed, [&](const std::string& of) { return of.size() == num_run; }))
+      throw std::invalid_argument("it has other trials that were run");
   }
 
   StratifiedCell Take(size_t condition, size_t estimator, std::int64_t num_trials) const {
@@ -137,6 +142,17 @@ class StrataSum {
   }
 
  private:
+  static bool FailedAt(const std::string& has_failed, size_t place) {
+    const char c = has_failed.at(place);
+    if (c != '0' && c != '1') throw std::invalid_argument("a failure that neither is nor is not");
+    return c == '1';
+  }
+  static double WeightAt(const Json& weights, size_t place) {
+    const double weight = NumberFrom(weights.at(place));
+    if (!(weight >= 0.0) || std::isinf(weight)) throw std::invalid_argument("a weight that is none");
+    return weight;
+  }
+
   std::vector<std::array<StratumCount, kNumStrata>> strata_;  // per estimator, as events_
   std::vector<WeightedEvents> events_;
 };

@@ -1,6 +1,7 @@
-// Part files of which bytes were changed: whoever merges them gets the very same tables as before, or a
-// refusal that names the file. Also where the damage has right checksums, so that nothing but the arithmetic
-// of counts is left to find it: then nothing else than a refusal or a table happens.
+// Part files and checkpoints of which bytes were changed: whoever merges them, or goes on with them, gets the
+// very same tables as before, or a refusal that names the file. Also where the damage has right checksums, so
+// that nothing but the arithmetic of counts is left to find it: then nothing else than a refusal or a table
+// happens.
 //
 // RCME_DAMAGES=1000 sets how many random damages there are of the parts of each work; the seeds are 1 and 2.
 #include <fmt/format.h>
@@ -15,7 +16,13 @@
 
 #include "experiments/audit/claims/audit_output.h"
 #include "experiments/audit/claims/audit_work.h"
+#include "experiments/audit/model_choice/choice_output.h"
 #include "experiments/audit/validity/map_work.h"
+#include "experiments/rare/rare_output.h"
+#include "experiments/real/truth_free/kept_answers.h"
+#include "experiments/real/truth_free/twin_output.h"
+#include "experiments/real/truth_free/twin_report.h"
+#include "experiments/real/truth_free/validate_output.h"
 #include "experiments/tuning/transfer.h"
 #include "experiments/tuning/transfer_output.h"
 #include "experiments/tuning/tune_json.h"
@@ -151,6 +158,71 @@ class DamagedParts : public testing::Test {
     return {"map", paths, tables};
   }
 
+  // What is kept until a work is done; `tables` goes on with it.
+  DividedTables Checkpoint(const std::string& work, const WorkPlan& plan,
+                           const std::function<std::string(Runner*)>& tables) const {
+    const Paths paths = {folder_.Path(work + ".part")};
+    const auto go_on = [plan, paths, tables] {
+      Runner runner = Runner::WithCheckpoint(plan, paths[0], 1);
+      return tables(&runner);
+    };
+    Runner runner = Runner::WithCheckpoint(plan, paths[0], 1);
+    tables(&runner);
+    runner.Get({}, nullptr);  // writes the file also where the work is one of steps
+    return {work, paths, go_on};
+  }
+
+  DividedTables Splitting() const {
+    const RareEffort effort{{20, 2, 0.2}, 6};
+    return Checkpoint("splitting", PlanSplitting(plan_, 1, effort), [this, effort](Runner* runner) {
+      return RareAsJson(plan_, effort, SplitFailures(plan_, 1, effort, runner));
+    });
+  }
+
+  DividedTables Strata() const {
+    const StratifiedEffort effort{600, 0.1};
+    return Checkpoint("strata", PlanStrata(plan_, effort), [this, effort](Runner* runner) {
+      return StratifiedAsJson(plan_, effort, StratifyFailures(plan_, effort, runner));
+    });
+  }
+
+  DividedTables Choices() const {
+    return Checkpoint("choices", PlanChoices(plan_), [this](Runner* runner) {
+      return ChoicesAsJson(plan_, CountChoices(plan_, {}, runner));
+    });
+  }
+
+  DividedTables AuditChecks() const {
+    return Checkpoint("checks", PlanAuditChecks(PlanAudit(Claims(), {})), [](Runner* runner) {
+      const rcme::Audit audit = RunAudit(Claims(), {}, runner);
+      return AuditAsJson(audit) + AuditAsTable(audit);
+    });
+  }
+
+  static WorkPlan Steps() { return {"steps", "step", "the same\n", {}, true}; }
+
+  DividedTables Validation() const {
+    return Checkpoint("validation", Steps(), [this](Runner* runner) {
+      KeptSteps steps(runner);
+      const PairSet set = PairSetsOfStudy(plan_).front();
+      return ValidationAsJson({Validate(set, *plan_.estimators.back(), {1, 1}, &steps)});
+    });
+  }
+
+  DividedTables Twins() const {
+    return Checkpoint("twins", Steps(), [this](Runner* runner) {
+      KeptSteps steps(runner);
+      const MotionEstimator& estimator = *plan_.estimators.back();
+      const TwinSource source = AnswerScene("made", *plan_.conditions[0].source, {}, estimator, 1, &steps);
+      return TwinsAsJson({MakeTwinReport(source, estimator, "pairs", 0.5, 1, 1, &steps)});
+    });
+  }
+
+  std::vector<DividedTables> AllWorks() const {
+    return {Tuning(), Transfer(), Audit(),       Map(),        Splitting(),
+            Strata(), Choices(),  AuditChecks(), Validation(), Twins()};
+  }
+
   static void RequireWhole(const WorkPlan& pieces, const WorkResults& merged) {
     if (FindMissingIn(pieces, merged, 0, pieces.groups.size()).num_items > 0)
       throw InputError("pieces are missing");
@@ -190,11 +262,11 @@ std::string Damaged(const std::string& bytes, std::mt19937* rng, std::string* wh
 
 TEST_F(DamagedParts, NoneChangesATableInSilence) {
   std::mt19937 rng(1);
-  for (const DividedTables& work : {Tuning(), Transfer(), Audit(), Map()}) {
+  for (const DividedTables& work : AllWorks()) {
     const std::string sound = work.tables();
     int num_refused = 0, num_same = 0;
     for (int i = 0; i < NumDamages(); ++i) {
-      const std::string& path = work.parts[rng() % kNumShards];
+      const std::string& path = work.parts[rng() % work.parts.size()];
       const std::string bytes = ReadBytes(path);
       std::string what;
       folder_.Write(std::filesystem::path(path).filename(), Damaged(bytes, &rng, &what));
@@ -216,10 +288,10 @@ TEST_F(DamagedParts, NoneChangesATableInSilence) {
 // One number of one piece replaced, with right checksums, by whoever can compute them.
 TEST_F(DamagedParts, ImpossibleCountsAreRefusedAndNothingElseHappens) {
   std::mt19937 rng(2);
-  for (const DividedTables& work : {Tuning(), Transfer(), Audit(), Map()}) {
+  for (const DividedTables& work : AllWorks()) {
     int num_refused = 0;
     for (int i = 0; i < NumDamages(); ++i) {
-      const std::string& path = work.parts[rng() % kNumShards];
+      const std::string& path = work.parts[rng() % work.parts.size()];
       const std::string bytes = ReadBytes(path);
       nlohmann::ordered_json part = PartAsJson(path);
       nlohmann::ordered_json* value = &part["pieces"][rng() % part["pieces"].size()]["result"];

@@ -125,16 +125,16 @@ std::string CheckResultAsJson(const CheckResult& result) {
 }
 
 CheckResult CheckResultFrom(const Check& check, const std::string& text) {
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
   const Json json = ParsePiece(text);
   RequireSize(json, 5);
-  CheckResult result{CountFrom(json[0], kMost), {}, VerdictFrom(json[2]), {}, json[4].get<std::string>()};
+  const std::int64_t num_trials = CountFrom(json[0], check.limits.Max(Budget::kFull));
+  CheckResult result{num_trials, {}, VerdictFrom(json[2]), {}, json[4].get<std::string>()};
   if (!json[1].empty()) RequireSize(json[1], check.targets.size());
   for (const Json& target : json[1]) {
     RequireSize(target, 6);
     result.targets.push_back({NumberFrom(target[0]),
                               {NumberFrom(target[1]), NumberFrom(target[2])},
-                              CountFrom(target[3], kMost),
+                              CountFrom(target[3], num_trials),
                               VerdictFrom(target[4]),
                               NumberFrom(target[5])});
   }
@@ -144,7 +144,7 @@ CheckResult CheckResultFrom(const Check& check, const std::string& text) {
                              NumberFrom(fifth[1]),
                              NumberFrom(fifth[2]),
                              {NumberFrom(fifth[3]), NumberFrom(fifth[4])},
-                             CountFrom(fifth[5], kMost)});
+                             CountFrom(fifth[5], num_trials)});
   }
   return result;
 }
