@@ -39,7 +39,6 @@ STUDY = {
 }
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT]
 CHECKPOINT = "unfinished.part"
-SHARE_OF_WORK = 0.2  # of a long command, that a call gets at most
 TEMPORARY = re.compile(r"\.rcme-[^/]*\.part$|-journal$|\.journal$|unfinished\.part$")
 OLD = b"what was there before\n"
 
@@ -130,7 +129,7 @@ def commands(inputs):
         Command("map_shard", lambda out: ["map", "--trials", "2", *base, "--shard", "1/2", "--out", out / "part.json"],
                 may_differ=True, is_new=True),
         Command("rare", lambda out: ["rare", study, "--set", "outlier_ratio=0.4", "--replicates", "4", "--particles", "20", "--moves", "2",
-                                     *base, "--out", out], resumes=True, longer=["--replicates", "80"]),
+                                     *base, "--out", out], resumes=True, longer=["--replicates", "1500"]),
         Command("rare_stratified", lambda out: ["rare", study, "--method", "stratified", "--trials", "1000", *base, "--out", out],
                 resumes=True, longer=["--trials", "10000"]),
         Command("budget", lambda out: ["budget", study, "--time-ms", "0.2", "--calls", "1", "--out", out / "study.yaml"],
@@ -179,6 +178,7 @@ class Victim:
     def __init__(self, inputs, command, is_long):
         self.rcme, self.command, self.is_long = inputs.rcme, command, is_long
         self.start_seconds = inputs.start_seconds
+        self.share = 0.2  # of a long command, that a call gets at most: adapted to what the machine does
         self.whole, self.cut = (inputs.folder / f"{command.name}_{which}" for which in ("whole", "cut"))
         begin = time.monotonic()
         ended = self.call(self.whole)
@@ -236,7 +236,8 @@ class Victim:
 
     def is_sound(self, path):
         checked = self.check(path)
-        return ": sound: " in checked or "is not an rcme result file" in checked
+        # Of counts whose first writing a kill cut off, `rcme check` says what they are, and no more.
+        return any(words in checked for words in (": sound: ", "holds counts, not trials", "is not an rcme result file"))
 
     def check(self, path):
         return subprocess.run([self.rcme, "check", str(path)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -244,7 +245,7 @@ class Victim:
 
     def moment(self, chance):
         if self.is_long:
-            return self.start_seconds + chance.uniform(0.0, SHARE_OF_WORK) * max(self.duration - self.start_seconds, 0.1)
+            return self.start_seconds + chance.uniform(0.0, self.share) * max(self.duration - self.start_seconds, 0.1)
         return self.duration * (chance.uniform(0.8, 1.1) if chance.random() < 0.5 else chance.random())
 
     def send(self, chance):
@@ -259,8 +260,9 @@ class Victim:
         self.num_cut, self.num_ended = self.num_cut + was_cut, self.num_ended + (not was_cut)
         halves = [f"{self.command.name}: {sent.name} after {moment:.3f} s: {name}" for name in self.halves()]
         if was_cut and (self.command.resumes or self.command.grows) and not halves:
-            return self.go_on(f"{self.command.name}: {sent.name} after {moment:.3f} s")
+            return self.go_on(f"{self.command.name}: {sent.name} after {moment:.3f} s", sent)
         if not was_cut and self.is_long:
+            self.share *= 0.6
             halves += self.missing()
         if not was_cut or halves or not self.command.grows:
             leftover = [path for path in self.cut.rglob("*") if path.is_file() and TEMPORARY.search(path.name)]
@@ -271,18 +273,20 @@ class Victim:
                     path.write_bytes(b"half of it")
         return halves
 
-    def go_on(self, when):
+    def go_on(self, when, sent):
         """What the checkpoint has lost, or computed once more."""
         kept = self.trials_in() if self.command.grows else kept_in(self.cut)
         lost = [item for item, result in self.kept.items() if kept.get(item) != result]
         self.num_resumed += bool(self.kept)
+        if sent != signal.SIGKILL and len(kept) == len(self.kept):  # it did not come to its work
+            self.share = min(1.5 * self.share, 1.0)
         self.kept = kept
         return [f"{when}: {len(lost)} items that were kept are lost or were computed again"] if lost else []
 
     def trials_in(self):
         """The trials of a result file, by number."""
         path = self.cut / "run.sqlite"
-        found = re.search(r": sound: (\d+) trials", self.check(path)) if path.exists() else None
+        found = re.search(r": sound: (?:the counts of )?(\d+) trials", self.check(path)) if path.exists() else None
         return {number: True for number in range(int(found[1]))} if found else {}
 
     def missing(self):

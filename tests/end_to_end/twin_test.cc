@@ -81,6 +81,24 @@ TEST_F(TwinProgram, OfOneSceneWritesOneStudy) {
 }
 
 // A match file of somebody's may call its scene what it likes.
+// The time is over before the first pair; other options are other twins.
+TEST_F(TwinProgram, GoesOnAfterATimeLimit) {
+  const std::string study = folder_.Path("b.yaml"), kept = study + ".unfinished.part";
+  const std::vector<std::string> call = {"twin", pairs_.path(), "--scene", "b", "--out", study};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = call;
+    all.insert(all.end(), more.begin(), more.end());
+    return RunRcme(all);
+  };
+  const ProgramResult result = with({"--twins", "1", "--max-time", "0.001s"});
+  EXPECT_EQ(result.exit_code, 75) << result.err;
+  EXPECT_NE(result.err.find(kept + " has 0 steps, the same command goes on"), std::string::npos)
+      << result.err;
+  EXPECT_TRUE(IsRefused(with({"--twins", "2"}), {kept, "twins: 1", "--out"}));
+  ASSERT_EQ(with({"--twins", "1"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(kept));
+}
+
 TEST_F(TwinProgram, WritesNothingOutsideItsFolder) {
   TempFolder theirs;
   const std::string out = folder_.Path("twins");

@@ -48,6 +48,18 @@ TEST_F(ValidateProgram, OfAFolderSaysOfEachSceneWhatItFound) {
   EXPECT_EQ(one.out.find("a: 2 pairs"), std::string::npos) << one.out;
 }
 
+// The time is over before the first pair; other options are another validation.
+TEST_F(ValidateProgram, GoesOnAfterATimeLimit) {
+  const std::string kept = out_ + "/unfinished.part";
+  const ProgramResult result = Call(study_, {"--trials", "3", "--max-time", "0.001s"});
+  EXPECT_EQ(result.exit_code, 75) << result.err;
+  EXPECT_NE(result.err.find(kept + " has 0 steps, the same command goes on"), std::string::npos)
+      << result.err;
+  EXPECT_TRUE(IsRefused(Call(study_, {"--trials", "3", "--seed", "2"}), {kept, "seed: 1", "--out"}));
+  ASSERT_EQ(Call(study_, {"--trials", "3"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(kept));
+}
+
 TEST_F(ValidateProgram, OfAStudyTakesItsTrials) {
   const ProgramResult result = Call(study_, {"--trials", "3", "--data", "outlier_ratio=0.3"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
