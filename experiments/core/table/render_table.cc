@@ -6,13 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 
 namespace rcme {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using Cells = std::vector<std::vector<std::string>>;  // of the headings, then of each row
 
 template <typename... Visitors>
 struct Overloaded : Visitors... {
@@ -71,19 +71,76 @@ std::string FormatValue(const Value& value, const Column& column, const Signs& s
 }
 
 // The headings, then the rows.
-std::vector<std::vector<std::string>> FormatCells(const Table& table) {
-  std::vector<std::vector<std::string>> cells(1);
+Cells FormatCells(const Table& table) {
+  Cells cells(1);
   for (const Column& column : table.columns) cells[0].push_back(column.Heading());
   for (const std::vector<Value>& row : table.rows) {
     cells.emplace_back();
     for (size_t c = 0; c < row.size(); ++c)
       cells.back().push_back(FormatValue(row[c], table.columns[c], kPlainSigns));
   }
+  for (std::vector<std::string>& row : cells) {
+    for (std::string& cell : row)
+      std::ranges::replace_if(
+          cell, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  }
   return cells;
 }
 
+constexpr size_t kGap = 2;  // between columns
+
+size_t FindWidth(const Cells& cells, size_t c) {
+  return std::ranges::max_element(cells, {}, [c](const auto& row) { return row[c].size(); })->at(c).size();
+}
+
+// What a cell of each column may take: a text half of `width`, and not more than the keys leave of it.
+std::vector<size_t> FindMostWidths(const Table& table, const Cells& cells, size_t width) {
+  const size_t half = width / 2;
+  size_t keys_width = 0;
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    if (table.columns[c].is_key) keys_width += std::min(FindWidth(cells, c), half) + kGap;
+  }
+  const size_t rest = std::clamp(width - std::min(keys_width, width), half / 2, half);
+  std::vector<size_t> most;
+  for (const Column& column : table.columns)
+    most.push_back(column.type != ColumnType::kText ? std::string::npos : column.is_key ? half : rest);
+  return most;
+}
+
+// Cells that are wider than they may be go on in rows of their own, whose other cells are empty.
+Cells BreakCells(const Cells& cells, const std::vector<size_t>& most) {
+  Cells broken = {cells[0]};
+  for (size_t r = 1; r < cells.size(); ++r) {
+    const std::vector<std::string>& row = cells[r];
+    const size_t first = broken.size();
+    broken.push_back(row);
+    for (size_t c = 0; c < row.size(); ++c) {
+      if (row[c].size() <= most[c]) continue;
+      const std::vector<std::string> lines = BreakLines(row[c], most[c]);
+      broken.resize(std::max(broken.size(), first + lines.size()), std::vector<std::string>(row.size()));
+      for (size_t k = 0; k < lines.size(); ++k) broken[first + k][c] = lines[k];
+    }
+  }
+  return broken;
+}
+
+// The headings and cells of these columns, without rows that say nothing beside their keys, but for the first
+// block.
+Cells SelectBlock(const Table& table, const Cells& cells, const std::vector<size_t>& block, bool is_first) {
+  Cells part;
+  for (const std::vector<std::string>& row : cells) {
+    const bool says_something = std::ranges::any_of(block, [&](size_t c) {
+      return !table.columns[c].is_key && row[c].find_first_not_of(' ') != std::string::npos;
+    });
+    if (!says_something && !is_first && !part.empty()) continue;
+    part.emplace_back();
+    for (const size_t c : block) part.back().push_back(row[c]);
+  }
+  return part;
+}
+
 // Pads counts on the left, so that they end below each other.
-void AlignCounts(const Table& table, std::vector<std::vector<std::string>>* cells) {
+void AlignCounts(const Table& table, Cells* cells) {
   for (size_t c = 0; c < table.columns.size(); ++c) {
     if (table.columns[c].type != ColumnType::kCount) continue;
     size_t width = 0;
@@ -93,16 +150,10 @@ void AlignCounts(const Table& table, std::vector<std::vector<std::string>>* cell
 }
 
 // The columns of each block: the keys, and as many others as fit.
-std::vector<std::vector<size_t>> SplitIntoBlocks(const Table& table,
-                                                 const std::vector<std::vector<std::string>>& cells,
-                                                 size_t max_width) {
-  constexpr size_t kGap = 2;
+std::vector<std::vector<size_t>> SplitIntoBlocks(const Table& table, const Cells& cells, size_t max_width) {
   std::vector<size_t> keys;
   size_t keys_width = 0;
-  const auto width_of = [&](size_t c) {
-    return std::ranges::max_element(cells, {}, [c](const auto& row) { return row[c].size(); })->at(c).size() +
-           kGap;
-  };
+  const auto width_of = [&](size_t c) { return FindWidth(cells, c) + kGap; };
   for (size_t c = 0; c < table.columns.size(); ++c) {
     if (!table.columns[c].is_key) continue;
     keys.push_back(c);
@@ -122,15 +173,17 @@ std::vector<std::vector<size_t>> SplitIntoBlocks(const Table& table,
   return blocks;
 }
 
-std::string RenderCsvValue(const Value& value, ColumnType type) {
+std::string RenderCsvValue(const Value& value, const Column& column) {
+  const std::string& format = column.format.file;
   return std::visit(
-      Overloaded{[&](std::monostate) { return std::string(type == ColumnType::kInterval ? "," : ""); },
-                 [](const std::string& text) { return CsvField(text); },
-                 [](std::int64_t count) { return fmt::format("{}", count); },
-                 [](bool flag) { return std::string(flag ? "yes" : "no"); },
-                 [](double x) { return CsvNumber(x); },
-                 [](const Interval& i) { return CsvFinite(i.lower) + "," + CsvFinite(i.upper); },
-                 [](const Estimate& e) { return CsvNumber(e.value); }},
+      Overloaded{
+          [&](std::monostate) { return std::string(column.type == ColumnType::kInterval ? "," : ""); },
+          [](const std::string& text) { return CsvField(text); },
+          [](std::int64_t count) { return fmt::format("{}", count); },
+          [](bool flag) { return std::string(flag ? "yes" : "no"); },
+          [&](double x) { return CsvNumber(x, format); },
+          [&](const Interval& i) { return CsvFinite(i.lower, format) + "," + CsvFinite(i.upper, format); },
+          [&](const Estimate& e) { return CsvNumber(e.value, format); }},
       value);
 }
 
@@ -186,16 +239,15 @@ std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format)
 }
 
 std::string RenderText(const Table& table, size_t width) {
-  std::vector<std::vector<std::string>> cells = FormatCells(table);
+  Cells cells = FormatCells(table);
   AlignCounts(table, &cells);
+  const std::vector<size_t> most = FindMostWidths(table, cells, width);
   std::string text;
-  for (const std::vector<size_t>& block : SplitIntoBlocks(table, cells, width)) {
-    std::vector<std::vector<std::string>> part;
-    for (const std::vector<std::string>& row : cells) {
-      part.emplace_back();
-      for (const size_t c : block) part.back().push_back(row[c]);
-    }
-    text += (text.empty() ? "" : "\n") + FormatColumns(part);
+  for (const std::vector<size_t>& block : SplitIntoBlocks(table, BreakCells(cells, most), width)) {
+    std::vector<size_t> most_of_block;
+    for (const size_t c : block) most_of_block.push_back(most[c]);
+    const auto part = SelectBlock(table, cells, block, text.empty());
+    text += (text.empty() ? "" : "\n") + FormatColumns(BreakCells(part, most_of_block));
   }
   return text;
 }
@@ -213,7 +265,7 @@ std::string RenderCsv(const Table& table) {
     return column.type == ColumnType::kInterval ? column.name : CsvField(column.name);
   });
   for (const std::vector<Value>& row : table.rows)
-    text += render_line([&](size_t c) { return RenderCsvValue(row[c], table.columns[c].type); });
+    text += render_line([&](size_t c) { return RenderCsvValue(row[c], table.columns[c]); });
   return text;
 }
 
@@ -248,14 +300,6 @@ std::string RenderLatex(const Table& table) {
       alignment, fmt::join(headings, " & "), body);
 }
 
-std::string RenderMarkdown(const Table& table) {
-  std::vector<std::vector<std::string>> cells = FormatCells(table);
-  for (std::vector<std::string>& row : cells) {
-    for (std::string& cell : row)
-      std::ranges::replace_if(
-          cell, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  }
-  return FormatMarkdown(cells);
-}
+std::string RenderMarkdown(const Table& table) { return FormatMarkdown(FormatCells(table)); }
 
 }  // namespace rcme

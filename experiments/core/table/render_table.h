@@ -1,26 +1,26 @@
 // A Table as text: each format is one function of it.
 #pragma once
 
-#include <limits>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "experiments/core/table/table.h"
+#include "experiments/core/text/columns.h"
 
 namespace rcme {
 
-inline constexpr size_t kTextWidth = 80;
-
-// For a terminal: text to the left, counts to the right. Columns that do not fit follow in further blocks,
-// each after the key columns; only a column that does not fit beside these is wider than `width`.
+// For a terminal: text to the left, counts to the right; a text of more than half of `width`, or of more than
+// the keys leave of it, goes on in the next line. Columns that do not fit follow in further blocks, each after
+// the key columns and without the rows that have nothing there; only a column that does not fit beside the
+// keys is wider than `width`. Line ends within a cell become spaces.
 // "12.34 % [10.10, 14.80] (n 12): a note", "1.23 +- 0.04"; "-": not known.
 std::string RenderText(const Table& table, size_t width = kTextWidth);
 
 // A cell of RenderText.
 std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format);
 
-// RFC 4180 but for line ends, which are "\n". Texts are fields of field_text.h; numbers have eight digits,
-// what is not known is empty, as are infinite ends of an interval. An estimate is its value alone.
+// RFC 4180 but for line ends, which are "\n". Texts are fields of field_text.h; what
+// is not known is empty, as are infinite ends of an interval. An estimate is its value alone.
 std::string RenderCsv(const Table& table);
 
 // An array with an object per row. Numbers have all digits; null: not known, or infinite. An interval is a

@@ -29,12 +29,13 @@ using Value = std::variant<std::monostate, std::string, std::int64_t, double, bo
 
 enum class ColumnType { kText, kCount, kNumber, kFlag, kInterval, kEstimate };
 
-// How people read the numbers of a column; files have all digits of them.
+// How numbers of a column are written; JSON has all digits of them.
 struct NumberFormat {
   double scale = 1.0;
   std::string unit;            // "%"; in LaTeX it is in the heading
   std::string value = ".3g";   // of fmt, of a value and its interval
   std::string spread = ".2g";  // of a standard error
+  std::string file = ".8g";    // of fmt, in CSV
 };
 inline const NumberFormat kPercent{100.0, "%", ".2f", ".2g"};
 inline const NumberFormat kSignificant{};
@@ -51,12 +52,27 @@ struct Column {
   bool is_key = false;         // says what the row is of
   bool is_symbol = false;      // the heading is a symbol of mathematics
 
+  static Column Key(const std::string& name) { return {.name = name, .is_key = true}; }
+  static Column Text(const std::string& name) { return {.name = name}; }
+  static Column Count(const std::string& name) { return {name, ColumnType::kCount}; }
+  static Column Flag(const std::string& name) { return {name, ColumnType::kFlag}; }
+  static Column Number(const std::string& name, const NumberFormat& format = kSignificant) {
+    return {name, ColumnType::kNumber, format};
+  }
+  static Column Estimated(const std::string& name, const NumberFormat& format = kSignificant) {
+    return {name, ColumnType::kEstimate, format};
+  }
+
   const std::string& Heading() const { return heading.empty() ? name : heading; }
 };
 
 struct Table {
   std::vector<Column> columns;
-  std::vector<std::vector<Value>> rows;  // a value for each column
+  std::vector<std::vector<Value>> rows = {};  // a value for each column
+
+  void AddColumns(const std::vector<Column>& more) {
+    columns.insert(columns.end(), more.begin(), more.end());
+  }
 };
 
 // A column, and its value in a row made of an Item.

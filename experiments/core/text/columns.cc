@@ -3,8 +3,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 
 namespace rcme {
+namespace {
+
+std::string FormatLine(const std::vector<std::string>& cells, const std::vector<size_t>& widths) {
+  std::string line;
+  for (size_t c = 0; c < cells.size(); ++c) line += fmt::format("{:<{}}  ", cells[c], widths[c]);
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+bool IsBlank(const std::string& text) { return text.find_first_not_of(' ') == std::string::npos; }
+
+}  // namespace
+
+std::vector<std::string> BreakLines(const std::string& text, size_t width) {
+  std::vector<std::string> lines(1);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > width) lines.emplace_back();
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+  }
+  return lines;
+}
+
+std::string FormatParagraph(const std::string& text) {
+  const std::string indent(std::min(text.find_first_not_of(' '), text.size()), ' ');
+  std::string paragraph;
+  for (const std::string& line : BreakLines(text, kTextWidth - indent.size()))
+    paragraph += indent + line + "\n";
+  return paragraph;
+}
 
 std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
   std::vector<size_t> widths;
@@ -14,13 +45,12 @@ std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
   }
   std::string text;
   for (size_t r = 0; r < rows.size(); ++r) {
-    std::string line;
-    for (size_t c = 0; c < rows[r].size(); ++c) line += fmt::format("{:<{}}  ", rows[r][c], widths[c]);
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
+    text += FormatLine(rows[r], widths);
     if (r > 0) continue;
-    for (const size_t width : widths) text += std::string(width, '-') + "  ";
-    text += "\n";
+    std::vector<std::string> rules;
+    for (size_t c = 0; c < rows[0].size(); ++c)
+      rules.emplace_back(IsBlank(rows[0][c]) ? 0 : widths[c], '-');
+    text += FormatLine(rules, widths);
   }
   return text;
 }

@@ -59,9 +59,13 @@ std::vector<std::string> CsvFields(std::string_view line) {
   return fields;
 }
 
-std::string CsvNumber(double x) { return std::isnan(x) ? std::string() : fmt::format("{:.8g}", x); }
+std::string CsvNumber(double x, const std::string& format) {
+  return std::isnan(x) ? std::string() : fmt::format(fmt::runtime("{:" + format + "}"), x);
+}
 
-std::string CsvFinite(double x) { return std::isfinite(x) ? CsvNumber(x) : ""; }
+std::string CsvFinite(double x, const std::string& format) {
+  return std::isfinite(x) ? CsvNumber(x, format) : "";
+}
 
 std::string LatexText(const std::string& text) {
   std::string escaped;

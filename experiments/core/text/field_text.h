@@ -14,10 +14,10 @@ namespace rcme {
 std::string CsvField(const std::string& text);
 // The fields of a line as CsvField wrote them, each as it was.
 std::vector<std::string> CsvFields(std::string_view line);
-// Eight digits; empty for NaN.
-std::string CsvNumber(double x);
+// Eight digits, or as a format of fmt says; empty for NaN.
+std::string CsvNumber(double x, const std::string& format = ".8g");
 // The same, empty for infinite ones too.
-std::string CsvFinite(double x);
+std::string CsvFinite(double x, const std::string& format = ".8g");
 // As LaTeX prints it: no character of it is a command, or an argument of the command before it.
 std::string LatexText(const std::string& text);
 // All digits; null for what is not finite.

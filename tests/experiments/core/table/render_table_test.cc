@@ -38,7 +38,7 @@ TEST(RenderText, AlignsAndMarksWhatIsNotKnown) {
       "outlier_ratio  estimator     n  failure                               error (deg)  lower,upper  "
       "trusted\n"
       "-------------  ---------  ----  ------------------------------------  -----------  -----------  "
-      "-------  \n"
+      "-------\n"
       "0.3            ours       1200  12.34 % [10.10, 14.80] (n 7): covers  -1.5         [-0.5, 2]    yes\n"
       "0.3            standard      9  -                                     inf                       no\n"
       "0.5            ours          0                                        -\n");
@@ -59,6 +59,33 @@ TEST(RenderText, KeepsALabelThatIsTooLong) {
   const Table table{{{.name = "estimator", .is_key = true}, {.name = "n", .type = ColumnType::kCount}},
                     {{label, std::int64_t{1}}}};
   EXPECT_NE(RenderText(table).find(label + "  1\n"), std::string::npos) << RenderText(table);
+}
+
+TEST(RenderText, BreaksLongTextsAndLineEndsWithinACell) {
+  const Table table{{Column::Key("test"), Column::Text("verdict"), Column::Count("n")},
+                    {{"halves", "too small, and in simulation it is not", std::int64_t{7}},
+                     {"two\nlines", "holds", std::int64_t{12}}}};
+  EXPECT_EQ(RenderText(table, 40),
+            "test       verdict                n\n"
+            "---------  --------------------  --\n"
+            "halves     too small, and in      7\n"
+            "           simulation it is not\n"
+            "two lines  holds                 12\n");
+}
+
+TEST(RenderText, LeavesOutOfFurtherBlocksTheRowsThatSayNothingThere) {
+  const Table table{{Column::Key("key"), Column::Number("first column"), Column::Text("second column")},
+                    {{"x", 1.0, "yes"}, {"y", 2.0, {}}}};
+  EXPECT_EQ(RenderText(table, 20),
+            "key  first column\n---  ------------\nx    1\ny    2\n\n"
+            "key  second column\n---  -------------\nx    yes\n");
+}
+
+TEST(RenderText, BreaksATextWhereTheKeysLeaveLess) {
+  const Table table{{Column::Key("key"), Column::Text("text")},
+                    {{"twenty-one characters", "four words of 19 ch"}}};
+  EXPECT_EQ(RenderText(table, 40),
+            "key         text\n----------  ----------------\ntwenty-one  four words of 19\ncharacters  ch\n");
 }
 
 TEST(FormatEstimate, SaysHowFarToTrustANumber) {
@@ -86,6 +113,18 @@ TEST(RenderCsv, QuotesTextsAndFormulasAndLeavesOutColumnsWithoutAName) {
             "\"a\"\"b\",c\n"
             "\"x, \"\"y\"\"\",\"'=1+1\"\n"
             "\"two\nlines\",-3\n");
+}
+
+TEST(RenderCsv, WritesDigitsAsTheColumnSays) {
+  NumberFormat four, shortest;
+  four.file = ".4f";
+  shortest.file = "";
+  EXPECT_EQ(RenderCsv({{Column::Number("a", four),
+                        {"b,c", ColumnType::kInterval, four},
+                        Column::Estimated("d", four),
+                        Column::Number("e", shortest)},
+                       {{1.0 / 3.0, Interval{0.0, kInf}, Estimate{.value = 2.0}, 0.1}, {kNaN, {}, {}, 1.0}}}),
+            "a,b,c,d,e\n0.3333,0.0000,,2.0000,0.1\n,,,,1\n");
 }
 
 TEST(RenderJson, IsAnObjectPerRowWithoutWhatTheRowHasNot) {
@@ -122,7 +161,7 @@ TEST(RenderMarkdown, EscapesPipesAndKeepsARowOnOneLine) {
 
 TEST(RenderTable, AnEmptyTableIsItsHeadings) {
   const Table table{{{"a"}, {"b", ColumnType::kCount}}, {}};
-  EXPECT_EQ(RenderText(table), "a  b\n-  -  \n");
+  EXPECT_EQ(RenderText(table), "a  b\n-  -\n");
   EXPECT_EQ(RenderCsv(table), "a,b\n");
   EXPECT_EQ(RenderJson(table).dump(), "[]");
   EXPECT_EQ(RenderMarkdown(table), "| a | b |\n|---|---|\n");
