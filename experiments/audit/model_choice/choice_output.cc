@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "stats/intervals.h"
@@ -31,23 +29,19 @@ Cell CellOf(const ConfusionMatrix& matrix, size_t kind, size_t answer) {
   return {count, n, static_cast<double>(count) / static_cast<double>(n), ExactBinomialInterval(count, n)};
 }
 
-std::string CellInWords(const Cell& cell) {
-  if (cell.count == 0) return fmt::format("0 % [0, {:.2g}]", 100.0 * cell.interval.upper);
-  return FormatEstimate({cell.value, cell.interval}, {100.0, "%", ".1f"});
-}
-
-std::string MatrixAsTable(const std::string& criterion, const ConfusionMatrix& matrix) {
-  std::vector<std::vector<std::string>> rows = {{criterion, "n"}};
-  for (size_t answer = 0; answer < kNumAnswers; ++answer) rows[0].push_back(AnswerName(answer));
+Table MakeMatrixTable(const std::string& criterion, const ConfusionMatrix& matrix) {
+  Table table{{Column::Key(criterion), Column::Count("n")}};
+  for (size_t answer = 0; answer < kNumAnswers; ++answer)
+    table.columns.push_back(Column::Estimated(AnswerName(answer), {100.0, "%", ".1f"}));
   for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
-    const std::int64_t n = CellOf(matrix, kind, 0).n;
-    if (n == 0) continue;
-    rows.push_back({Name(kTrueKinds[kind]), fmt::format("{}", n)});
+    if (CellOf(matrix, kind, 0).n == 0) continue;
+    table.rows.push_back({Name(kTrueKinds[kind]), CellOf(matrix, kind, 0).n});
     for (size_t answer = 0; answer < kNumAnswers; ++answer) {
-      rows.back().push_back(CellInWords(CellOf(matrix, kind, answer)));
+      const Cell cell = CellOf(matrix, kind, answer);
+      table.rows.back().emplace_back(Estimate{cell.value, cell.interval});
     }
   }
-  return FormatColumns(rows);
+  return table;
 }
 
 std::string LevelsInWords(const ChoiceCounts& counts, const ChoiceGroup& group) {
@@ -60,39 +54,56 @@ std::string LevelsInWords(const ChoiceCounts& counts, const ChoiceGroup& group) 
 }  // namespace
 
 std::string ChoicesAsTable(const StudyPlan& plan, const ChoiceCounts& counts) {
-  std::string text = fmt::format(
-      "{}: verdicts of model choice where the truth is known, {} trials in each of {} conditions\n"
-      "Rows: the truth; columns: the verdict, its share of the row with the exact 95 % interval\n",
-      plan.study.name, plan.study.trials, plan.conditions.size());
+  std::string text =
+      FormatParagraph(plan.study.name + ": verdicts of model choice where the truth is known") +
+      FormatParagraph(
+          fmt::format("{} trials in each of {} conditions. Rows: the truth; columns: the verdict, "
+                      "its share of the row with the exact 95 % interval.",
+                      plan.study.trials, plan.conditions.size()));
   for (const ChoiceGroup& group : counts.groups) {
     text += fmt::format("\n{}\n", LevelsInWords(counts, group));
-    for (size_t c = 0; c < group.matrices.size(); ++c) {
-      text += fmt::format("\n{}", MatrixAsTable(CriterionNames()[c].first, group.matrices[c]));
-    }
+    for (size_t c = 0; c < group.matrices.size(); ++c)
+      text += "\n" + RenderText(MakeMatrixTable(CriterionNames()[c].first, group.matrices[c]));
   }
   return text;
 }
 
 std::string ChoicesAsCsv(const StudyPlan& plan, const ChoiceCounts& counts) {
-  std::string text = "study,condition";
-  for (const std::string& factor : counts.by) text += fmt::format(",{}", CsvField(factor));
-  text += ",truth,verdict,estimator,quantity,kind,value,lower,upper,standard_error,n,count\n";
+  Table table{{Column::Text("study"), Column::Count("condition")}};
+  for (const std::string& factor : counts.by) table.columns.push_back({factor});
+  table.AddColumns({Column::Text("truth"),
+                    Column::Text("verdict"),
+                    Column::Text("estimator"),
+                    Column::Text("quantity"),
+                    Column::Text("kind"),
+                    Column::Number("value"),
+                    {"lower,upper", ColumnType::kInterval},
+                    Column::Number("standard_error"),
+                    Column::Count("n"),
+                    Column::Count("count")});
   for (size_t g = 0; g < counts.groups.size(); ++g) {
-    std::string beginning = fmt::format("{},{}", CsvField(plan.study.name), g);
-    for (const std::string& level : counts.groups[g].levels) beginning += fmt::format(",{}", CsvField(level));
+    std::vector<Value> beginning = {plan.study.name, static_cast<std::int64_t>(g)};
+    beginning.insert(beginning.end(), counts.groups[g].levels.begin(), counts.groups[g].levels.end());
     for (size_t c = 0; c < CriterionNames().size(); ++c) {
       for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
         for (size_t answer = 0; answer < kNumAnswers; ++answer) {
           const Cell cell = CellOf(counts.groups[g].matrices[c], kind, answer);
-          text +=
-              fmt::format("{},{},{},{},share,rate,{},{},{},,{},{}\n", beginning, Name(kTrueKinds[kind]),
-                          AnswerName(answer), CriterionNames()[c].first, CsvNumber(cell.value),
-                          CsvNumber(cell.interval.lower), CsvNumber(cell.interval.upper), cell.n, cell.count);
+          std::vector<Value>& row = table.rows.emplace_back(beginning);
+          row.insert(row.end(), {Name(kTrueKinds[kind]),
+                                 AnswerName(answer),
+                                 CriterionNames()[c].first,
+                                 "share",
+                                 "rate",
+                                 cell.value,
+                                 cell.interval,
+                                 {},
+                                 cell.n,
+                                 cell.count});
         }
       }
     }
   }
-  return text;
+  return RenderCsv(table);
 }
 
 std::string ChoicesAsJson(const StudyPlan& plan, const ChoiceCounts& counts) {
