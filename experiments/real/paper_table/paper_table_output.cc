@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/columns.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/real/paper_table/printed_table.h"
 
@@ -17,143 +17,153 @@ struct CellQuantity {
   const char* name;     // in files
   const char* heading;  // for people
   SharedMemberRate TableCell::*rate;
+  bool is_of_subset = false;  // of the pairs, which the table then counts
 };
 constexpr CellQuantity kQuantities[] = {
     {"detect_fail", "Detect-fail %", &TableCell::detect_fail},
     {"other_refusal", "other refusal %", &TableCell::other_refusal},
     {"kappa_failure", "Failure % (kappa)", &TableCell::kappa_failure},
     {"true_failure", "Failure % (truth)", &TableCell::true_failure},
-    {"flag_of_failed", "flagged of the failed", &TableCell::flag_of_failed},
-    {"flag_of_right", "flagged of the right", &TableCell::flag_of_right},
+    {"flag_of_failed", "flagged of the failed %", &TableCell::flag_of_failed, true},
+    {"flag_of_right", "flagged of the right %", &TableCell::flag_of_right, true},
 };
+const NumberFormat kPercentOfHeading{100.0, "", ".2f"};
 
-std::string PercentText(double rate, const Interval& interval) {
-  return FormatEstimate({rate, interval}, {100.0, "", ".2f"});
-}
-
-std::string CellText(const SharedMemberRate& rate, bool is_of_subset) {
-  if (rate.n == 0) return "-";
-  const std::string percent = PercentText(rate.rate, rate.interval);
-  return is_of_subset ? fmt::format("{} of {}: {}", rate.num_events, rate.n, percent) : percent;
-}
-
-std::string EstimatorAsText(const PaperTable& table, size_t estimator) {
-  std::vector<std::vector<std::string>> rows = {{table.estimators[estimator], "pairs", "apart"}};
-  for (const CellQuantity& quantity : kQuantities) rows[0].push_back(quantity.heading);
-  for (const TableRow& row : table.rows) {
+Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
+  Table table{
+      {Column::Key(paper_table.estimators[estimator]), Column::Count("pairs"), Column::Count("apart")}};
+  for (const CellQuantity& quantity : kQuantities)
+    table.columns.push_back(Column::Estimated(quantity.heading, kPercentOfHeading));
+  for (const TableRow& row : paper_table.rows) {
     const TableCell& cell = row.cells[estimator];
-    rows.push_back({row.is_group ? "= " + row.name : row.name, fmt::format("{}", cell.detect_fail.n),
-                    fmt::format("{}", cell.detect_fail.num_apart)});
+    table.rows.push_back(
+        {(row.is_group ? "= " : "") + row.name, cell.detect_fail.n, cell.detect_fail.num_apart});
     for (const CellQuantity& quantity : kQuantities) {
-      const bool is_of_subset =
-          quantity.rate == &TableCell::flag_of_failed || quantity.rate == &TableCell::flag_of_right;
-      rows.back().push_back(CellText(cell.*quantity.rate, is_of_subset));
+      const SharedMemberRate& rate = cell.*quantity.rate;
+      const std::string counts = fmt::format("{} of {}", rate.num_events, rate.n);
+      table.rows.back().emplace_back(Estimate{
+          .value = rate.rate, .interval = rate.interval, .note = quantity.is_of_subset ? counts : ""});
     }
   }
-  return FormatColumns(rows) + "\n";
+  return table;
 }
 
-std::string PrintedAsText() {
-  std::vector<std::vector<std::string>> rows = {{"printed in the paper", "pairs"}};
-  const std::vector<PrintedRate> rates = PrintedRates();
+double ShareOf(const PrintedRate& rate) {
+  return static_cast<double>(rate.count) / static_cast<double>(rate.n);
+}
+
+// The printed rates come by row: the first row has all columns.
+Table MakePrintedTable(const std::vector<PrintedRate>& rates) {
+  Table table{{Column::Key("printed in the paper"), Column::Count("pairs")}};
   for (const PrintedRate& rate : rates) {
-    const bool is_first_row = rate.row == rates.front().row;
-    if (is_first_row)
-      rows[0].push_back(rate.method + (rate.quantity == "failure" ? " Failure % (kappa)" : " Detect-fail %"));
-    if (rows.back()[0] != rate.row) rows.push_back({rate.row, fmt::format("{}", rate.n)});
-    rows.back().push_back(
-        PercentText(static_cast<double>(rate.count) / static_cast<double>(rate.n), rate.interval));
+    if (rate.row == rates.front().row) {
+      table.columns.push_back(
+          {rate.method + (rate.quantity == "failure" ? " Failure % (kappa)" : " Detect-fail %"),
+           ColumnType::kEstimate, kPercentOfHeading});
+    }
+    if (table.rows.empty() || std::get<std::string>(table.rows.back()[0]) != rate.row)
+      table.rows.push_back({rate.row, std::int64_t{rate.n}});
+    table.rows.back().emplace_back(Estimate{ShareOf(rate), rate.interval});
   }
-  std::string text = FormatColumns(rows) + "\n";
+  return table;
+}
+
+std::string ComparisonsInWords() {
+  std::string text;
   for (const PrintedComparison& c : PrintedComparisons()) {
-    text += fmt::format(
+    text += FormatParagraph(fmt::format(
         "{}: {} fails on {} of {} pairs, {} on {}; McNemar's p between {:.2g} and {:.2g}, as many of these "
-        "pairs as\npossible being the same or none{}\n",
+        "pairs as possible being the same or none{}",
         c.row, c.first, c.first_failures, c.n, c.second, c.second_failures, c.least_p, c.greatest_p,
-        c.least_p > 0.05 ? ": not significant" : "");
+        c.least_p > 0.05 ? ": not significant" : ""));
   }
   return text;
 }
 
-std::string QuantityOf(const PrintedRate& rate) {
-  return rate.quantity == "failure" ? "kappa_failure" : rate.quantity;
+// Of the files. In JSON printed rates are a list of their own.
+std::vector<Column> RateColumns(bool is_printed) {
+  return {{.name = "source", .json_name = kNotInJson},
+          Column::Text("scene"),
+          {.name = "", .type = ColumnType::kFlag, .json_name = "is_group"},
+          {.name = "estimator", .json_name = is_printed ? "method" : ""},
+          Column::Text("quantity"),
+          {.name = "kind", .json_name = kNotInJson},
+          Column::Number("value"),
+          {"lower,upper", ColumnType::kInterval},
+          Column::Count("n"),
+          Column::Count("count"),
+          {.name = "apart", .type = ColumnType::kCount, .json_name = is_printed ? kNotInJson : ""},
+          Column::Number("design_effect")};
+}
+
+Table MakeRunTable(const PaperTable& paper_table) {
+  Table table{RateColumns(/*is_printed=*/false)};
+  for (const TableRow& row : paper_table.rows) {
+    for (size_t e = 0; e < paper_table.estimators.size(); ++e) {
+      for (const CellQuantity& quantity : kQuantities) {
+        const SharedMemberRate& rate = row.cells[e].*quantity.rate;
+        if (rate.n == 0) continue;
+        table.rows.push_back({"run", row.name, row.is_group, paper_table.estimators[e], quantity.name, "rate",
+                              rate.rate, rate.interval, rate.n, rate.num_events, rate.num_apart,
+                              rate.design_effect});
+      }
+    }
+  }
+  return table;
+}
+
+Table MakePaperRateTable() {
+  Table table{RateColumns(/*is_printed=*/true)};
+  for (const PrintedRate& rate : PrintedRates()) {
+    const std::int64_t n = rate.n, count = rate.count;
+    table.rows.push_back({"paper",
+                          rate.row,
+                          {},
+                          rate.method,
+                          rate.quantity == "failure" ? "kappa_failure" : rate.quantity,
+                          "rate",
+                          ShareOf(rate),
+                          rate.interval,
+                          n,
+                          count,
+                          n,
+                          {}});
+  }
+  return table;
 }
 
 }  // namespace
 
 std::string PaperTableAsText(const PaperTable& table) {
-  std::string text = fmt::format(
-      "{}: refusals and failures, % of the pairs, 95 % intervals that respect what pairs have in common\n\n",
-      table.study);
-  for (size_t e = 0; e < table.estimators.size(); ++e) text += EstimatorAsText(table, e);
-  text += fmt::format(
-      "Failure (kappa): the paper's flag, half or fewer of the consistent matches being left after the "
-      "refinement; a dash\nwhere an estimator has none. Failure (truth): rotation error above {:g} or "
-      "direction error above {:g} degrees, of pairs\nwhose motion is known. Refusals are no failures. apart: "
-      "pairs of which no two have anything in common. A group's\ninterval is of these scenes, not of all "
-      "scenes of the kind.\n\n",
-      table.bounds.max_rotation_error_deg, table.bounds.max_direction_error_deg);
-  return text + PrintedAsText();
+  std::string text =
+      FormatParagraph(fmt::format("{}: refusals and failures, % of the pairs, 95 % intervals "
+                                  "that respect what pairs have in common",
+                                  table.study));
+  for (size_t e = 0; e < table.estimators.size(); ++e)
+    text += "\n" + RenderText(MakeEstimatorTable(table, e));
+  text += "\n" +
+          FormatParagraph(fmt::format(
+              "Failure (kappa): the paper's flag, half or fewer of the consistent matches being left after "
+              "the refinement; a dash where an estimator has none. Failure (truth): rotation error above "
+              "{:g} or direction error above {:g} degrees, of pairs whose motion is known. Refusals are no "
+              "failures. apart: pairs of which no two have anything in common. A group's interval is of "
+              "these scenes, not of all scenes of the kind.",
+              table.bounds.max_rotation_error_deg, table.bounds.max_direction_error_deg));
+  return text + "\n" + RenderText(MakePrintedTable(PrintedRates())) + "\n" + ComparisonsInWords();
 }
 
 std::string PaperTableAsCsv(const PaperTable& table) {
-  std::string text = "source,scene,estimator,quantity,kind,value,lower,upper,n,count,apart,design_effect\n";
-  for (const TableRow& row : table.rows) {
-    for (size_t e = 0; e < table.estimators.size(); ++e) {
-      for (const CellQuantity& quantity : kQuantities) {
-        const SharedMemberRate& rate = row.cells[e].*quantity.rate;
-        if (rate.n == 0) continue;
-        text += fmt::format("run,{},{},{},rate,{},{},{},{},{},{},{}\n", CsvField(row.name),
-                            CsvField(table.estimators[e]), quantity.name, CsvNumber(rate.rate),
-                            CsvNumber(rate.interval.lower), CsvNumber(rate.interval.upper), rate.n,
-                            rate.num_events, rate.num_apart, CsvNumber(rate.design_effect));
-      }
-    }
-  }
-  for (const PrintedRate& rate : PrintedRates()) {
-    text += fmt::format("paper,{},{},{},rate,{},{},{},{},{},{},\n", rate.row, rate.method, QuantityOf(rate),
-                        CsvNumber(static_cast<double>(rate.count) / static_cast<double>(rate.n)),
-                        CsvNumber(rate.interval.lower), CsvNumber(rate.interval.upper), rate.n, rate.count,
-                        rate.n);
-  }
-  return text;
+  Table all = MakeRunTable(table);
+  std::ranges::copy(MakePaperRateTable().rows, std::back_inserter(all.rows));
+  return RenderCsv(all);
 }
 
 std::string PaperTableAsJson(const PaperTable& table) {
-  nlohmann::ordered_json json = {{"study", table.study},
-                                 {"max_rotation_error_deg", table.bounds.max_rotation_error_deg},
-                                 {"max_direction_error_deg", table.bounds.max_direction_error_deg},
-                                 {"rates", nlohmann::ordered_json::array()},
-                                 {"printed", nlohmann::ordered_json::array()}};
-  for (const TableRow& row : table.rows) {
-    for (size_t e = 0; e < table.estimators.size(); ++e) {
-      for (const CellQuantity& quantity : kQuantities) {
-        const SharedMemberRate& rate = row.cells[e].*quantity.rate;
-        if (rate.n == 0) continue;
-        json["rates"].push_back(
-            {{"scene", row.name},
-             {"is_group", row.is_group},
-             {"estimator", table.estimators[e]},
-             {"quantity", quantity.name},
-             {"value", JsonNumber(rate.rate)},
-             {"interval", {JsonNumber(rate.interval.lower), JsonNumber(rate.interval.upper)}},
-             {"n", rate.n},
-             {"count", rate.num_events},
-             {"apart", rate.num_apart},
-             {"design_effect", JsonNumber(rate.design_effect)}});
-      }
-    }
-  }
-  for (const PrintedRate& rate : PrintedRates()) {
-    json["printed"].push_back({{"scene", rate.row},
-                               {"method", rate.method},
-                               {"quantity", QuantityOf(rate)},
-                               {"value", static_cast<double>(rate.count) / static_cast<double>(rate.n)},
-                               {"interval", {rate.interval.lower, rate.interval.upper}},
-                               {"n", rate.n},
-                               {"count", rate.count}});
-  }
-  return JsonText(kPaperTableFormat, json);
+  return JsonText(kPaperTableFormat, {{"study", table.study},
+                                      {"max_rotation_error_deg", table.bounds.max_rotation_error_deg},
+                                      {"max_direction_error_deg", table.bounds.max_direction_error_deg},
+                                      {"rates", RenderJson(MakeRunTable(table))},
+                                      {"printed", RenderJson(MakePaperRateTable())}});
 }
 
 }  // namespace rcme
