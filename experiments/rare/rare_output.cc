@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/text/columns.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "stats/moments.h"
@@ -15,6 +17,9 @@ namespace rcme {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kBruteForceLegend =
+    "of brute force: calls, of those after which plain trials would have the same standard error.";
 
 std::string DoubtInWords(SplittingDoubt doubt, const RareCell& cell) {
   const SplittingRate& rate = cell.rate;
@@ -52,31 +57,32 @@ std::vector<std::string> HeadOf(const StudyPlan& plan, size_t condition, size_t 
   return head;
 }
 
-std::vector<std::string> FirstRow(const StudyPlan& plan, const std::vector<std::string>& more) {
-  std::vector<std::string> row = plan.factor_names;
-  row.push_back("estimator");
-  row.insert(row.end(), more.begin(), more.end());
-  return row;
+std::vector<Column> HeadColumns(const StudyPlan& plan) {
+  std::vector<Column> columns;
+  for (const std::string& factor : plan.factor_names) columns.push_back(Column::Key(factor));
+  columns.push_back(Column::Key("estimator"));
+  return columns;
 }
 
-std::string RateInWords(const RareRow& row) {
-  if (std::isnan(row.estimate)) return "-";
-  return fmt::format("{:.2e} [{:.1e}, {:.1e}]", row.estimate, row.interval.lower, row.interval.upper);
-}
-
-std::string ShareInWords(double share) {
-  return std::isfinite(share) ? fmt::format("{:.2g} %", 100.0 * share) : "-";
+// NaN: not finite.
+double KnownShare(const RareRow& row) {
+  const double share = row.BruteForceShare();
+  return std::isfinite(share) ? share : std::nan("");
 }
 
 // The columns that all rates have.
-std::vector<std::string> CellsInWords(const StudyPlan& plan, const RareRow& row) {
-  std::vector<std::string> cells = HeadOf(plan, row.condition, row.estimator);
-  cells.push_back(RateInWords(row));
-  cells.push_back(fmt::format("{}", row.num_calls));
-  cells.push_back(ShareInWords(row.BruteForceShare()));
-  cells.push_back(fmt::format("{:.1e}", row.unseen_up_to));
-  cells.push_back(row.doubts.empty() ? "yes" : "NO");
-  return cells;
+Table MakeRateTable(const StudyPlan& plan, const std::vector<RareRow>& rows) {
+  Table table{HeadColumns(plan)};
+  table.AddColumns({Column::Estimated("failure", {1.0, "", ".2e"}), Column::Count("calls"),
+                    Column::Number("of brute force", {100.0, "%", ".2g"}),
+                    Column::Number("unseen up to", {1.0, "", ".1e"}), Column::Flag("trusted")});
+  for (const RareRow& row : rows) {
+    const std::vector<std::string> head = HeadOf(plan, row.condition, row.estimator);
+    std::vector<Value>& values = table.rows.emplace_back(head.begin(), head.end());
+    values.insert(values.end(), {Estimate{row.estimate, row.interval}, row.num_calls, KnownShare(row),
+                                 row.unseen_up_to, row.doubts.empty()});
+  }
+  return table;
 }
 
 Json LevelsOf(const RareCell& cell) {
@@ -152,68 +158,75 @@ RareRow RowOf(const StratifiedCell& cell) {
 }
 
 std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cells) {
-  std::vector<std::vector<std::string>> rows = {
-      FirstRow(plan, {"failure", "calls", "of brute force", "unseen up to", "trusted", "spread"})};
+  std::vector<RareRow> rows;
+  for (const RareCell& cell : cells) rows.push_back(RowOf(cell));
+  Table table = MakeRateTable(plan, rows);
+  table.columns.push_back(Column::Number("spread", {1.0, "", ".2f"}));
   std::string doubts;
-  for (const RareCell& cell : cells) {
-    rows.push_back(CellsInWords(plan, RowOf(cell)));
-    rows.back().push_back(fmt::format("{:.2f}", cell.rate.relative_spread));
-    if (cell.rate.IsTrusted()) continue;
-    doubts += fmt::format("{}: not trusted: {}\n",
-                          fmt::join(HeadOf(plan, cell.condition, cell.estimator), ", "), DoubtsInWords(cell));
+  for (size_t i = 0; i < cells.size(); ++i) {
+    table.rows[i].emplace_back(cells[i].rate.relative_spread);
+    if (cells[i].rate.IsTrusted()) continue;
+    doubts += FormatParagraph(fmt::format("{}: not trusted: {}",
+                                          fmt::join(HeadOf(plan, rows[i].condition, rows[i].estimator), ", "),
+                                          DoubtsInWords(cells[i])));
   }
-  return fmt::format(
-      "{}: failures by multilevel splitting\n\n{}\n{}{}"
-      "Mean of independent unbiased replicates with Cox's 95 % interval; spread: standard deviation of one "
-      "over "
-      "the mean.\n"
-      "of brute force: calls, of those after which plain trials would have the same standard error.\n"
-      "unseen up to: failures of a kind that comes at once, with no level before it, may have any rate up to "
-      "this\n"
-      "and be missed; the rate is that of failures to which levels lead.\n",
-      plan.study.name, FormatColumns(rows), doubts, doubts.empty() ? "" : "\n");
+  return fmt::format("{}: failures by multilevel splitting\n\n{}\n{}{}", plan.study.name, RenderText(table),
+                     doubts, doubts.empty() ? "" : "\n") +
+         FormatParagraph(
+             "Mean of independent unbiased replicates with Cox's 95 % interval; spread: standard deviation "
+             "of "
+             "one over the mean.") +
+         FormatParagraph(kBruteForceLegend) +
+         FormatParagraph(
+             "unseen up to: failures of a kind that comes at once, with no level before it, may have any "
+             "rate "
+             "up to this and be missed; the rate is that of failures to which levels lead.");
 }
 
 std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells) {
-  std::vector<std::string> head =
-      FirstRow(plan, {"failure", "calls", "of brute force", "unseen up to", "trusted"});
-  for (int k = 0; k < kNumStrata; ++k) head.push_back(fmt::format("1 in {}", 1 << k));
-  std::vector<std::vector<std::string>> rows = {head};
-  for (const StratifiedCell& cell : cells) {
-    rows.push_back(CellsInWords(plan, RowOf(cell)));
-    for (const StratumCount& count : cell.strata)
-      rows.back().push_back(fmt::format("{}/{}/{}", count.num_failed, count.num_run, count.num_trials));
+  std::vector<RareRow> rows;
+  for (const StratifiedCell& cell : cells) rows.push_back(RowOf(cell));
+  Table table = MakeRateTable(plan, rows);
+  for (size_t k = 0; k < kNumStrata; ++k) {
+    table.columns.push_back({fmt::format("1 in {}", 1 << k)});
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const StratumCount& count = cells[i].strata[k];
+      table.rows[i].emplace_back(fmt::format("{}/{}/{}", count.num_failed, count.num_run, count.num_trials));
+    }
   }
-  return fmt::format(
-      "{}: failures of trials stratified by the Cramer-Rao bound\n\n{}\n"
-      "Each trial that is run counts as many as its stratum stands for; 95 % interval of Fay and Feuer for "
-      "weighted "
-      "counts.\n"
-      "of brute force: calls, of those after which plain trials would have the same standard error.\n"
-      "unseen up to: the upper end if the next failure came from the easiest stratum that was run.\n"
-      "trusted: the failures weigh as much as {:g} of equal weight or more. 1 in k: of the trials of a "
-      "stratum one in\n"
-      "k is run: failed/run/drawn.\n",
-      plan.study.name, FormatColumns(rows), kLeastFailures);
+  return fmt::format("{}: failures of trials stratified by the Cramer-Rao bound\n\n{}\n", plan.study.name,
+                     RenderText(table)) +
+         FormatParagraph(
+             "Each trial that is run counts as many as its stratum stands for; 95 % interval of Fay and "
+             "Feuer "
+             "for weighted counts.") +
+         FormatParagraph(kBruteForceLegend) +
+         FormatParagraph(
+             "unseen up to: the upper end if the next failure came from the easiest stratum that was run.") +
+         FormatParagraph(fmt::format("trusted: the failures weigh as much as {:g} of equal weight or more.",
+                                     kLeastFailures)) +
+         FormatParagraph("1 in k: of the trials of a stratum one in k is run: failed/run/drawn.");
 }
 
 std::string RareAsCsv(const StudyPlan& plan, const std::vector<RareRow>& rows) {
-  std::string text = "study,condition";
-  for (const std::string& factor : plan.factor_names) text += fmt::format(",{}", CsvField(factor));
-  text +=
-      ",estimator,quantity,kind,value,lower,upper,standard_error,n,trusted,doubts,unseen_up_to,"
-      "relative_spread,brute_force_share\n";
+  Table table{{Column::Text("study"), Column::Count("condition")}};
+  table.AddColumns(HeadColumns(plan));
+  table.AddColumns({Column::Text("quantity"), Column::Text("kind"), Column::Number("value"),
+                    Column::Number("lower"), Column::Number("upper"), Column::Number("standard_error"),
+                    Column::Count("n"), Column::Count("trusted"), Column::Text("doubts"),
+                    Column::Number("unseen_up_to"), Column::Number("relative_spread"),
+                    Column::Number("brute_force_share")});
   for (const RareRow& row : rows) {
-    text += fmt::format("{},{}", CsvField(plan.study.name), row.condition);
-    for (const std::string& name : HeadOf(plan, row.condition, row.estimator))
-      text += fmt::format(",{}", CsvField(name));
-    text += fmt::format(",failure,rate,{},{},{},{},{},{},{},{},{},{}\n", CsvNumber(row.estimate),
-                        CsvNumber(row.interval.lower), CsvNumber(row.interval.upper),
-                        CsvNumber(row.standard_error), row.num_calls, row.doubts.empty() ? 1 : 0,
-                        fmt::join(row.doubts, " "), CsvNumber(row.unseen_up_to),
-                        CsvNumber(row.relative_spread), CsvFinite(row.BruteForceShare()));
+    std::vector<Value>& values = table.rows.emplace_back(
+        std::vector<Value>{plan.study.name, static_cast<std::int64_t>(row.condition)});
+    std::ranges::copy(HeadOf(plan, row.condition, row.estimator), std::back_inserter(values));
+    const std::int64_t is_trusted = row.doubts.empty() ? 1 : 0;
+    values.insert(values.end(), {"failure", "rate", row.estimate, row.interval.lower, row.interval.upper,
+                                 row.standard_error, row.num_calls, is_trusted,
+                                 fmt::format("{}", fmt::join(row.doubts, " ")), row.unseen_up_to,
+                                 row.relative_spread, KnownShare(row)});
   }
-  return text;
+  return RenderCsv(table);
 }
 
 std::string RareAsJson(const StudyPlan& plan, const RareEffort& effort, const std::vector<RareCell>& cells) {
