@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 
@@ -18,31 +17,38 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kMaxCurvePoints = 400;  // of a risk-coverage curve in a file
 
-std::string WithInterval(double value, const Interval& interval, int digits) {
-  return FormatEstimate({value, interval}, {1.0, "", fmt::format(".{}f", digits)});
-}
-std::string WithInterval(const ClusteredEstimate& estimate, int digits) {
-  return WithInterval(estimate.value, estimate.interval, digits);
+Estimate WithInterval(const ClusteredEstimate& estimate) { return {estimate.value, estimate.interval}; }
+
+Estimate Rate(std::int64_t count, std::int64_t n, const Interval& interval) {
+  return {static_cast<double>(count) / static_cast<double>(n), interval};
 }
 
-std::string Rate(std::int64_t count, std::int64_t n, const Interval& interval) {
-  return FormatEstimate({static_cast<double>(count) / static_cast<double>(n), interval}, kPercent);
-}
-
-std::vector<std::string> CellsOf(const ForecastMeasures& m) {
-  if (m.n == 0) return {"0", fmt::format("{}", m.num_refused), "-", "-", "-", "-", "-", "-", "-", "-", "-"};
-  const MeasuredCalibrationError& error = m.error_of_equal_width;
-  return {fmt::format("{}", m.n),
-          fmt::format("{}", m.num_refused),
-          fmt::format("{:.4f}", m.mean_probability),
-          WithInterval(m.failure, 4),
-          WithInterval(m.brier, 4),
-          fmt::format("{:.4f} ({:.4f}; p {:.2g})", error.value, error.mean_if_calibrated, error.p_value),
-          WithInterval(m.line.slope, 2),
-          WithInterval(m.area.value, m.area.interval, 3),
-          WithInterval(m.risk_coverage_area, 4),
-          Rate(m.num_sure_failed, m.num_sure, m.sure_failed_interval()),
-          Rate(m.num_sure, m.num_trials(), m.sure_interval())};
+// Without an answer only the counts are there.
+Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
+  const NumberFormat four{1.0, "", ".4f"}, three{1.0, "", ".3f"}, two{1.0, "", ".2f"};
+  Table table;
+  if (!by.empty()) table.AddColumns({Column::Key(by)});
+  table.AddColumns(
+      {Column::Key("estimator"), Column::Key("P from"), Column::Count("n"), Column::Count("refused"),
+       Column::Number("mean P", four), Column::Estimated("failed", four), Column::Estimated("Brier", four),
+       Column::Number("ECE", four), Column::Number("if right", four), Column::Number("p", {1.0, "", ".2g"}),
+       Column::Estimated("slope", two), Column::Estimated("AUC", three), Column::Estimated("AURC", four),
+       Column::Estimated(fmt::format("failed at P <= {}", kSureBelow), kPercent),
+       Column::Estimated("kept", kPercent)});
+  for (const ForecastMeasures& m : measures) {
+    std::vector<Value>& row = table.rows.emplace_back();
+    if (!by.empty()) row.emplace_back(m.group);
+    row.insert(row.end(), {m.estimator, Name(m.source), m.n, m.num_refused});
+    const MeasuredCalibrationError& error = m.error_of_equal_width;
+    if (m.n > 0)
+      row.insert(row.end(), {m.mean_probability, WithInterval(m.failure), WithInterval(m.brier), error.value,
+                             error.mean_if_calibrated, error.p_value, WithInterval(m.line.slope),
+                             Estimate{m.area.value, m.area.interval}, WithInterval(m.risk_coverage_area),
+                             Rate(m.num_sure_failed, m.num_sure, m.sure_failed_interval()),
+                             Rate(m.num_sure, m.num_trials(), m.sure_interval())});
+    row.resize(table.columns.size());
+  }
+  return table;
 }
 
 Json AsJson(const Interval& interval) { return {JsonNumber(interval.lower), JsonNumber(interval.upper)}; }
@@ -139,36 +145,22 @@ Json EntryOf(const ForecastMeasures& m) {
 }  // namespace
 
 std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
-  std::vector<std::vector<std::string>> rows(1);
-  if (!by.empty()) rows[0].push_back(by);
-  const std::vector<std::string> columns = {
-      "estimator", "P from", "n",     "refused",
-      "mean P",    "failed", "Brier", "ECE (if right; p)",
-      "slope",     "AUC",    "AURC",  fmt::format("failed at P <= {}", kSureBelow),
-      "kept"};
-  rows[0].insert(rows[0].end(), columns.begin(), columns.end());
-  bool has_proxy = false;
-  for (const ForecastMeasures& m : measures) {
-    rows.emplace_back();
-    if (!by.empty()) rows.back().push_back(m.group);
-    has_proxy = has_proxy || m.source == ForecastSource::kInlierShare;
-    rows.back().insert(rows.back().end(), {m.estimator, Name(m.source)});
-    const std::vector<std::string> cells = CellsOf(m);
-    rows.back().insert(rows.back().end(), cells.begin(), cells.end());
-  }
-  std::string text = fmt::format(
-      "Probability of failure P, of the answers whose truth is known\n\n{}\n"
-      "failed, Brier (mean (P - y)^2), slope (1: right, below: too sure), AUC, AURC: 95 % intervals, the "
-      "trials\n"
-      "of a scene as one cluster. ECE: {} bins of equal width; in brackets its mean if P were right, and the "
-      "share\nof samples of such that reach it. AURC: mean failure rate over all shares of trials answered, "
-      "surest first,\na refusal as the last and a failure; kept: trials at P <= {}, of all; exact "
-      "intervals.\n",
-      FormatColumns(rows), kNumCalibrationBins, kSureBelow);
-  if (has_proxy) {
-    text +=
-        "P from inlier_share: the estimator states none; its share of inliers, recalibrated by isotonic\n"
-        "regression on the other half of the scenes of this run, stands in.\n";
+  std::string text =
+      "Probability of failure P, of the answers whose truth is known\n\n" +
+      RenderText(MakeMeasureTable(measures, by)) + "\n" +
+      FormatParagraph(fmt::format(
+          "failed, Brier (mean (P - y)^2), slope (1: right, below: too sure), AUC, AURC: 95 % intervals, the "
+          "trials of a scene as one cluster. ECE: {} bins of equal width; if right: its mean if P were "
+          "right; "
+          "p: the share of samples of such that reach it. AURC: mean failure rate over all shares of trials "
+          "answered, surest first, a refusal as the last and a failure; kept: trials at P <= {}, of all; "
+          "exact intervals.",
+          kNumCalibrationBins, kSureBelow));
+  if (std::ranges::find(measures, ForecastSource::kInlierShare, &ForecastMeasures::source) !=
+      measures.end()) {
+    text += FormatParagraph(
+        "P from inlier_share: the estimator states none; its share of inliers, recalibrated by isotonic "
+        "regression on the other half of the scenes of this run, stands in.");
   }
   return text;
 }
