@@ -11,9 +11,11 @@ double RateOf(const ErrorCount& count) {
   return static_cast<double>(count.errors) / static_cast<double>(count.n);
 }
 
-std::string RateForTable(const ErrorCount& count) {
-  return FormatEstimate({RateOf(count), ExactBinomialInterval(count.errors, count.n)}, kPercent);
+Estimate EstimateRate(const ErrorCount& count) {
+  return {RateOf(count), ExactBinomialInterval(count.errors, count.n)};
 }
+
+std::string RateForTable(const ErrorCount& count) { return FormatEstimate(EstimateRate(count), kPercent); }
 
 nlohmann::ordered_json RateAsJson(const ErrorCount& count) {
   const Interval interval = ExactBinomialInterval(count.errors, count.n);

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/text/columns.h"
-#include "experiments/core/files/file_output.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_json.h"
@@ -32,27 +31,31 @@ std::vector<std::string> OthersWith(Verdict verdict, const Tuning& tuning, const
 
 std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result) {
   const Tuning& tuning = *plan.study.tuning;
-  std::vector<std::vector<std::string>> rows = {{"tuned on", "setting", "there, fresh trials",
-                                                 "others: holds", "undecided", "does not hold",
-                                                 "does not hold on"}};
+  Table table{{Column::Key("tuned on"), Column::Text("setting"),
+               Column::Estimated("there, fresh trials", kPercent), Column::Count("others: holds"),
+               Column::Count("undecided"), Column::Count("does not hold"), Column::Text("does not hold on")}};
   for (size_t f = 0; f < result.families.size(); ++f) {
     const Family& family = result.families[f];
-    if (!family.choice.setting) {
-      rows.push_back({family.words, "none: " + family.choice.why, "", "", "", "", ""});
-      continue;
+    std::vector<Value>& row = table.rows.emplace_back();
+    if (family.choice.setting) {
+      const auto with = [&](Verdict verdict) { return OthersWith(verdict, tuning, result, f); };
+      const std::vector<std::string> violated = with(Verdict::kDoesNotHold);
+      row = {family.words,
+             result.settings[*family.choice.setting],
+             EstimateRate(TargetedCount(tuning, result.verified[f][*family.choice.setting])),
+             std::ssize(with(Verdict::kHolds)),
+             std::ssize(with(Verdict::kUndecided)),
+             std::ssize(violated),
+             fmt::format("{}", fmt::join(violated, "; "))};
+    } else {
+      row = {family.words, "none: " + family.choice.why};
+      row.resize(table.columns.size());
     }
-    const auto with = [&](Verdict verdict) { return OthersWith(verdict, tuning, result, f); };
-    const std::vector<std::string> violated = with(Verdict::kDoesNotHold);
-    rows.push_back({family.words, result.settings[*family.choice.setting],
-                    RateForTable(TargetedCount(tuning, result.verified[f][*family.choice.setting])),
-                    fmt::format("{}", with(Verdict::kHolds).size()),
-                    fmt::format("{}", with(Verdict::kUndecided).size()), fmt::format("{}", violated.size()),
-                    fmt::format("{}", fmt::join(violated, "; "))});
   }
-  return fmt::format(
-      "{}: {} tuned on one family, verified on all; {} trials to verify a family of one condition\nTarget: "
-      "{}\n\n{}",
-      plan.study.name, tuning.estimator, tuning.verify, TargetInWords(tuning), FormatColumns(rows));
+  return FormatParagraph(fmt::format(
+             "{}: {} tuned on one family, verified on all; {} trials to verify a family of one condition",
+             plan.study.name, tuning.estimator, tuning.verify)) +
+         FormatParagraph("Target: " + TargetInWords(tuning)) + "\n" + RenderText(table);
 }
 
 std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, const TransferResult& result) {

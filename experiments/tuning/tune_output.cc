@@ -6,15 +6,12 @@
 #include <functional>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/columns.h"
 #include "experiments/tuning/rate_output.h"
 #include "stats/intervals.h"
 #include "stats/thresholds.h"
 
 namespace rcme {
 namespace {
-
-using Rows = std::vector<std::vector<std::string>>;
 
 constexpr size_t kMaxChosenRows = 12;
 
@@ -31,45 +28,55 @@ std::string TrialsInWords(const StudyPlan& plan) {
 }
 
 // Tuned, verified and the optimism of the tuned figure, rate by rate.
-std::string VerifiedAsTable(const TuneResult& result) {
+Table MakeVerifiedTable(const TuneResult& result) {
   const SettingCount& tuned = result.calibrated[*result.choice.setting];
   const SettingCount& verified = result.verified[*result.choice.setting];
-  Rows rows = {{"rate", "verified, fresh trials", "n", "as tuned", "n", "optimism (tuned minus verified)"}};
-  const auto add = [&](const std::string& name, const ErrorCount& fresh, const ErrorCount& seen) {
-    rows.push_back(
-        {name, RateForTable(fresh), fmt::format("{}", fresh.n), RateForTable(seen), fmt::format("{}", seen.n),
-         fresh.n > 0 && seen.n > 0 ? fmt::format("{:+.2f} points", 100.0 * (RateOf(seen) - RateOf(fresh)))
-                                   : "-"});
+  Table table{{Column::Key("rate"), Column::Estimated("verified, fresh trials", kPercent), Column::Count("n"),
+               Column::Estimated("as tuned", kPercent), Column::Count("n"),
+               Column::Number("optimism (tuned minus verified, % points)", {100.0, "", "+.2f"})}};
+  const auto add = [&](const char* name, const ErrorCount& fresh, const ErrorCount& seen) {
+    table.rows.push_back(
+        {name, EstimateRate(fresh), fresh.n, EstimateRate(seen), seen.n, RateOf(seen) - RateOf(fresh)});
   };
   add("failure", verified.Failure(), tuned.Failure());
   add("refusal", verified.Refusal(), tuned.Refusal());
   add("false refusal", verified.FalseRefusal(), tuned.FalseRefusal());
-  return FormatColumns(rows);
+  return table;
 }
 
-std::string EstimatorsAsTable(const std::vector<VerifiedEstimator>& estimators) {
-  Rows rows = {{"estimator", "failure", "refusal", "failure or refusal", "tuned minus this", "p (McNemar)"}};
-  for (size_t e = 0; e < estimators.size(); ++e) {
-    const VerifiedEstimator& counts = estimators[e];
-    const Interval difference = RiskDifferenceInterval(counts.against_first);
-    rows.push_back(
-        {e == 0 ? "tuned" : counts.spec.label, RateForTable(counts.failure), RateForTable(counts.refusal),
-         RateForTable(counts.failure_or_refusal),
-         e == 0 ? ""
-                : FormatEstimate({counts.against_first.RiskDifference(), difference}, {100.0, "%", "+.2f"}),
-         e == 0 ? "" : fmt::format("{:.2g}", McNemarExactPValue(counts.against_first))});
+// The tuned estimator is the first.
+Table MakeEstimatorTable(const std::vector<VerifiedEstimator>& estimators) {
+  Table table{{Column::Key("estimator"), Column::Estimated("failure", kPercent),
+               Column::Estimated("refusal", kPercent), Column::Estimated("failure or refusal", kPercent),
+               Column::Estimated("tuned minus this", {100.0, "%", "+.2f"}),
+               Column::Number("p (McNemar)", {1.0, "", ".2g"})}};
+  for (const VerifiedEstimator& counts : estimators) {
+    const bool is_first = table.rows.empty();
+    table.rows.push_back({is_first ? "tuned" : counts.spec.label, EstimateRate(counts.failure),
+                          EstimateRate(counts.refusal), EstimateRate(counts.failure_or_refusal)});
+    const PairedCounts& paired = counts.against_first;
+    if (is_first) {
+      table.rows.back().resize(table.columns.size());
+    } else {
+      table.rows.back().emplace_back(Estimate{paired.RiskDifference(), RiskDifferenceInterval(paired)});
+      table.rows.back().emplace_back(McNemarExactPValue(paired));
+    }
   }
-  return FormatColumns(rows);
+  return table;
 }
 
-std::string RocsAsTable(const StudyPlan& plan, const std::vector<EntropyRoc>& rocs) {
-  Rows rows = {{"estimator", "models", "area under the curve", "good", "bad"}};
-  for (const EntropyRoc& roc : rocs) {
-    rows.push_back({plan.study.estimators[roc.estimator].label, roc.population,
-                    FormatEstimate({roc.area.value, roc.area.interval}, {1.0, "", ".3f"}),
-                    fmt::format("{}", roc.good.size()), fmt::format("{}", roc.bad.size())});
-  }
-  return FormatColumns(rows);
+Table MakeRocTable(const StudyPlan& plan, const std::vector<EntropyRoc>& rocs) {
+  using R = const EntropyRoc&;
+  return MakeTable<EntropyRoc>(
+      {{Column::Key("estimator"), [&](R r) { return plan.study.estimators[r.estimator].label; }},
+       {Column::Key("models"), [](R r) { return r.population; }},
+       {Column::Estimated("area under the curve", {1.0, "", ".3f"}),
+        [](R r) {
+          return Estimate{r.area.value, r.area.interval};
+        }},
+       {Column::Count("good"), [](R r) { return std::ssize(r.good); }},
+       {Column::Count("bad"), [](R r) { return std::ssize(r.bad); }}},
+      rocs);
 }
 
 std::string CertifiedInWords(const Tuning& tuning, const Choice& choice) {
@@ -107,19 +114,21 @@ std::vector<size_t> ByTimesChosen(const Repetitions& repetitions) {
 }
 
 // The first rows of `chosen`, and every setting whose target is not known to hold.
-std::string ChosenAsTable(const Tuning& tuning, const SettingPlan& settings, const Repetitions& repetitions,
-                          const std::vector<size_t>& chosen) {
+Table MakeChosenTable(const Tuning& tuning, const SettingPlan& settings, const Repetitions& repetitions,
+                      const std::vector<size_t>& chosen) {
   const std::vector<std::string> names = SettingsInWords(tuning, settings);
-  Rows rows = {{"chosen", "times", "failure", "refusal", "false refusal", "target"}};
+  Table table{{Column::Key("chosen"), Column::Count("times"), Column::Estimated("failure", kPercent),
+               Column::Estimated("refusal", kPercent), Column::Estimated("false refusal", kPercent),
+               Column::Text("target")}};
   for (size_t i = 0; i < chosen.size(); ++i) {
     const size_t s = chosen[i];
     const SettingCount& count = repetitions.reference[s];
     const Verdict verdict = VerdictOf(tuning, count);
     if (i >= kMaxChosenRows && verdict == Verdict::kHolds) continue;
-    rows.push_back({names[s], fmt::format("{}", repetitions.num_chosen[s]), RateForTable(count.Failure()),
-                    RateForTable(count.Refusal()), RateForTable(count.FalseRefusal()), Name(verdict)});
+    table.rows.push_back({names[s], repetitions.num_chosen[s], EstimateRate(count.Failure()),
+                          EstimateRate(count.Refusal()), EstimateRate(count.FalseRefusal()), Name(verdict)});
   }
-  return FormatColumns(rows);
+  return table;
 }
 
 }  // namespace
@@ -128,22 +137,26 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
                         const std::vector<EntropyRoc>& rocs) {
   const Tuning& tuning = *plan.study.tuning;
   std::string text =
-      fmt::format("{}: {} settings of {}, {}\nTarget: {}\n", plan.study.name, result.settings.size(),
-                  tuning.estimator, TrialsInWords(plan), TargetInWords(tuning));
-  if (!result.choice.setting) return text + fmt::format("Not reached: {}\n", result.choice.why);
-  text += fmt::format(
-      "Tuned: {}{}; {}\n\n{}\n"
-      "On the trials for verification, all with the same problems (exact 95 % intervals; differences: "
-      "Tango)\n\n{}",
-      result.settings[*result.choice.setting], CertifiedInWords(tuning, result.choice),
-      VerdictInWords(tuning, result), VerifiedAsTable(result), EstimatorsAsTable(result.estimators));
+      FormatParagraph(fmt::format("{}: {} settings of {}, {}", plan.study.name, result.settings.size(),
+                                  tuning.estimator, TrialsInWords(plan))) +
+      FormatParagraph("Target: " + TargetInWords(tuning));
+  if (!result.choice.setting) return text + FormatParagraph("Not reached: " + result.choice.why);
+  text +=
+      FormatParagraph(fmt::format("Tuned: {}{}; {}", result.settings[*result.choice.setting],
+                                  CertifiedInWords(tuning, result.choice), VerdictInWords(tuning, result))) +
+      "\n" + RenderText(MakeVerifiedTable(result)) + "\n" +
+      FormatParagraph(
+          "On the trials for verification, all with the same problems (exact 95 % intervals; differences: "
+          "Tango)") +
+      "\n" + RenderText(MakeEstimatorTable(result.estimators));
   if (AllDecideAlike(result.verified)) {
-    text += "\nAll settings decided alike: the options that were tuned had no effect on these trials.\n";
+    text +=
+        "\n" + FormatParagraph(
+                   "All settings decided alike: the options that were tuned had no effect on these trials.");
   }
   if (rocs.empty()) return text;
-  return text +
-         fmt::format("\nDoes psi tell good models from bad ones? (1: always, 0.5: chance; DeLong 95 %)\n\n{}",
-                     RocsAsTable(plan, rocs));
+  return text + "\nDoes psi tell good models from bad ones? (1: always, 0.5: chance; DeLong 95 %)\n\n" +
+         RenderText(MakeRocTable(plan, rocs));
 }
 
 std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& settings,
@@ -153,21 +166,24 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
   const ErrorCount violated{repetitions.num_violated, repetitions.num_done};
   const ErrorCount not_shown{violated.errors + repetitions.num_undecided, violated.n};
   const std::vector<size_t> chosen = ByTimesChosen(repetitions);
-  std::string text = fmt::format(
-      "{}: tuned {} times with fresh seeds ({} trials to explore, {} to calibrate each)\nTarget: {}\n"
-      "Violated: {} of {}: {}; violated or undecided: {}: {}; promised at most {:.3g} %; without a choice: "
-      "{}\n\n"
-      "What was chosen, on {} further trials (all 95 % intervals below the limits: holds)\n\n{}",
-      plan.study.name, repetitions.num_done, tuning.explore * num_conditions,
-      tuning.calibrate * num_conditions, TargetInWords(tuning), violated.errors, violated.n,
-      RateForTable(violated), not_shown.errors, RateForTable(not_shown), 100.0 * tuning.delta,
-      repetitions.num_without_choice, repetitions.reference.front().n,
-      ChosenAsTable(tuning, settings, repetitions, chosen));
+  std::string text =
+      FormatParagraph(fmt::format(
+          "{}: tuned {} times with fresh seeds ({} trials to explore, {} to calibrate each)", plan.study.name,
+          repetitions.num_done, tuning.explore * num_conditions, tuning.calibrate * num_conditions)) +
+      FormatParagraph("Target: " + TargetInWords(tuning)) +
+      FormatParagraph(fmt::format("Violated: {} of {}: {}; promised at most {:.3g} %", violated.errors,
+                                  violated.n, RateForTable(violated), 100.0 * tuning.delta)) +
+      FormatParagraph(fmt::format("Violated or undecided: {}: {}; without a choice: {}", not_shown.errors,
+                                  RateForTable(not_shown), repetitions.num_without_choice)) +
+      "\n" +
+      FormatParagraph(
+          fmt::format("What was chosen, on {} further trials (all 95 % intervals below the limits: holds)",
+                      repetitions.reference.front().n)) +
+      "\n" + RenderText(MakeChosenTable(tuning, settings, repetitions, chosen));
   if (chosen.size() > kMaxChosenRows) {
-    text += fmt::format(
-        "{} settings were chosen in all; shown are the {} most frequent, and all that are not shown to "
-        "hold\n",
-        chosen.size(), kMaxChosenRows);
+    text += FormatParagraph(fmt::format(
+        "{} settings were chosen in all; shown are the {} most frequent, and all that are not shown to hold",
+        chosen.size(), kMaxChosenRows));
   }
   return text;
 }

@@ -1,5 +1,6 @@
 """Blocks that one page needs: each is a function of its spec that returns Markdown."""
 
+import itertools
 import json
 import re
 
@@ -193,18 +194,25 @@ def ratios(spec):
 
 
 def transfer(spec):
-    """What `rcme transfer` printed, without the list of families on which a setting is violated."""
-    lines = [line for line in (RESULTS / spec.argument).read_text().splitlines() if line.strip()]
-    rule = next(i for i, line in enumerate(lines) if line.startswith("---"))
-    widths = [len(dashes) for dashes in lines[rule].split()]
-    starts = [sum(widths[:i]) + 2 * i for i in range(len(widths))]
+    """What `rcme transfer` printed, without the list of families on which a setting is violated. Each block of its table
+    begins with the families; a line without one goes on with the line before."""
+    lines = (RESULTS / spec.argument).read_text().splitlines()
+    heads, table = [], {}
+    for rule in (i for i, line in enumerate(lines) if line.startswith("---")):
+        starts = [dashes.start() for dashes in re.finditer("-+", lines[rule])]
 
-    def cut(line):
-        return [line[start:start + width].strip() for start, width in zip(starts, widths)][:6]
+        def cut(line, starts=starts):
+            return [line[start:end].strip() for start, end in zip(starts, [*starts[1:], None])]
 
-    body = [[cell.split(":")[0] if cell.startswith("none") else cell for cell in cut(line)] for line in lines[rule + 1:]
-            if not line.startswith(" ") and len(line) > starts[1]]
-    return markdown(cut(lines[rule - 1]), body)
+        names = cut(lines[rule - 1])
+        heads += [name for name in names if name not in heads]
+        for line in itertools.takewhile(str.strip, lines[rule + 1:]):
+            cells = cut(line)
+            family = cells[0] or family
+            row = table.setdefault(family, {})
+            row |= {name: f"{row.get(name, '')} {cell}".strip() for name, cell in zip(names[1:], cells[1:])}
+    body = [[family, *(row.get(name, "") for name in heads[1:-1])] for family, row in table.items()]
+    return markdown(heads[:-1], [[cell.split(":")[0] if cell.startswith("none") else cell for cell in row] for row in body])
 
 
 def least_coverage(spec):
