@@ -2,19 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/real/truth_free/twin_quantities.h"
 
 namespace rcme {
 namespace {
-
-std::string NumberText(const TwinComparison& c, double x) {
-  return c.is_rate ? fmt::format("{:.1f} %", 100.0 * x) : fmt::format("{:.3g}", x);
-}
 
 std::string TailsInWords(const RedrawSettings& noise) {
   return noise.student_dof == 0.0 ? "normal" : fmt::format("Student's t of {:g}", noise.student_dof);
@@ -31,27 +27,22 @@ std::string NoiseInWords(const RedrawSettings& noise) {
 
 std::string FitInWords(const TwinReport& report) {
   const TwinFit& fit = report.fit;
-  std::string text = fmt::format("{}: {} pairs, {} with a geometry to resemble\n  noise {}", report.scene,
-                                 report.num_pairs, fit.num_templates, NoiseInWords(fit.noise));
+  std::string text = FormatParagraph(fmt::format("{}: {} pairs, {} with a geometry to resemble", report.scene,
+                                                 report.num_pairs, fit.num_templates)) +
+                     FormatParagraph("  noise " + NoiseInWords(fit.noise));
   if (!report.simulated.empty()) {
-    text += fmt::format("\n  simulated with {:.3g} px and {}", fit.simulated_noise.noise_px,
-                        TailsInWords(fit.simulated_noise));
+    text += FormatParagraph(fmt::format("  simulated with {:.3g} px and {}", fit.simulated_noise.noise_px,
+                                        TailsInWords(fit.simulated_noise)));
   }
   return text +
-         fmt::format(
-             "\n  {} matches, {:.0f} % wrong ({:.0f} % of those move as a neighbour)\n"
+         FormatParagraph(fmt::format("  {} matches, {:.0f} % wrong ({:.0f} % of those move as a neighbour)",
+                                     fit.num_matches, 100.0 * fit.wrong_share,
+                                     100.0 * fit.wrong_agreeing_share)) +
+         FormatParagraph(fmt::format(
              "  rotation {:.2g} deg, parallax {:.2g} deg, |t_z| {:.2f}, depths {:.2g} to {:.2g} baselines, "
-             "one plane explains {:.0f} %, Clark-Evans {:.2f}\n",
-             fit.num_matches, 100.0 * fit.wrong_share, 100.0 * fit.wrong_agreeing_share, fit.rotation_deg,
-             fit.parallax_deg, fit.forwardness, fit.nearest, fit.farthest, 100.0 * fit.homography_share,
-             fit.clark_evans);
-}
-
-const TwinComparison* Find(const TwinReport& report, const std::string& quantity, const std::string& twin) {
-  for (const TwinComparison& c : report.comparisons) {
-    if (c.quantity == quantity && c.twin == twin) return &c;
-  }
-  return nullptr;
+             "one plane explains {:.0f} %, Clark-Evans {:.2f}",
+             fit.rotation_deg, fit.parallax_deg, fit.forwardness, fit.nearest, fit.farthest,
+             100.0 * fit.homography_share, fit.clark_evans));
 }
 
 nlohmann::ordered_json JsonOf(const Settings& settings) {
@@ -67,38 +58,42 @@ std::string WithinText(const TwinReport& report, const std::string& twin) {
                      report.NumCompared(twin, true));
 }
 
-std::string ReportAsText(const TwinReport& report) {
-  std::vector<std::vector<std::string>> rows = {
-      {"quantity", "n", "semi-real", "observed [joint 95 %]", "", "simulated", "observed [joint 95 %]", ""}};
-  std::string missed;
-  for (const QuantityText& text : kQuantityTexts) {
-    std::vector<std::string> row = {text.name, ""};
-    for (const char* twin : {"semi_real", "simulated"}) {
-      const TwinComparison* c = Find(report, text.name, twin);
-      if (c == nullptr) {
-        row.insert(row.end(), {"-", "-", ""});
-        continue;
-      }
-      const std::string n = fmt::format("{}", c->n);
-      if (row[1] != n) row[1] += row[1].empty() ? n : "/" + n;
-      const std::string kind = c->is_fitted ? "fitted" : "predicted";
-      row.insert(row.end(), {NumberText(*c, c->predicted),
-                             fmt::format("{} [{}, {}]", NumberText(*c, c->observed),
-                                         NumberText(*c, c->joint.lower), NumberText(*c, c->joint.upper)),
-                             kind + (c->IsWithin() ? "" : ", NOT WITHIN")});
-      if (!c->IsWithin() && c->twin == "semi_real") {
-        missed += fmt::format("  not {}: {}: {}\n", c->is_fitted ? "met by the fit" : "explained", text.words,
-                              text.missing);
-      }
-    }
-    if (row[1].empty()) continue;
-    rows.push_back(row);
+// The comparisons with one twin.
+Table MakeComparisonTable(const TwinReport& report, const std::string& twin, const std::string& heading) {
+  Table table{{Column::Key("quantity"), Column::Count("n"), Column::Number(heading),
+               Column::Estimated("observed [joint 95 %]", kSignificant), Column::Flag("fitted"),
+               Column::Flag("within")}};
+  for (const TwinComparison& c : report.comparisons) {
+    if (c.twin == twin)
+      table.rows.push_back(
+          {c.quantity, c.n, c.predicted, Estimate{c.observed, c.joint}, c.is_fitted, c.IsWithin()});
   }
-  std::string text = FitInWords(report) + FormatColumns(rows);
-  text += "  within: semi-real " + WithinText(report, "semi_real");
-  text += report.simulated.empty() ? fmt::format("; no simulated scene: {}\n", report.why_not_simulated)
-                                   : "; simulated " + WithinText(report, "simulated") + "\n";
-  return text + missed + "\n";
+  return table;
+}
+
+// What the semi-real twin misses, and what may be missing in it.
+std::string MissedInWords(const TwinReport& report) {
+  std::string text;
+  for (const TwinComparison& c : report.comparisons) {
+    if (c.IsWithin() || c.twin != "semi_real") continue;
+    const auto& of = *std::ranges::find(kQuantityTexts, c.quantity, &QuantityText::name);
+    text += FormatParagraph(
+        fmt::format("  not {}: {}: {}", c.is_fitted ? "met by the fit" : "explained", of.words, of.missing));
+  }
+  return text;
+}
+
+std::string ReportAsText(const TwinReport& report) {
+  std::string text =
+      FitInWords(report) + "\n" + RenderText(MakeComparisonTable(report, "semi_real", "semi-real")) + "\n";
+  std::string within = "  within: semi-real " + WithinText(report, "semi_real");
+  if (report.simulated.empty()) {
+    within += "; no simulated scene: " + report.why_not_simulated;
+  } else {
+    text += RenderText(MakeComparisonTable(report, "simulated", "simulated")) + "\n";
+    within += "; simulated " + WithinText(report, "simulated");
+  }
+  return text + FormatParagraph(within) + MissedInWords(report) + "\n";
 }
 
 // A row of the files.
@@ -120,12 +115,12 @@ Table MakeRowTable(const std::vector<TwinReport>& reports) {
        {{"twin"}, [](R r) { return r.comparison->twin; }},
        {{"quantity"}, [](R r) { return r.comparison->quantity; }},
        {{"kind"}, [](R r) { return std::string(r.comparison->is_rate ? "rate" : "mean"); }},
-       {{"fitted", ColumnType::kFlag}, [](R r) { return r.comparison->is_fitted; }},
+       {Column::Flag("fitted"), [](R r) { return r.comparison->is_fitted; }},
        {{"observed", ColumnType::kNumber}, [](R r) { return r.comparison->observed; }},
        {{"lower,upper", ColumnType::kInterval}, [](R r) { return r.comparison->joint; }},
        {{"n", ColumnType::kCount}, [](R r) { return r.comparison->n; }},
        {{"predicted", ColumnType::kNumber}, [](R r) { return r.comparison->predicted; }},
-       {{"within", ColumnType::kFlag}, [](R r) { return r.comparison->IsWithin(); }}},
+       {Column::Flag("within"), [](R r) { return r.comparison->IsWithin(); }}},
       rows);
 }
 
@@ -134,17 +129,16 @@ Table MakeRowTable(const std::vector<TwinReport>& reports) {
 std::string TwinsAsText(const std::vector<TwinReport>& reports) {
   std::string text;
   for (const TwinReport& report : reports) text += ReportAsText(report);
-  text +=
+  text += FormatParagraph(
       "semi-real: the key points of the pairs, put where the estimated geometry has them, with noise drawn "
-      "anew and "
-      "wrong\nmatches dealt out again; simulated: a scene of the simulator fitted to the numbers above. "
-      "n: pairs compared (semi-real/simulated where they differ). Observed "
-      "intervals hold for all\nquantities of a scene together and respect images that pairs share. "
-      "fitted: the twins were made to agree in it, which is\nno evidence; predicted: they were not. "
-      "Quantities:\n";
+      "anew and wrong matches dealt out again; simulated: a scene of the simulator fitted to the numbers "
+      "above. n: pairs compared. Observed intervals hold for all quantities of a scene together and respect "
+      "images that pairs share; without one it is unbounded. fitted: the twins were made to agree in it, "
+      "which is no evidence. Shares and rates are from 0 to 1.");
+  Table quantities{{Column::Key("quantity"), Column::Text("what it is")}};
   for (const QuantityText& quantity : kQuantityTexts)
-    text += fmt::format("  {:<18}{}\n", quantity.name, quantity.words);
-  return text;
+    quantities.rows.push_back({quantity.name, quantity.words});
+  return text + "\n" + RenderText(quantities);
 }
 
 std::string TwinsAsCsv(const std::vector<TwinReport>& reports) { return RenderCsv(MakeRowTable(reports)); }

@@ -11,6 +11,7 @@
 namespace rcme {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -55,9 +56,9 @@ TwinReport TwinReportByHand() {
   return report;
 }
 
-// Runs of spaces as one: what stands in the columns, whatever their widths.
+// Runs of spaces and line ends as one: what is said, whatever the widths.
 std::string TextOfTwins(const TwinReport& report) {
-  return std::regex_replace(TwinsAsText({report}), std::regex(" +"), " ");
+  return std::regex_replace(TwinsAsText({report}), std::regex("\\s+"), " ");
 }
 
 TEST(TwinsAsCsv, HasARowOfEveryComparison) {
@@ -72,12 +73,12 @@ TEST(TwinsAsCsv, HasARowOfEveryComparison) {
 TEST(TwinsAsText, SaysWhatWasFitted) {
   EXPECT_THAT(TextOfTwins(TwinReportByHand()),
               testing::StartsWith(
-                  "fountain, east: 12 pairs, 11 with a geometry to resemble\n"
-                  " noise 0.312 px, Student's t of 2.5, 25 % common within 1 px, 10 % within 80 px\n"
-                  " simulated with 0.298 px and normal\n"
-                  " 210 matches, 20 % wrong (35 % of those move as a neighbour)\n"
+                  "fountain, east: 12 pairs, 11 with a geometry to resemble"
+                  " noise 0.312 px, Student's t of 2.5, 25 % common within 1 px, 10 % within 80 px"
+                  " simulated with 0.298 px and normal"
+                  " 210 matches, 20 % wrong (35 % of those move as a neighbour)"
                   " rotation 1.5 deg, parallax 4.2 deg, |t_z| 0.12, depths 3.1 to 27 baselines, one plane "
-                  "explains 40 %, Clark-Evans 0.87\n"));
+                  "explains 40 %, Clark-Evans 0.87 "));
 }
 
 // Shares below half of a per cent are none.
@@ -86,42 +87,43 @@ TEST(TwinsAsText, LeavesOutNoiseThatIsNotShared) {
   report.fit.noise = {};
   report.fit.noise.noise_px = 0.5;
   report.fit.noise.near_share = report.fit.noise.far_share = 0.0049;
-  EXPECT_THAT(TextOfTwins(report), HasSubstr("\n noise 0.5 px, normal\n"));
+  EXPECT_THAT(TextOfTwins(report), HasSubstr(" noise 0.5 px, normal "));
 }
 
 TEST(TwinsAsText, HasARowOfEveryQuantity) {
   const std::string text = TextOfTwins(TwinReportByHand());
-  EXPECT_THAT(text, HasSubstr("\nrefusal 12 50.0 % 25.0 % [10.0 %, 40.0 %] predicted, NOT WITHIN - -\n"));
-  EXPECT_THAT(text, HasSubstr("\nstated_failure 3 0.25 0.125 [-inf, inf] predicted - -\n"));
+  EXPECT_THAT(text, HasSubstr(" refusal 12 0.5 0.25 [0.1, 0.4] no no "));
+  EXPECT_THAT(text, HasSubstr(" stated_failure 3 0.25 0.125 no yes "));
+  EXPECT_THAT(text, HasSubstr(" semi-real observed"));
+  EXPECT_THAT(text, HasSubstr(" sigma_px 9 0.45 0.5 [0.4, 0.6] yes yes "));
+  EXPECT_THAT(text, HasSubstr(" simulated observed"));
+  EXPECT_THAT(text, HasSubstr(" sigma_px 9 0.75 0.5 [0.3, 0.7] yes no "));
   EXPECT_THAT(text,
-              HasSubstr("\nsigma_px 9 0.45 0.5 [0.4, 0.6] fitted 0.75 0.5 [0.3, 0.7] fitted, NOT WITHIN\n"));
-  EXPECT_THAT(text,
-              HasSubstr("\n within: semi-real 1 of 2 predicted, 1 of 1 fitted; simulated 0 of 0 predicted, "
-                        "0 of 1 fitted\n"));
-  EXPECT_THAT(text, Not(HasSubstr("\nfailure ")));                           // is not compared
-  EXPECT_THAT(text, HasSubstr("\n failure motion beyond 3 deg or 15 deg"));  // is explained all the same
+              HasSubstr(" within: semi-real 1 of 2 predicted, 1 of 1 fitted; simulated 0 of 0 predicted, "
+                        "0 of 1 fitted "));
+  EXPECT_THAT(text, Not(ContainsRegex(" failure [0-9]")));                 // is not compared
+  EXPECT_THAT(text, HasSubstr(" failure motion beyond 3 deg or 15 deg"));  // is explained all the same
 }
 
-// Means of a semi-real twin are paired with those of the pairs, so that it may have fewer than the simulated one.
+// Means of a semi-real twin are paired with those of the pairs: it may have fewer than the simulated one.
 TEST(TwinsAsText, SaysTheNumberOfPairsOfEachTwin) {
   TwinReport report = TwinReportByHand();
   report.comparisons[1].n = 8;
-  EXPECT_THAT(TextOfTwins(report), HasSubstr("\nsigma_px 8/9 0.45 "));
+  EXPECT_THAT(TextOfTwins(report), HasSubstr(" sigma_px 8 0.45 "));
+  EXPECT_THAT(TextOfTwins(report), HasSubstr(" sigma_px 9 0.75 "));
 }
 
 // Of the semi-real twin alone; whether it was fitted says what it means.
 TEST(TwinsAsText, SaysWhatSimulationLacks) {
   TwinReport report = TwinReportByHand();
-  EXPECT_THAT(TextOfTwins(report),
-              HasSubstr("\n not explained: no motion, of all pairs: scenes near what the "
-                        "estimator refuses: planes, little parallax\n"));
+  EXPECT_THAT(TextOfTwins(report), HasSubstr(" not explained: no motion, of all pairs: scenes near what the "
+                                             "estimator refuses: planes, little parallax "));
   EXPECT_THAT(TextOfTwins(report), Not(HasSubstr("not met by the fit")));
   report.comparisons[0].predicted = 0.4;
   report.comparisons[1].predicted = 0.39;
   EXPECT_THAT(TextOfTwins(report), Not(HasSubstr("not explained")));
-  EXPECT_THAT(TextOfTwins(report),
-              HasSubstr("\n not met by the fit: noise estimated from the residuals (px), "
-                        "mean: noise that differs from pair to pair\n"));
+  EXPECT_THAT(TextOfTwins(report), HasSubstr(" not met by the fit: noise estimated from the residuals (px), "
+                                             "mean: noise that differs from pair to pair "));
 }
 
 TEST(TwinsAsText, SaysWhyNothingIsSimulated) {
@@ -130,9 +132,9 @@ TEST(TwinsAsText, SaysWhyNothingIsSimulated) {
   report.why_not_simulated = "the views overlap too little";
   report.comparisons.pop_back();
   const std::string text = TextOfTwins(report);
-  EXPECT_THAT(text, HasSubstr("1 of 1 fitted; no simulated scene: the views overlap too little\n"));
+  EXPECT_THAT(text, HasSubstr("1 of 1 fitted; no simulated scene: the views overlap too little "));
   EXPECT_THAT(text, Not(HasSubstr("simulated with")));
-  EXPECT_THAT(text, HasSubstr("\nsigma_px 9 0.45 0.5 [0.4, 0.6] fitted - -\n"));
+  EXPECT_THAT(text, Not(HasSubstr("simulated observed")));
 }
 
 TEST(TwinsAsJson, HasEveryNumber) {
