@@ -2,25 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/text/columns.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 
 namespace rcme {
 namespace {
 
-std::string RangeText(double value, const Interval& interval) {
-  return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);
-}
+const NumberFormat kTwoDigits{1.0, "", ".2g"};
 
-// "74 % [62, 84]".
-std::string CoverageText(const SharedMemberRate& coverage) {
-  if (std::isnan(coverage.rate)) return "-";
-  return fmt::format("{:.0f} % [{:.0f}, {:.0f}]", 100.0 * coverage.rate, 100.0 * coverage.interval.lower,
-                     100.0 * coverage.interval.upper);
+std::string RangeText(double value, const Interval& interval) {
+  return FormatEstimate({value, interval}, kTwoDigits);
 }
 
 const char* CauseName(FaultCause cause) {
@@ -61,10 +58,6 @@ std::string CovariancesInWords(const CovarianceVerdict& of) {
                      fmt::join(of.tests, ", "));
 }
 
-std::string CorrelationName(const DistanceCorrelation& c) {
-  return fmt::format("correlation_{:g}_to_{:g}_px", c.from_px, c.to_px);
-}
-
 bool IsKnown(const DistanceCorrelation& c) { return std::isfinite(c.difference.lower); }
 
 std::string CorrelationVerdict(const DistanceCorrelation& c) {
@@ -101,43 +94,92 @@ std::string NominalFaults() {
   return words;
 }
 
+// What a set says of one thing.
+struct SetRow {
+  const SetReport* set;
+  std::string name, heading;  // in files; for people, who do not see it where this is empty
+  std::string verdict, words;
+  std::int64_t n = 0;
+  double value = std::nan("");
+  Interval interval{std::nan(""), std::nan("")};
+  FaultCause cause = FaultCause::kNone;
+  const TruthFreeTest* test = nullptr;  // null: it is none of the covariances
+};
+
+SetRow RowOf(const SetReport& set, const DistanceCorrelation& c) {
+  SetRow row{&set, fmt::format("correlation_{:g}_to_{:g}_px", c.from_px, c.to_px),
+             "",   CorrelationVerdict(c),
+             "",   std::llround(c.num_products)};
+  row.interval = c.difference;
+  if (!IsKnown(c)) return row;
+  row.value = c.correlation - c.twin_correlation;
+  row.heading = fmt::format("residuals {:g} to {:g} px apart", c.from_px, c.to_px);
+  row.words = fmt::format("{}: correlation {}", row.verdict, RangeText(row.value, row.interval));
+  return row;
+}
+
+std::vector<SetRow> RowsOf(const SetReport& set) {
+  const ComparedMedians none{std::nan(""), {std::nan(""), std::nan("")}};
+  std::vector<SetRow> rows;
+  const auto add = [&](const std::string& name, const std::string& heading, const std::string& verdict,
+                       const std::string& words, std::int64_t n, const auto& value,
+                       FaultCause cause = FaultCause::kNone, const TruthFreeTest* test = nullptr) {
+    rows.push_back({&set, name, heading, verdict, words, n, value.value, value.interval, cause, test});
+  };
+  add("covariances", "", VerdictName(set.covariances.verdict), "", set.num_answered, none,
+      set.covariances.cause);
+  for (const TruthFreeTest& test : set.tests) {
+    add(test.name, test.name, VerdictName(test.verdict), VerdictInWords(test), test.num_values, test.ratio,
+        test.cause, &test);
+  }
+  for (const DistanceCorrelation& c : set.correlations) rows.push_back(RowOf(set, c));
+  const CalibrationReport& calibration = set.calibration;
+  add("calibration", "calibration", FaultVerdict(calibration.verdict), CalibrationInWords(calibration),
+      calibration.num_pairs, ComparedMedians{calibration.p_value, none.interval});
+  for (const FaultReport& fault : calibration.faults) {
+    add(TextOf(fault.fault).name, TextOf(fault.fault).words, FaultVerdict(fault.verdict), FaultInWords(fault),
+        calibration.num_pairs, fault.joint);
+  }
+  add("noise_by_size", "noise by size", VerdictName(set.sizes.verdict), SizeInWords(set.sizes),
+      set.sizes.num_pairs, set.sizes.slope);
+  add("sigma_px", "noise", VerdictName(set.sigma_verdict),
+      fmt::format("sigma {} px, assumed {:g}: {}", RangeText(set.sigma_px.value, set.sigma_px.interval),
+                  set.assumed_sigma_px, VerdictName(set.sigma_verdict)),
+      set.num_answered, set.sigma_px);
+  return rows;
+}
+
+Estimate EstimateCoverage(const SharedMemberRate& coverage) { return {coverage.rate, coverage.interval}; }
+
+// The simulation has no twins of its own.
+Value AgainstTwins(const SetRow& row, const Estimate& estimate) {
+  return row.test && row.name != kSimulationTest ? Value(estimate) : Value();
+}
+
 std::string SetAsTable(const SetReport& report) {
-  std::string text = fmt::format("{}: {} pairs, {} answered, {}\n", report.name, report.num_pairs,
-                                 report.num_answered, LoopsText(report));
-  text += CovariancesInWords(report.covariances) + "\n";
-  std::vector<std::vector<std::string>> rows = {
-      {"test", "verdict", "n", "covered", "over the twins", "twins covered"}};
-  for (const TruthFreeTest& test : report.tests) {
-    const bool is_of_pairs = test.name != kSimulationTest;
-    rows.push_back({test.name, VerdictInWords(test), std::to_string(test.num_values),
-                    CoverageText(test.coverage),
-                    is_of_pairs && test.verdict != TruthFreeVerdict::kNoData
-                        ? RangeText(test.against_twins.value, test.against_twins.interval)
-                        : "",
-                    is_of_pairs ? CoverageText(test.twin_coverage) : ""});
-  }
-  for (const DistanceCorrelation& c : report.correlations) {
-    if (!IsKnown(c)) continue;
-    rows.push_back({fmt::format("residuals {:g} to {:g} px apart", c.from_px, c.to_px),
-                    fmt::format("{}: correlation {}", CorrelationVerdict(c),
-                                RangeText(c.correlation - c.twin_correlation, c.difference)),
-                    fmt::format("{:.0f}", c.num_products), "", ""});
-  }
-  rows.push_back({"calibration", CalibrationInWords(report.calibration),
-                  std::to_string(report.calibration.num_pairs), "", ""});
-  for (const FaultReport& fault : report.calibration.faults) {
-    rows.push_back({TextOf(fault.fault).words, FaultInWords(fault),
-                    std::to_string(report.calibration.num_pairs), "", ""});
-  }
-  rows.push_back(
-      {"noise by size", SizeInWords(report.sizes), std::to_string(report.sizes.num_pairs), "", ""});
-  rows.push_back({"noise",
-                  fmt::format("sigma {} px, assumed {:g}: {}",
-                              RangeText(report.sigma_px.value, report.sigma_px.interval),
-                              report.assumed_sigma_px, VerdictName(report.sigma_verdict)),
-                  std::to_string(report.num_answered), "", ""});
-  text += FormatColumns(rows);
-  for (const std::string& advice : report.advice) text += "  -> " + advice + "\n";
+  using R = const SetRow&;
+  const NumberFormat percent{100.0, "%", ".0f"};
+  std::vector<SetRow> rows = RowsOf(report);
+  std::erase_if(rows, [](R row) { return row.heading.empty(); });
+  const Table table = MakeTable<SetRow>(
+      {{Column::Key("test"), [](R r) { return r.heading; }},
+       {Column::Text("verdict"), [](R r) { return r.words; }},
+       {Column::Count("n"), [](R r) { return r.n; }},
+       {Column::Estimated("covered", percent),
+        [](R r) { return r.test ? Value(EstimateCoverage(r.test->coverage)) : Value(); }},
+       {Column::Estimated("over the twins", kTwoDigits),
+        [](R r) {
+          const bool is_known = r.test && r.test->verdict != TruthFreeVerdict::kNoData;
+          return is_known ? AgainstTwins(r, {r.test->against_twins.value, r.test->against_twins.interval})
+                          : Value();
+        }},
+       {Column::Estimated("twins covered", percent),
+        [](R r) { return r.test ? AgainstTwins(r, EstimateCoverage(r.test->twin_coverage)) : Value(); }}},
+      rows);
+  std::string text = FormatParagraph(fmt::format("{}: {} pairs, {} answered, {}", report.name,
+                                                 report.num_pairs, report.num_answered, LoopsText(report))) +
+                     FormatParagraph(CovariancesInWords(report.covariances)) + "\n" + RenderText(table);
+  for (const std::string& advice : report.advice) text += FormatParagraph("  -> " + advice);
   return text + "\n";
 }
 
@@ -172,64 +214,50 @@ std::string ValidationAsTable(const std::vector<SetReport>& reports) {
   std::string text;
   for (const SetReport& report : reports) text += SetAsTable(report);
   return text +
-         fmt::format(
+         FormatParagraph(fmt::format(
              "Covariances as they are stated against the differences of two halves of the matches (5 degrees "
-             "of freedom), the closure\n"
-             "of rotations around loops of images (3) and of directions around three (1): medians over that "
-             "of chi-square; 1 is right.\n"
-             "simulation: the answers to simulated twins (the same matches at the estimated geometry with "
-             "independent noise anew)\n"
-             "against the motion that they were made of; what is too small there is the estimator's own. "
-             "Intervals 95 %: bootstrap\n"
-             "over pairs or loops; those of coverage know which pairs share an image. holds: the whole "
-             "interval within [1/{0:g}, {0:g}],\n"
-             "and coverage accordingly. Correlations are beyond those of the twins; nominal below {1:g}.\n"
+             "of freedom), the closure of rotations around loops of images (3) and of directions around "
+             "three "
+             "(1): medians over that of chi-square; 1 is right. simulation: the answers to simulated twins "
+             "(the same matches at the estimated geometry with independent noise anew) against the motion "
+             "that they were made of; what is too small there is the estimator's own. Intervals 95 %: "
+             "bootstrap over pairs or loops; those of coverage know which pairs share an image. holds: the "
+             "whole interval within [1/{0:g}, {0:g}], and coverage accordingly. Correlations are beyond "
+             "those "
+             "of the twins; nominal below {1:g}.",
+             kNominalVariance, kNominalCorrelation)) +
+         FormatParagraph(fmt::format(
              "Camera faults: self-calibration over all pairs of one camera, each beside the others; the "
-             "intervals of a set hold together\n"
-             "in 95 % of sets, by the scatter of pairs. One is named only if the test of all is rejected, "
-             "the "
-             "steps converge, and correcting\n"
-             "what is named leaves nothing. A readout time is asked of pairs that state seconds_between. "
-             "Nominal: {2}.\n"
-             "Noise by size: slope of log r^2 on log noise^2 over that of the twins; nominal within "
-             "{3:g} of one.\n",
-             kNominalVariance, kNominalCorrelation, NominalFaults(), kNominalSlope);
+             "intervals of a set hold together in 95 % of sets, by the scatter of pairs. One is named only "
+             "if "
+             "the test of all is rejected, the steps converge, and correcting what is named leaves nothing. "
+             "A "
+             "readout time is asked of pairs that state seconds_between. Nominal: {}.",
+             NominalFaults())) +
+         FormatParagraph(fmt::format(
+             "Noise by size: slope of log r^2 on log noise^2 over that of the twins; nominal within {:g} of "
+             "one.",
+             kNominalSlope));
 }
 
 std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
-  std::string text = "set,pairs,answered,test,value,lower,upper,n,coverage,twin_coverage,verdict,cause\n";
-  const auto row = [&](const SetReport& report, const std::string& test, double value,
-                       const Interval& interval, double n, double coverage, double twin_coverage,
-                       const std::string& verdict, const char* cause = "") {
-    text += fmt::format("{},{},{},{},{},{},{},{:.0f},{},{},{},{}\n", CsvField(report.name), report.num_pairs,
-                        report.num_answered, test, CsvNumber(value), CsvFinite(interval.lower),
-                        CsvFinite(interval.upper), n, CsvNumber(coverage), CsvNumber(twin_coverage), verdict,
-                        cause);
-  };
+  using R = const SetRow&;
+  std::vector<SetRow> rows;
+  for (const SetReport& report : reports) std::ranges::copy(RowsOf(report), std::back_inserter(rows));
   const double none = std::nan("");
-  for (const SetReport& report : reports) {
-    row(report, "covariances", none, {none, none}, report.num_answered, none, none,
-        VerdictName(report.covariances.verdict), CauseName(report.covariances.cause));
-    for (const TruthFreeTest& test : report.tests) {
-      row(report, test.name, test.ratio.value, test.ratio.interval, test.num_values, test.coverage.rate,
-          test.twin_coverage.rate, VerdictName(test.verdict), CauseName(test.cause));
-    }
-    for (const DistanceCorrelation& c : report.correlations) {
-      row(report, CorrelationName(c), IsKnown(c) ? c.correlation - c.twin_correlation : none, c.difference,
-          c.num_products, none, none, CorrelationVerdict(c));
-    }
-    row(report, "calibration", report.calibration.p_value, {none, none}, report.calibration.num_pairs, none,
-        none, FaultVerdict(report.calibration.verdict));
-    for (const FaultReport& fault : report.calibration.faults) {
-      row(report, TextOf(fault.fault).name, fault.joint.value, fault.joint.interval,
-          report.calibration.num_pairs, none, none, FaultVerdict(fault.verdict));
-    }
-    row(report, "noise_by_size", report.sizes.slope.value, report.sizes.slope.interval,
-        report.sizes.num_pairs, none, none, VerdictName(report.sizes.verdict));
-    row(report, "sigma_px", report.sigma_px.value, report.sigma_px.interval, report.num_answered, none, none,
-        VerdictName(report.sigma_verdict));
-  }
-  return text;
+  return RenderCsv(MakeTable<SetRow>(
+      {{Column::Text("set"), [](R r) { return r.set->name; }},
+       {Column::Count("pairs"), [](R r) { return r.set->num_pairs; }},
+       {Column::Count("answered"), [](R r) { return r.set->num_answered; }},
+       {Column::Text("test"), [](R r) { return r.name; }},
+       {Column::Number("value"), [](R r) { return r.value; }},
+       {{"lower,upper", ColumnType::kInterval}, [](R r) { return r.interval; }},
+       {Column::Count("n"), [](R r) { return r.n; }},
+       {Column::Number("coverage"), [&](R r) { return r.test ? r.test->coverage.rate : none; }},
+       {Column::Number("twin_coverage"), [&](R r) { return r.test ? r.test->twin_coverage.rate : none; }},
+       {Column::Text("verdict"), [](R r) { return r.verdict; }},
+       {Column::Text("cause"), [](R r) { return CauseName(r.cause); }}},
+      rows));
 }
 
 std::string ValidationAsJson(const std::vector<SetReport>& reports) {
