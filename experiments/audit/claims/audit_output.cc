@@ -6,9 +6,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/text/columns.h"
-#include "experiments/core/text/json_output.h"
 #include "experiments/audit/claims/power.h"
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/core/text/json_output.h"
 
 namespace rcme {
 namespace {
@@ -21,8 +22,6 @@ const char* VerdictName(const std::optional<Verdict>& verdict) {
   return verdict ? Name(*verdict) : Name(ClaimVerdict::kMeasured);
 }
 
-Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(); }
-
 std::string ConditionsInWords(const Check& check) {
   std::string words;
   for (const auto& [key, value] : check.conditions) {
@@ -31,10 +30,9 @@ std::string ConditionsInWords(const Check& check) {
   return words;
 }
 
-std::string MeasuredInWords(const TargetResult& result) {
-  return fmt::format("{:.4g} [{:.4g}, {:.4g}]", result.measured, result.interval.lower,
-                     result.interval.upper);
-}
+const NumberFormat kFourDigits{1.0, "", ".4g"};
+
+Estimate MakeEstimate(const TargetResult& result) { return {result.measured, result.interval}; }
 
 std::string ClaimedInWords(const Target& target) {
   if (!target.IsClaimed()) return "-";
@@ -125,33 +123,35 @@ Decisive DecisiveOf(const Claim& claim, const ClaimResult& result, size_t begin,
 }
 
 Json PowerAsJson(const TargetPower& power) {
-  return {{"holds_at_nominal", Number(power.holds_at_nominal)},
-          {"found_outside", {Number(power.found.lower), Number(power.found.upper)}},
-          {"found_sigma_error_outside", {Number(power.found_sigma.lower), Number(power.found_sigma.upper)}}};
+  return {{"holds_at_nominal", JsonNumber(power.holds_at_nominal)},
+          {"found_outside", {JsonNumber(power.found.lower), JsonNumber(power.found.upper)}},
+          {"found_sigma_error_outside",
+           {JsonNumber(power.found_sigma.lower), JsonNumber(power.found_sigma.upper)}}};
 }
 
 Json TargetAsJson(const Target& target, const TargetResult& result) {
   const char* kind = target.IsMean() ? "mean" : "rate";
   Json json = {{"quantity", target.quantity},
                {"kind", kind},
-               {"nominal", Number(target.nominal)},
-               {"low", Number(target.allowed.lower)},
-               {"high", Number(target.allowed.upper)},
-               {"threshold", Number(target.threshold)},
-               {"measured", Number(result.measured)},
-               {"interval", {Number(result.interval.lower), Number(result.interval.upper)}},
+               {"nominal", JsonNumber(target.nominal)},
+               {"low", JsonNumber(target.allowed.lower)},
+               {"high", JsonNumber(target.allowed.upper)},
+               {"threshold", JsonNumber(target.threshold)},
+               {"measured", JsonNumber(result.measured)},
+               {"interval", {JsonNumber(result.interval.lower), JsonNumber(result.interval.upper)}},
                {"n", result.n},
                {"verdict", VerdictName(result.verdict)},
                {"side", SideName(SideOf(target, result))}};
-  json["trials_to_decide"] = result.verdict == Verdict::kUndecided ? Number(result.trials_to_decide) : Json();
+  json["trials_to_decide"] =
+      result.verdict == Verdict::kUndecided ? JsonNumber(result.trials_to_decide) : Json();
   return json;
 }
 
 Json FifthsAsJson(const std::vector<DifficultyFifth>& fifths) {
   Json json = Json::array();
   for (const DifficultyFifth& fifth : fifths) {
-    json.push_back({{"bound_deg", {Number(fifth.easiest), Number(fifth.hardest)}},
-                    {"measured", Number(fifth.measured)},
+    json.push_back({{"bound_deg", {JsonNumber(fifth.easiest), JsonNumber(fifth.hardest)}},
+                    {"measured", JsonNumber(fifth.measured)},
                     {"interval", {fifth.interval.lower, fifth.interval.upper}},
                     {"n", fifth.n}});
   }
@@ -207,49 +207,56 @@ std::string FifthsAsMarkdown(const Claim& claim, const ClaimResult& result) {
   for (size_t c = 0; c < claim.checks.size(); ++c) {
     const std::vector<DifficultyFifth>& fifths = result.checks[c].fifths;
     if (fifths.empty()) continue;
+    Table table{{Column::Text("fifth"), Column::Text("bound (deg)"),
+                 Column::Estimated("measured", kFourDigits), Column::Count("n")}};
     const auto worst = std::ranges::min_element(fifths, {}, &DifficultyFifth::measured);
-    text += fmt::format(
-        "\n{}, {}, by the Cramer-Rao bound of the problem (root of the trace):\n\n"
-        "| fifth | bound (deg) | measured | n |\n|---|---|---|---|\n",
-        ConditionsInWords(claim.checks[c]), claim.checks[c].targets.front().quantity);
     for (auto fifth = fifths.begin(); fifth != fifths.end(); ++fifth) {
-      text += fmt::format("| {}{} | {:.3g} to {:.3g} | {:.4g} [{:.4g}, {:.4g}] | {} |\n",
-                          fifth - fifths.begin() + 1, fifth == worst ? " (worst)" : "", fifth->easiest,
-                          fifth->hardest, fifth->measured, fifth->interval.lower, fifth->interval.upper,
-                          fifth->n);
+      table.rows.push_back({fmt::format("{}{}", fifth - fifths.begin() + 1, fifth == worst ? " (worst)" : ""),
+                            fmt::format("{:.3g} to {:.3g}", fifth->easiest, fifth->hardest),
+                            Estimate{fifth->measured, fifth->interval}, fifth->n});
     }
+    text += fmt::format("\n{}, {}, by the Cramer-Rao bound of the problem (root of the trace):\n\n{}",
+                        ConditionsInWords(claim.checks[c]), claim.checks[c].targets.front().quantity,
+                        RenderMarkdown(table));
   }
   return text;
 }
 
-std::string ClaimAsMarkdown(const Audit& audit, const Claim& claim, const ClaimResult& result) {
-  std::string text =
-      fmt::format("### {} ({})\n\n{}: \"{}.\" Measured: {}.\n\n**{}**\n\n", claim.id, claim.reading,
-                  claim.label, claim.sentence, claim.statistic, VerdictInWords(claim, result));
-  text +=
-      "| conditions | quantity | claimed | found with p = 0.9 | measured | n | verdict "
-      "|\n|---|---|---|---|---|---|---|\n";
+// What would decide an undecided target; else nothing.
+std::string RemedyInWords(const TargetResult& target) {
+  if (target.verdict != Verdict::kUndecided) return "";
+  return std::isfinite(target.trials_to_decide)
+             ? fmt::format(" (about {:.2g} trials would do)", target.trials_to_decide)
+             : " (no number of trials may do)";
+}
+
+Table MakeEvidenceTable(const Audit& audit, const Claim& claim, const ClaimResult& result) {
+  Table table{{Column::Text("conditions"), Column::Text("quantity"), Column::Text("claimed"),
+               Column::Text("found with p = 0.9"), Column::Estimated("measured", kFourDigits),
+               Column::Text("n"), Column::Text("verdict")}};
   for (size_t c = 0; c < claim.checks.size(); ++c) {
-    if (!result.checks[c].not_possible.empty()) {
-      text += fmt::format("| {} | | | | | 0 | not possible: {} |\n", ConditionsInWords(claim.checks[c]),
-                          result.checks[c].not_possible);
+    const Check& check = claim.checks[c];
+    const CheckResult& of = result.checks[c];
+    if (!of.not_possible.empty()) {
+      table.rows.push_back(
+          {ConditionsInWords(check), {}, {}, {}, {}, "0", "not possible: " + of.not_possible});
     }
-    for (size_t t = 0; t < result.checks[c].targets.size(); ++t) {
-      const TargetResult& target = result.checks[c].targets[t];
-      if (IsLeftOut(claim.checks[c].targets[t], target)) continue;
-      std::string verdict = AddSide(VerdictName(target.verdict), SideOf(claim.checks[c].targets[t], target));
-      if (target.verdict == Verdict::kUndecided) {
-        verdict += std::isfinite(target.trials_to_decide)
-                       ? fmt::format(" (about {:.2g} trials would do)", target.trials_to_decide)
-                       : " (no number of trials may do)";
-      }
-      text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", ConditionsInWords(claim.checks[c]),
-                          claim.checks[c].targets[t].quantity, ClaimedInWords(claim.checks[c].targets[t]),
-                          PowerInWords(audit, claim.checks[c], claim.checks[c].targets[t]),
-                          MeasuredInWords(target), TrialsInWords(target, result.checks[c]), verdict);
+    for (size_t t = 0; t < of.targets.size(); ++t) {
+      const TargetResult& target = of.targets[t];
+      if (IsLeftOut(check.targets[t], target)) continue;
+      table.rows.push_back(
+          {ConditionsInWords(check), check.targets[t].quantity, ClaimedInWords(check.targets[t]),
+           PowerInWords(audit, check, check.targets[t]), MakeEstimate(target), TrialsInWords(target, of),
+           AddSide(VerdictName(target.verdict), SideOf(check.targets[t], target)) + RemedyInWords(target)});
     }
   }
-  return text + FifthsAsMarkdown(claim, result) + "\n";
+  return table;
+}
+
+std::string ClaimAsMarkdown(const Audit& audit, const Claim& claim, const ClaimResult& result) {
+  return fmt::format("### {} ({})\n\n{}: \"{}.\" Measured: {}.\n\n**{}**\n\n", claim.id, claim.reading,
+                     claim.label, claim.sentence, claim.statistic, VerdictInWords(claim, result)) +
+         RenderMarkdown(MakeEvidenceTable(audit, claim, result)) + FifthsAsMarkdown(claim, result) + "\n";
 }
 
 std::string ErrorStatement(const Audit& audit) {
@@ -263,93 +270,105 @@ std::string ErrorStatement(const Audit& audit) {
 bool IsOnStudy(const Audit& audit) { return !audit.options.study.empty(); }
 
 // One row per claim and condition of a study, after one for all conditions where there are several.
-std::vector<std::vector<std::string>> RowsPerCondition(const Audit& audit) {
-  std::vector<std::vector<std::string>> rows = {
-      {"claim", "condition", "verdict", "quantity", "claimed", "measured", "n"}};
+Table MakeConditionTable(const Audit& audit) {
+  Table table{{Column::Key("claim"), Column::Key("condition"), Column::Text("verdict"),
+               Column::Text("quantity"), Column::Text("claimed"), Column::Estimated("measured", kFourDigits),
+               Column::Text("n")}};
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
     const ClaimResult& result = audit.results[i];
     if (claim.checks.size() > 1) {
-      rows.push_back({claim.id, fmt::format("all {}", claim.checks.size()), VerdictInWords(claim, result), "",
-                      "", "", ""});
+      table.rows.push_back(
+          {claim.id, fmt::format("all {}", claim.checks.size()), VerdictInWords(claim, result)});
     }
     for (size_t c = 0; c < claim.checks.size(); ++c) {
       const Decisive decisive = DecisiveOf(claim, result, c, c + 1);
-      rows.push_back({claim.id, ConditionsInWords(claim.checks[c]),
-                      VerdictInWords(claim.checks[c], result.checks[c]), result.checks[c].not_possible, "",
-                      "", ""});
-      if (!decisive.target) continue;
-      rows.back()[3] = decisive.target->quantity;
-      rows.back()[4] = ClaimedInWords(*decisive.target);
-      rows.back()[5] = MeasuredInWords(*decisive.result);
-      rows.back()[6] = TrialsInWords(*decisive.result, result.checks[c]);
+      table.rows.push_back(
+          {claim.id, ConditionsInWords(claim.checks[c]), VerdictInWords(claim.checks[c], result.checks[c])});
+      std::vector<Value>& row = table.rows.back();
+      if (decisive.target) {
+        row.insert(row.end(),
+                   {decisive.target->quantity, ClaimedInWords(*decisive.target),
+                    MakeEstimate(*decisive.result), TrialsInWords(*decisive.result, result.checks[c])});
+      } else {
+        row.emplace_back(result.checks[c].not_possible);
+      }
     }
   }
-  return rows;
+  for (std::vector<Value>& row : table.rows) row.resize(table.columns.size());
+  return table;
+}
+
+// One row per claim: the target that decided it.
+Table MakeClaimTable(const Audit& audit) {
+  Table table{{Column::Key("claim"), Column::Text("verdict"), Column::Text("quantity"),
+               Column::Text("sigma_px"), Column::Text("claimed"), Column::Text("found (p = 0.9)"),
+               Column::Estimated("measured", kFourDigits), Column::Count("n")}};
+  for (size_t i = 0; i < audit.claims.size(); ++i) {
+    const Claim& claim = audit.claims[i];
+    const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
+    std::vector<Value>& row = table.rows.emplace_back();
+    row = {claim.id, VerdictInWords(claim, audit.results[i])};
+    if (decisive.target) {
+      row.insert(
+          row.end(),
+          {decisive.target->quantity, fmt::format("{}", decisive.check->sigma_px.value_or(kAssertedSigmaPx)),
+           ClaimedInWords(*decisive.target), PowerInWords(audit, *decisive.check, *decisive.target),
+           MakeEstimate(*decisive.result), decisive.result->n});
+    } else {
+      row.emplace_back(audit.results[i].checks.front().not_possible);
+    }
+    row.resize(table.columns.size());
+  }
+  return table;
 }
 
 // The verdicts: of the claims, and beside them those of a study's conditions where they fit on a page.
-std::string VerdictTableAsMarkdown(const Audit& audit) {
+Table MakeVerdictTable(const Audit& audit) {
   constexpr size_t kMostColumns = 8;
   size_t num_columns = 0;
   for (const Claim& claim : audit.claims) {
     if (IsOnStudy(audit)) num_columns = std::max(num_columns, claim.checks.size());
   }
-  const bool has_columns = num_columns > 1 && num_columns <= kMostColumns;
-  std::string header = "| claim | reading | verdict |", rule = "|---|---|---|", rows;
-  for (size_t c = 0; has_columns && c < num_columns; ++c) {
-    header += fmt::format(" {} |", ConditionsInWords(audit.claims.front().checks[c]));
-    rule += "---|";
-  }
+  if (num_columns == 1 || num_columns > kMostColumns) num_columns = 0;
+  Table table{{Column::Text("claim"), Column::Text("reading"), Column::Text("verdict")}};
+  for (size_t c = 0; c < num_columns; ++c)
+    table.columns.push_back(Column::Text(ConditionsInWords(audit.claims.front().checks[c])));
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
-    rows += fmt::format("| {} | {} | {} |", claim.id, claim.reading, VerdictInWords(claim, audit.results[i]));
-    for (size_t c = 0; has_columns && c < num_columns; ++c) {
-      rows += fmt::format(" {} |", VerdictInWords(claim.checks[c], audit.results[i].checks[c]));
-    }
-    rows += "\n";
+    std::vector<Value>& row = table.rows.emplace_back();
+    row = {claim.id, claim.reading, VerdictInWords(claim, audit.results[i])};
+    for (size_t c = 0; c < num_columns; ++c)
+      row.emplace_back(VerdictInWords(claim.checks[c], audit.results[i].checks[c]));
   }
-  return header + "\n" + rule + "\n" + rows;
+  return table;
 }
 
 }  // namespace
 
 std::string PlanAsTable(const Audit& plan) {
   const Budget budget = plan.options.budget;
-  std::vector<std::vector<std::string>> rows = {
-      {"claim", "checks", "holds at nominal", "quantity", "claimed", "trials", "found with p = 0.9"}};
+  Table table{{Column::Key("claim"), Column::Key("quantity"), Column::Count("checks"),
+               Column::Number("holds at nominal", {1.0, "", ".3f"}), Column::Text("claimed"),
+               Column::Count("trials"), Column::Text("found with p = 0.9")}};
   for (const Claim& claim : plan.claims) {
     const Check& check = claim.checks.front();
-    const std::string holds = fmt::format("{:.3f}", HoldsAtNominal(claim, budget, plan.confidence));
+    const double holds = HoldsAtNominal(claim, budget, plan.confidence);
     for (const Target& target : check.targets) {
       if (!target.IsClaimed()) continue;
-      rows.push_back({claim.id, fmt::format("{}", claim.checks.size()), holds, target.quantity,
-                      ClaimedInWords(target), fmt::format("{}", check.limits.Max(budget)),
-                      PowerInWords(plan, check, target)});
+      table.rows.push_back({claim.id, target.quantity, std::ssize(claim.checks), holds,
+                            ClaimedInWords(target), check.limits.Max(budget),
+                            PowerInWords(plan, check, target)});
     }
   }
-  return fmt::format("Seed {}, budget {}. {}\n\n{}", plan.options.seed, BudgetName(budget),
-                     ErrorStatement(plan), FormatColumns(rows));
+  return FormatParagraph(fmt::format("Seed {}, budget {}. {}", plan.options.seed, BudgetName(budget),
+                                     ErrorStatement(plan))) +
+         "\n" + RenderText(table);
 }
 
 std::string AuditAsTable(const Audit& audit) {
-  if (IsOnStudy(audit)) return FormatColumns(RowsPerCondition(audit)) + "\n" + ErrorStatement(audit) + "\n";
-  std::vector<std::vector<std::string>> rows = {
-      {"claim", "verdict", "quantity", "sigma_px", "claimed", "found (p = 0.9)", "measured", "n"}};
-  for (size_t i = 0; i < audit.claims.size(); ++i) {
-    const Claim& claim = audit.claims[i];
-    const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
-    if (!decisive.target) {
-      rows.push_back({claim.id, VerdictInWords(claim, audit.results[i]),
-                      audit.results[i].checks.front().not_possible, "", "", "", "", ""});
-      continue;
-    }
-    rows.push_back({claim.id, VerdictInWords(claim, audit.results[i]), decisive.target->quantity,
-                    fmt::format("{}", decisive.check->sigma_px.value_or(kAssertedSigmaPx)),
-                    ClaimedInWords(*decisive.target), PowerInWords(audit, *decisive.check, *decisive.target),
-                    MeasuredInWords(*decisive.result), fmt::format("{}", decisive.result->n)});
-  }
-  return FormatColumns(rows) + "\n" + ErrorStatement(audit) + "\n";
+  return RenderText(IsOnStudy(audit) ? MakeConditionTable(audit) : MakeClaimTable(audit)) + "\n" +
+         FormatParagraph(ErrorStatement(audit));
 }
 
 std::string AuditAsJson(const Audit& audit) {
@@ -367,10 +386,10 @@ std::string AuditAsJson(const Audit& audit) {
 }
 
 std::string AuditAsMarkdown(const Audit& audit) {
-  std::string text =
-      fmt::format("# Claim audit{}\n\nSeed {}, budget {}. {}\n\n{}",
-                  IsOnStudy(audit) ? " on study " + audit.options.study : "", audit.options.seed,
-                  BudgetName(audit.options.budget), ErrorStatement(audit), VerdictTableAsMarkdown(audit));
+  std::string text = fmt::format("# Claim audit{}\n\nSeed {}, budget {}. {}\n\n{}",
+                                 IsOnStudy(audit) ? " on study " + audit.options.study : "",
+                                 audit.options.seed, BudgetName(audit.options.budget), ErrorStatement(audit),
+                                 RenderMarkdown(MakeVerdictTable(audit)));
   std::string family;
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
