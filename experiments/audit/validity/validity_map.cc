@@ -12,7 +12,8 @@
 
 #include "estimator/point_consistency.h"
 #include "estimator/refinement/sampson_mle.h"
-#include "experiments/core/text/field_text.h"
+#include "experiments/audit/validity/coverage_columns.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/trial/covariance_score.h"
 #include "stats/accuracy.h"
 #include "stats/distributions.h"
@@ -34,7 +35,7 @@ constexpr std::array<Quantity, 4> kQuantities = {{{"f", 8, &ValidityTrial::f_nee
                                                   {"ml_pose", 5, &ValidityTrial::ml_pose_nees}}};
 
 struct Cell {
-  std::string level;  // of the condition, as a field of the table
+  std::string level;  // of the condition
   int num_points;
   double sigma_px;
   std::vector<ValidityTrial> trials;
@@ -82,31 +83,19 @@ std::int64_t CountCovered(const Group& group, const Quantity& quantity) {
                        [&](const ValidityTrial* trial) { return trial->*quantity.statistic <= limit; });
 }
 
-std::string ParallaxField(double parallax_deg) {
-  return std::isnan(parallax_deg) ? "" : fmt::format("{:.4g}", parallax_deg);
-}
-
-std::string RowsOf(const Cell& cell, double median_parallax_deg) {
-  std::string text;
-  for (const Quantity& quantity : kQuantities) {
-    if (!cell.trials.empty()) break;
-    text += fmt::format("{},{},{},{},all,,{},0,0,,,\n", cell.sigma_px, cell.num_points, cell.level,
-                        ParallaxField(median_parallax_deg), quantity.name);
-  }
-  if (cell.trials.empty()) return text;
-  for (const Group& group : GroupsOf(cell.trials)) {
+// A cell without a trial has one group without a conditioning.
+void AddRows(const Cell& cell, double median_parallax_deg, Table* table) {
+  const std::vector<Group> groups =
+      cell.trials.empty() ? std::vector<Group>{{"all", std::nan(""), {}}} : GroupsOf(cell.trials);
+  for (const Group& group : groups) {
     for (const Quantity& quantity : kQuantities) {
       const auto n = static_cast<std::int64_t>(group.trials.size());
       const std::int64_t num_covered = CountCovered(group, quantity);
-      const Interval interval = ExactBinomialInterval(num_covered, n);
-      text += fmt::format("{},{},{},{},{},{:.3g},{},{},{},{:.4f},{:.4f},{:.4f}\n", cell.sigma_px,
-                          cell.num_points, cell.level, ParallaxField(median_parallax_deg), group.name,
-                          group.median_conditioning, quantity.name, n, num_covered,
-                          static_cast<double>(num_covered) / static_cast<double>(n), interval.lower,
-                          interval.upper);
+      table->rows.push_back({cell.sigma_px, std::int64_t{cell.num_points}, cell.level, median_parallax_deg,
+                             group.name, group.median_conditioning, quantity.name, n, num_covered});
+      AddCoverage(num_covered, n, &table->rows.back());
     }
   }
-  return text;
 }
 
 // Over all cells of one condition, which differ in nothing that parallax depends on. NaN: no cell has a
@@ -217,21 +206,23 @@ std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, st
 }
 
 std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell& trials_of) {
-  std::string text = fmt::format(
-      "sigma_px,num_points,{},median_parallax_deg,conditioning,median_conditioning,quantity,n,num_covered,"
-      "coverage,lower,upper\n",
-      options.condition_key);
+  Table table{{Column::Number("sigma_px", MakeCsvFormat("")), Column::Count("num_points"),
+               Column::Text(options.condition_key),
+               Column::Number("median_parallax_deg", MakeCsvFormat(".4g")), Column::Text("conditioning"),
+               Column::Number("median_conditioning", MakeCsvFormat(".3g")), Column::Text("quantity"),
+               Column::Count("n"), Column::Count("num_covered")}};
+  table.AddColumns(CoverageColumns());
   std::uint32_t cell = 0;
   for (const MapCondition& condition : options.conditions) {
     std::vector<Cell> cells;
     for (const int num_points : options.nums_points) {
       for (const double sigma_px : options.sigmas_px)
-        cells.push_back({CsvField(condition.level), num_points, sigma_px, trials_of(cell++)});
+        cells.push_back({condition.level, num_points, sigma_px, trials_of(cell++)});
     }
     const double median_parallax_deg = MedianParallaxDeg(cells);
-    for (const Cell& each : cells) text += RowsOf(each, median_parallax_deg);
+    for (const Cell& each : cells) AddRows(each, median_parallax_deg, &table);
   }
-  return text;
+  return RenderCsv(table);
 }
 
 }  // namespace rcme

@@ -1,14 +1,13 @@
 #include "experiments/audit/validity/validity_reference.h"
 
-#include <fmt/format.h>
-
 #include <limits>
 
+#include "experiments/audit/validity/coverage_columns.h"
 #include "experiments/audit/validity/sample_family.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/trial/covariance_score.h"
 #include "stats/consistency.h"
 #include "stats/distributions.h"
-#include "stats/intervals.h"
 #include "stats/multivariate_moments.h"
 #include "stats/unscented_covariance.h"
 
@@ -137,8 +136,11 @@ CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_
 }
 
 std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of) {
-  std::string text =
-      "sigma_px,num_points,baseline_m,quantity,covariance,num_samples,n,num_covered,coverage,lower,upper\n";
+  Table table{{Column::Number("sigma_px", MakeCsvFormat("")), Column::Count("num_points"),
+               Column::Number("baseline_m", MakeCsvFormat("")), Column::Text("quantity"),
+               Column::Text("covariance"), Column::Count("num_samples"), Column::Count("n"),
+               Column::Count("num_covered")}};
+  table.AddColumns(CoverageColumns());
   const std::int64_t n = std::int64_t{options.num_samples} * options.num_draws;
   std::uint32_t cell = 0;
   for (const int num_points : options.nums_points) {
@@ -146,17 +148,14 @@ std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const 
       const CoveredCounts counts = counts_of(cell++);
       for (size_t q = 0; q < kQuantities.size(); ++q) {
         for (size_t c = 0; c < kCovariances.size(); ++c) {
-          const std::int64_t num_covered = counts[q][c];
-          const Interval interval = ExactBinomialInterval(num_covered, n);
-          text += fmt::format("{},{},{},{},{},{},{},{},{:.4f},{:.4f},{:.4f}\n", sigma_px, num_points,
-                              options.baseline_m, kQuantities[q], kCovariances[c], options.num_samples, n,
-                              num_covered, static_cast<double>(num_covered) / static_cast<double>(n),
-                              interval.lower, interval.upper);
+          table.rows.push_back({sigma_px, std::int64_t{num_points}, options.baseline_m, kQuantities[q],
+                                kCovariances[c], std::int64_t{options.num_samples}, n, counts[q][c]});
+          AddCoverage(counts[q][c], n, &table.rows.back());
         }
       }
     }
   }
-  return text;
+  return RenderCsv(table);
 }
 
 }  // namespace rcme
