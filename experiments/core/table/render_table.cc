@@ -246,7 +246,8 @@ std::string RenderText(const Table& table, size_t width) {
   for (const std::vector<size_t>& block : SplitIntoBlocks(table, BreakCells(cells, most), width)) {
     std::vector<size_t> most_of_block;
     for (const size_t c : block) most_of_block.push_back(most[c]);
-    const auto part = SelectBlock(table, cells, block, text.empty());
+    const Cells part = SelectBlock(table, cells, block, text.empty());
+    if (part.size() == 1 && cells.size() > 1) continue;
     text += (text.empty() ? "" : "\n") + FormatColumns(BreakCells(part, most_of_block));
   }
   return text;

@@ -79,6 +79,8 @@ TEST(RenderText, LeavesOutOfFurtherBlocksTheRowsThatSayNothingThere) {
   EXPECT_EQ(RenderText(table, 20),
             "key  first column\n---  ------------\nx    1\ny    2\n\n"
             "key  second column\n---  -------------\nx    yes\n");
+  EXPECT_EQ(RenderText({table.columns, {table.rows[1]}}, 20),
+            "key  first column\n---  ------------\ny    2\n");
 }
 
 TEST(RenderText, BreaksATextWhereTheKeysLeaveLess) {
