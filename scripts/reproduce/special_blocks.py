@@ -106,7 +106,9 @@ def verdict_counts(spec):
     rows = {row["claim"]: row["claim_verdict"] for row in read_table(spec.argument)}
     words = list(rows.values())
     counts = sorted(((words.count(each), each) for each in set(words)), reverse=True)
-    return f"{len(rows)} claims: " + ", ".join(f"{count} {verdict}" for count, verdict in counts) + "."
+    phrases = {"holds": "hold", "does not hold": "do not hold", "undecided": "are undecided", "measured": "are only measured",
+               "holds in the small-noise limit only": "hold in the small-noise limit only", "not possible": "are not possible"}
+    return f"Of {len(rows)} claims, " + ", ".join(f"{count} {phrases[verdict]}" for count, verdict in counts) + "."
 
 
 def power(spec):
@@ -219,8 +221,8 @@ def least_coverage(spec):
     """The least coverage of all cells "coverage (that of the plain interval) width"."""
     cells = re.findall(r"(\d\.\d{3}) \((\d\.\d{3})\)", (RESULTS / spec.argument).read_text())
     new, plain = min(float(cell[0]) for cell in cells), min(float(cell[1]) for cell in cells)
-    return (f"In each of {len(cells)} cells it covers {new:.3f} or more where 0.95 is claimed; value +- 1.96 standard "
-            f"errors covers as little as {plain:.3f}.")
+    return (f"Yes. It covers at least {new:.3f} in each of {len(cells)} cells, where 0.95 is claimed. The plain interval, value +- 1.96 "
+            f"standard errors, covers as little as {plain:.3f}.")
 
 
 def twins(spec):
