@@ -1,4 +1,4 @@
-// The program's commands and options as plain data: what completion and man pages are made of.
+// The program's commands and options as plain data, for completion scripts and manual pages.
 #pragma once
 
 #include <CLI/CLI.hpp>

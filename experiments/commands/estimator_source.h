@@ -1,4 +1,4 @@
-// The estimator a command works with: by name or from a file, with what the command line changes in it.
+// The estimator of a command: by name or from a file, with the changes of the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The options of the front end (features.h), the same for all commands that match images.
+// Options of the front end (features.h), shared by all commands that match images.
 #pragma once
 
 #include <CLI/CLI.hpp>

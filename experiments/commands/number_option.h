@@ -1,4 +1,4 @@
-// Checks of options: numbers, read as in files (the whole text, decimal, finite), and words.
+// Checks of options: words, and numbers with the same syntax as in files (whole text, decimal, finite).
 #pragma once
 
 #include <fmt/format.h>

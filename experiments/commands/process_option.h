@@ -1,4 +1,4 @@
-// The option --allow-process of the commands that ask estimators (study/command_permission.h).
+// The option --allow-process, for all commands that call estimators (study/command_permission.h).
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// What the commands have in common whose work is a list of items (core/work/work_plan.h).
+// Options and messages shared by the commands whose work is a list of items (core/work/work_plan.h).
 #pragma once
 
 #include <CLI/CLI.hpp>

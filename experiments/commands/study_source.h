@@ -1,4 +1,4 @@
-// The study a command works on, with what the command line changes in it, and one condition of it.
+// The study of a command, with the changes of the command line, and one condition of it.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The option --max-time of commands whose work can be resumed.
+// The option --max-time, for commands whose work can be resumed.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The study that `rcme tune` and `rcme transfer` work on.
+// The study of `rcme tune` and `rcme transfer`.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// The commands that set real pairs beside simulation and the paper; see commands.h.
+// The commands that compare real pairs with simulation and with the paper; see commands.h.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
-// CRC-32 of what files hold. It finds accidents: every flip of one bit of a number or a text, any other change with
-// probability 1 - 2^-32. It is no signature: who changes a file on purpose can compute it again.
+// CRC-32 of file contents. It detects accidents: every flip of one bit of a number or a text, and any other change
+// with probability 1 - 2^-32. It is not a signature: whoever changes a file on purpose can compute it again.
 #pragma once
 
 #include <cstdint>

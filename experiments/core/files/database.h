@@ -1,4 +1,4 @@
-// A connection to a SQLite file of which nothing is trusted, and its errors as sentences.
+// A connection to an untrusted SQLite file; its errors are sentences.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>

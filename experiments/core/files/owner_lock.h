@@ -1,6 +1,6 @@
-// Temporary files and folders whose process may be killed: it holds a lock (flock) on them, which ends with
-// it however that ends. So whoever gets the lock knows that nobody else uses them; how old they are says
-// nothing.
+// Temporary files and folders whose process may be killed. The process holds a lock (flock) on them, which the
+// system releases however the process ends. So whoever gets the lock knows that nobody else uses them;
+// their age says nothing.
 #pragma once
 
 #include <string>

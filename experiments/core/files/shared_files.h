@@ -1,5 +1,5 @@
-// What comes with the program and is read while it runs: studies and estimator files, by name from any
-// folder, and the scripts that draw figures.
+// Files that are installed with the program and read while it runs: studies and estimator files, by name from
+// any folder, and the scripts that draw figures.
 #pragma once
 
 #include <string>

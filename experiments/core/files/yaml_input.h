@@ -1,4 +1,4 @@
-// Files that people write in YAML, read such that every message names file, line and key.
+// Reads YAML files that people write. Every error message names file, line and key.
 #pragma once
 
 #include <yaml-cpp/yaml.h>

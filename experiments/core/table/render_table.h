@@ -1,4 +1,4 @@
-// A Table as text: each format is one function of it.
+// Renders a Table as text, with one function per format.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
-// What a command found, as rows under typed columns. A column says all that a renderer has to know of its
-// values; no renderer knows a quantity by its name.
+// The result of a command: rows under typed columns. A column describes everything that a renderer needs to
+// know about its values; no renderer knows a quantity by its name.
 #pragma once
 
 #include <cstdint>

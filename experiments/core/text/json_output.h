@@ -1,4 +1,4 @@
-// JSON as the program writes it: one object that begins with its format.
+// The JSON that the program writes: one object that begins with its format.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,4 @@
-// Messages for people on standard error. One that cannot be written is lost: no work ends for it.
+// Messages for people on standard error. If one cannot be written it is lost; no work ends because of it.
 #pragma once
 
 #include <fmt/format.h>

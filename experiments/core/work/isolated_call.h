@@ -1,4 +1,4 @@
-// Work in a process of its own, so that a crash, an exit or an endless loop in code of others is an outcome.
+// Runs work in its own process, so that a crash, an exit or an endless loop in foreign code is an outcome.
 #pragma once
 
 #include <cstddef>

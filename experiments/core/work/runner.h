@@ -1,4 +1,4 @@
-// Computes the items of a work (core/work/work_plan.h), keeps their results and gets them back.
+// Computes the items of a work plan (core/work/work_plan.h), keeps their results and reads them back.
 #pragma once
 
 #include <chrono>

@@ -1,11 +1,11 @@
 // A fixed share of a study's trials, so that many machines compute them, each into a file of its own.
 //
 // Shard i of n has those scenes s of condition c with (s + offset(c)) mod n = i - 1, where offset(c) =
-// floor(n frac(c / golden ratio)); a scene is a trial, or the repeats_per_scene trials that share it. So
-// every condition, cheap or dear, is divided evenly to within one scene, and who has one more changes from
-// condition to condition (the offsets are a golden rotation, whose points lie evenly in any number). A
-// trial's shard depends on nothing else: not on how many trials there are, so that a run of shards can be
-// extended, and not on what has been computed.
+// floor(n frac(c / golden ratio)). A scene is a trial, or the repeats_per_scene trials that share it. Every
+// condition is thus divided evenly to within one scene, whatever its trials cost. The offsets are a golden
+// rotation, whose points are evenly spread in any number, so a different shard has the extra scene in each
+// condition. The shard of a trial does not depend on the number of trials or on what has been computed, so a
+// run in shards can be extended.
 #pragma once
 
 #include <cstdint>

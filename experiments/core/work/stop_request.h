@@ -1,6 +1,6 @@
-// Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request: what is in hand is finished and kept,
-// then the program ends. A wait for an estimator outside the program is cut off by the signals
-// (parameters/stop_signal.h). The same signal a second time ends it at once.
+// Treats Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request: the items in progress are finished
+// and kept, then the program ends. A signal also cuts off a wait for an estimator outside the program
+// (parameters/stop_signal.h). The same signal a second time ends the program at once.
 #pragma once
 
 #include <chrono>
