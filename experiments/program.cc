@@ -67,25 +67,24 @@ int RunProgram(int argc, const char* const* argv, const char* installed_share) {
   std::set_terminate(Terminate);
   std::signal(SIGXFSZ, SIG_IGN);           // a file-size limit is an error message, not a kill
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
-  CLI::App app{
-      "Validates robust two-view camera-motion estimators (RCME and peers) by simulation, and runs them on "
-      "real matches.\n"
-      "\n"
-      "A first session:\n"
-      "  rcme list studies                                            what there is to run\n"
-      "  rcme run failure_vs_outliers --out run.sqlite                a study by its name, or a file of "
-      "yours\n"
-      "  rcme summarize run.sqlite                                    rates with exact intervals\n"
-      "  rcme compare run.sqlite                                      each estimator against the first\n"
-      "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure   rates with their intervals\n"
-      "  rcme report run.sqlite --out report.html                     all of it on one page, with figures\n"
-      "  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full\n"
-      "  rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture\n"
-      "  rcme tune tune_mu_lambda --out tuned.yaml                    thresholds with a guarantee\n"
-      "  rcme audit --out audit                                       every claim of the paper, checked\n"
-      "  rcme estimate matches.csv.gz                                 one real pair, or a folder of them\n"
-      "  rcme help estimate                                           help for a command\n",
-      "rcme"};
+  CLI::App app{R"(Measures how often two-view motion estimators are wrong, and whether they know it.
+
+A first session:
+  rcme list studies                                            the installed studies
+  rcme run failure_vs_outliers --out run.sqlite                run one, or a study file of yours
+  rcme summarize run.sqlite                                    rates with exact intervals
+  rcme compare run.sqlite                                      each estimator against the first
+  rcme summarize run.sqlite --format csv --out summary.csv     the same for programs and figures
+  rcme plot failure_rate summary.csv --x outlier_ratio --out figure
+  rcme report run.sqlite --out report.html                     everything on one page
+  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full
+  rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture
+  rcme tune tune_mu_lambda --out tuned.yaml                    thresholds with a guarantee
+  rcme audit --out audit                                       every claim of the paper, checked
+  rcme estimate matches.csv.gz                                 one real pair, or a folder of them
+  rcme help estimate                                           help for a command
+)",
+               "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
   app.get_formatter()->column_width(34);
   app.require_subcommand(0, 1);            // of `rcme plot audit` the second word is no command

@@ -58,7 +58,7 @@ std::vector<int> IndicesIn(const Json& value, const std::string& key) {
   std::vector<int> indices;
   for (const double number : NumbersIn(value, key, 0)) {
     if (number != std::floor(number) || number < 0.0 || number > 1e9)
-      Fail(fmt::format("{}: {} is no index of a match, from 0", key, number));
+      Fail(fmt::format("{}: {} is not an index of a match, counted from 0", key, number));
     indices.push_back(static_cast<int>(number));
   }
   return indices;
@@ -95,7 +95,7 @@ OutsideAnswer AnswerIn(const Json& object) {
   if (const Json* seconds = find("seconds")) {
     answer.seconds = NumberIn(*seconds, "seconds");
     if (!(answer.seconds >= 0.0 && answer.seconds < 1e9))
-      Fail(fmt::format("seconds: {} is no time of a call", answer.seconds));
+      Fail(fmt::format("seconds: {} is not a time of a call", answer.seconds));
   }
   return answer;
 }
@@ -151,7 +151,7 @@ AnswerLine AnswerFromJson(std::string_view line) {
     if (const auto id = json.find("id"); id != json.end() && !id->is_null()) read.id = TextIn(*id, "id");
     read.answer = AnswerIn(json);
   } catch (const Json::exception&) {
-    read.fault = fmt::format("{} is no JSON object on one line (other output belongs on standard error)",
+    read.fault = fmt::format("{} is not a JSON object on one line (other output belongs on standard error)",
                              Quoted(line.substr(0, 80)));
   } catch (const NoOutsideAnswer& none) {
     read.fault = none.what();

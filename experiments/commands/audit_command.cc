@@ -62,7 +62,7 @@ Audit MergeAudit(const std::vector<Claim>& all, const AuditOptions& options,
   }
   RequireNoneMissing(items, merged.missing, merged.parts.num_shards);
   PrintMessage("{}\n", DescribeCosts(items, merged.parts));
-  PrintMessage("{:.4g} s of it for trials after those that a check took\n", merged.unneeded_seconds);
+  PrintMessage("{:.4g} s of it for trials beyond those that a check needed\n", merged.unneeded_seconds);
   return std::move(merged.audit);
 }
 
@@ -97,9 +97,9 @@ void RunAuditCommand(const AuditArguments& arguments) {
     return;
   }
   if (arguments.out.empty())
-    throw InputError("--out is missing: the folder for the results (or ask for --plan)");
+    throw InputError("--out is missing; give the folder for the results, or ask for --plan");
   if (!arguments.round.empty() && arguments.shards.shard.empty() && arguments.shards.parts.empty())
-    throw InputError("--round: only with --shard or --merge");
+    throw InputError("--round needs --shard or --merge");
   SelectClaims(all, options.only);
   if (!arguments.shards.shard.empty()) return RunAuditPart(PlanAudit(all, options), arguments);
   if (!arguments.shards.parts.empty()) {
@@ -117,71 +117,65 @@ void RunAuditCommand(const AuditArguments& arguments) {
 }  // namespace
 
 void AddAuditCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "audit",
-      "Check every claim of the paper: it holds, holds at small noise only, does not hold, or is undecided");
-  command->footer(
-      "Every claim is a rate or a mean with the range that counts as nominal. Its trials stop when the "
-      "verdict is\n"
-      "decided; the intervals hold however often they are looked at. Writes DIR/audit.html and "
-      "DIR/audit.md\n"
-      "(to read), DIR/audit.json (everything) and one figure per family of claims.\n"
-      "\n"
-      "  rcme audit --out audit                                   all claims, at most a few minutes\n"
-      "  rcme audit --only inlier,sigma_p.theta --out audit       a family and one claim\n"
-      "  rcme audit --budget full --seed 2 --out audit            narrow intervals, other random streams\n"
-      "  rcme audit --plan                                        margins, trials and power, without a run\n"
-      "\n"
-      "On a study of your own (your cameras, your noise, your outliers, your estimators) it checks the "
-      "claims "
-      "about\n"
-      "calibration in each condition; a claim holds if it holds in all of them. Minimal samples and maximum\n"
-      "likelihood are of true matches, which a simulation knows; real pairs cannot be audited.\n"
-      "\n"
-      "  rcme audit study.yaml --out audit                        all conditions; says the time beforehand\n"
-      "  rcme audit study.yaml --set outlier_ratio=0.3 --out audit    one level of a factor\n"
-      "  rcme audit study.yaml --only estimator --out audit       only what the study's estimators report\n"
-      "\n"
-      "Stopped (Ctrl-C, SIGTERM, --max-time) or killed, the same command goes on: the checks that are "
-      "decided\n"
-      "are kept in DIR/unfinished.part until the end.\n"
-      "\n"
-      "On many machines each runs a share of every check's trials; the parts give the same bytes as one run. "
-      "It goes\n"
-      "in rounds, each of them 1 and 2, until 2 does not end with exit code 75 (docs/many_machines.md):\n"
-      "\n"
-      "  1  rcme audit --shard 3/64 --out parts/3.json                    later rounds: --round round.json\n"
-      "  2  rcme audit --merge parts/*.json --out audit --round round.json");
+  CLI::App* command = app.add_subcommand("audit", "Check every claim of the paper, with a verdict for each");
+  command->footer(R"(Every claim is a rate or a mean with a range that counts as nominal. Its trials stop as
+soon as the verdict is decided, and its intervals are valid at every look.
+Writes DIR/audit.html and DIR/audit.md (to read), DIR/audit.json (everything) and a
+figure per family of claims.
+
+  rcme audit --out audit                               all claims, a few minutes
+  rcme audit --only inlier,sigma_p.theta --out audit   a family and one claim
+  rcme audit --budget full --seed 2 --out audit        narrower intervals, other streams
+  rcme audit --plan                                    margins, trials and power; no run
+
+With a study of your own (cameras, noise, outliers, estimators) the command checks the
+claims about calibration in each of its conditions. A claim holds if it holds in all of
+them. Minimal samples and maximum likelihood use the true matches, which a simulation
+knows; real pairs cannot be audited.
+
+  rcme audit study.yaml --out audit                          all conditions
+  rcme audit study.yaml --set outlier_ratio=0.3 --out audit  one level of a factor
+  rcme audit study.yaml --only estimator --out audit         only the estimators' answers
+
+If the command is stopped (Ctrl-C, SIGTERM, --max-time) or killed, run it again: decided
+checks are kept in DIR/unfinished.part until the end.
+
+On many machines, each runs a share of the trials of every check; the merged parts have
+the bytes of a single run. Repeat steps 1 and 2 until step 2 no longer ends with exit
+code 75 (docs/many_machines.md):
+
+  1  rcme audit --shard 3/64 --out parts/3.json      later rounds: --round round.json
+  2  rcme audit --merge parts/*.json --out audit --round round.json)");
   auto arguments = std::make_shared<AuditArguments>();
-  command->add_option("study", arguments->study,
-                      "study file (YAML): the claims about calibration on its scene, cameras, motion, noise, "
-                      "outliers and estimators, in each of its conditions. Without one: every claim of the "
-                      "paper, on built-in scenes");
+  command->add_option(
+      "study", arguments->study,
+      "study file (YAML) or its name: checks the claims about calibration in each of its conditions; "
+      "default: every claim of the paper, on built-in scenes");
   command
       ->add_option("--only", arguments->only,
-                   "ids of claims or of families, comma-separated; `rcme list claims`")
+                   "ids of claims or families, separated by commas (`rcme list claims`)")
       ->delimiter(',');
   command
-      ->add_option("--budget", arguments->budget, "quick (minutes) or full (up to hours; says so beforehand)")
+      ->add_option("--budget", arguments->budget,
+                   "quick (minutes) or full (up to hours; prints an estimate first)")
       ->check(OneOf({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,
-                      "folder for the results, made if missing; with --shard the file of the part");
+                      "folder for the results, created if missing; with --shard the file of the part");
   CLI::Option* plan = command->add_flag(
       "--plan", arguments->only_plan,
-      "only print the plan: margins, trials, and what each claim finds with probability 0.9");
+      "only print the plan: margins, trials, and the departures found with probability 0.9");
   const ShardOptions shards = AddShardOptions(command, "trials", &arguments->shards);
-  command->add_option(
-      "--round", arguments->round,
-      "with --merge: written where trials are missing; with --shard: which trials to run, those "
-      "of the first round unless given");
+  command->add_option("--round", arguments->round,
+                      "with --merge: file to write if trials are missing; "
+                      "with --shard: that file, which names the trials to run; default: the first round");
   shards.shard->excludes(plan);
   shards.merge->excludes(plan);
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   command
       ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The results do not depend on it, measured times excepted")
+                   "threads; 0: one per core. Results do not depend on it, except for measured times")
       ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { RunAuditCommand(*arguments); });
 }

@@ -29,13 +29,13 @@ std::string EndInWords(const FoundEffort& found) {
     case EffortEnd::kReached:
       return "";
     case EffortEnd::kNoEffort:
-      return "has no option that sets its effort";
+      return "has no option for its effort";
     case EffortEnd::kTooSlow:
-      return "takes longer even so";
+      return "takes longer even at its least effort";
     case EffortEnd::kOwnRule:
       return "stops earlier by its own rule";
     case EffortEnd::kAtTheLimit:
-      return "more is not allowed";
+      return "reached the greatest effort allowed";
   }
   return "";
 }
@@ -80,27 +80,22 @@ void RunBudget(const BudgetArguments& arguments) {
 }  // namespace
 
 void AddBudgetCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "budget", "Give every estimator of a study the effort at which a call takes a stated time");
-  command->footer(
-      "How many hypotheses decides many a comparison. This searches for each estimator the value of the "
-      "option\n"
-      "that sets its work (num_iterations, max_iterations) at which the mean time of a call over all\n"
-      "conditions of the study is the stated one, on this machine with one thread, and writes the study "
-      "with\n"
-      "these values. The efforts are numbers in that file: whoever runs it compares the same thing, "
-      "whatever\n"
-      "the machine. An estimator that cannot reach the time keeps the nearest effort, and the table says "
-      "why;\n"
-      "`rcme summarize` names the effort of each.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme budget studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml\n"
-      "  rcme run peers_10ms.yaml --out run.sqlite");
+  CLI::App* command =
+      app.add_subcommand("budget", "Set the effort of every estimator so that a call takes a given time");
+  command->footer(R"(Many comparisons depend on how many hypotheses each estimator draws. This command finds
+for each estimator the value of its effort option (num_iterations, max_iterations) at
+which a call takes the given time: the mean over all conditions of the study, on this
+machine, with one thread. It writes the study with these values, so everybody who runs
+that file compares the same thing. If an estimator cannot reach the time, it gets the
+nearest effort and the table says why. `rcme summarize` prints the effort of each.
+
+Examples:
+  rcme budget studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml
+  rcme run peers_10ms.yaml --out run.sqlite)");
   auto arguments = std::make_shared<BudgetArguments>();
   command
       ->add_option("STUDY", arguments->study,
-                   "study file (YAML), or the name of one that comes with the program")
+                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
       ->required();
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
@@ -109,10 +104,9 @@ void AddBudgetCommand(CLI::App& app) {
       ->transform(NumberIn({1e-3, 1e6}));
   command
       ->add_option("--calls", arguments->calls,
-                   "calls per condition and step of the search, and as many fresh ones for the table "
-                   "(default: 5)")
+                   "calls per condition and search step, and fresh calls for the table (default: 5)")
       ->transform(WholeNumberIn(1, 100'000));
-  command->add_option("-o,--out", arguments->out, "the study with the efforts (YAML)")->required();
+  command->add_option("-o,--out", arguments->out, "study file to write, with the efforts (YAML)")->required();
   command->callback([arguments] { RunBudget(*arguments); });
 }
 

@@ -124,29 +124,29 @@ void CheckFile(const CheckArguments& arguments) {
 
 void AddCheckCommand(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("check", "Is a result file sound? If not: what is damaged, and what can be saved");
-  command->footer(
-      "Every command checks what it reads of a result file, and refuses a damaged one: the tables and their\n"
-      "columns, the type and range of every number, one record per estimator in every trial, a checksum\n"
-      "(CRC-32) per trial, and per condition how many trials there are and the sum of their checksums.\n"
-      "This command reads all of it and goes on where those stop. It names the trials that are not sound;\n"
-      "with --save-good it writes the sound ones to a new file, whole or not at all, which `rcme run` then\n"
-      "completes: a trial is a function of the study, its seed and its number, so that the result is the\n"
-      "same as if nothing had happened.\n"
-      "The exit code is 0 for a sound file and where the sound trials were saved, 2 for a damaged one.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme check run.sqlite\n"
-      "  rcme check run.sqlite --save-good saved.sqlite\n"
-      "  rcme run study.yaml --out saved.sqlite                     the trials that were lost\n"
-      "  rcme check run.sqlite --study study.yaml --save-good saved.sqlite    where the study in the file is "
-      "damaged");
+      app.add_subcommand("check", "Check a result file, list damaged trials, and save the sound ones");
+  command->footer(R"(Every command checks the result file that it reads and refuses a damaged one. It checks
+the tables and their columns, the type and range of every number, one record per
+estimator in every trial, a checksum (CRC-32) per trial, and the number and checksum of
+the trials of each condition.
+
+This command reads damaged files too and names the damaged trials. --save-good writes
+the sound trials to a new file, whole or not at all. `rcme run` then computes the others:
+the result is the same as if nothing had been lost.
+Exit codes: 0 if the file is sound or its sound trials were saved, 2 if it is damaged.
+
+Examples:
+  rcme check run.sqlite
+  rcme check run.sqlite --save-good saved.sqlite
+  rcme run study.yaml --out saved.sqlite                   computes the lost trials
+  rcme check run.sqlite --study study.yaml --save-good saved.sqlite
+                                                           the study is damaged too)");
   auto arguments = std::make_shared<CheckArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("--save-good", arguments->save_good,
                       "write the sound trials of a damaged file to this new file");
   command->add_option("--study", arguments->study,
-                      "study file (YAML) of the run, where what the file says of it is damaged too");
+                      "study file (YAML) of the run, if the study inside the result file is damaged");
   AddStudyOptions(command, &arguments->changes);
   command->callback([arguments] { CheckFile(*arguments); });
 }

@@ -54,7 +54,7 @@ void Print(const EstimatorCheckArguments& arguments, const ContractCheck& check,
   fmt::print("{:<7} {:<12} {}{}\n", result.has_passed ? "ok" : "FAILED", check.name, at,
              Printable(result.finding));
   if (!result.has_passed) {
-    fmt::print("{:<20} asked for: {}\n{:<20} again: {}\n", "", check.doc, "",
+    fmt::print("{:<20} required:  {}\n{:<20} reproduce: {}\n", "", check.doc, "",
                Again(arguments, check.name, result.problem));
   }
   std::fflush(stdout);
@@ -85,24 +85,24 @@ void RunChecks(const EstimatorCheckArguments& arguments) {
 
 void AddCheckEstimatorCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "check-estimator", "Put an estimator through its contract: does it do what every command relies on?");
+      "check-estimator", "Test that an estimator obeys the contract that every command relies on");
   std::string checks;
   for (const ContractCheck& check : ContractChecks())
     checks += fmt::format("  {:<12} {}\n", check.name, check.doc);
   command->footer(
-      "For a user's own estimator (examples/own_estimator), before it is audited or put in a study. The\n"
-      "contract is in estimator/motion_estimator.h and motion_estimate.h. The checks:\n" +
-      checks +
-      "Each runs in a process of its own, so that a crash or a call that never returns fails the check. A\n"
-      "failed check names the problem it was found on and the command that finds it again. What the checks\n"
-      "do not ask is whether motions are precise and covariances right: that is what `rcme audit` decides.\n"
-      "\n"
-      "Exit code: 0 if all checks pass, 1 if one fails.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme check-estimator rcme --set reading=rank_aware\n"
-      "  own_rcme check-estimator opencv\n"
-      "  gdb --args own_rcme check-estimator opencv --only bad_input --problem 'no match' --in-process");
+      R"(Use it on your own estimator (examples/own_estimator) before you audit it or put it in a study. The
+contract is in estimator/motion_estimator.h and motion_estimate.h. The checks:
+)" + checks +
+      R"(Each check runs in its own process, so a crash or a call that never returns fails the check. A
+failed check names its problem and the command that reproduces it. The checks do not test whether
+motions are precise and covariances right: `rcme audit` does.
+
+Exit code: 0 if all checks pass, 1 if one fails.
+
+Examples:
+  rcme check-estimator rcme --set reading=rank_aware
+  own_rcme check-estimator opencv
+  gdb --args own_rcme check-estimator opencv --only bad_input --problem 'no match' --in-process)");
   auto arguments = std::make_shared<EstimatorCheckArguments>();
   arguments->estimator.name.clear();
   CLI::Option* name =
@@ -114,18 +114,18 @@ void AddCheckEstimatorCommand(CLI::App& app) {
                           ->check(OneOf(CheckNames()));
   command
       ->add_option("--problem", arguments->problem,
-                   "only the problem of this name, as a failed check gives it")
+                   "only the problem with this name, as printed by a failed check")
       ->needs(only);
   command->add_option("--seed", arguments->seed, "seed of the problems and of the random samples")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command
       ->add_option("--seconds-per-call", arguments->seconds_per_call,
-                   "a call that takes longer is taken to hang, s")
+                   "a call that takes longer counts as hanging, s")
       ->transform(NumberIn({0.01, 1e6}))
       ->capture_default_str();
   command->add_flag("--in-process", arguments->is_in_process,
-                    "no process of its own for each check, for a debugger: a crash is a crash");
+                    "run the checks in this process, for a debugger; a crash then ends the program");
   command->callback([arguments] {
     if (arguments->estimator.name.empty() && !arguments->estimator.file)
       throw InputError("check-estimator: give the name of an estimator or --estimator-file");

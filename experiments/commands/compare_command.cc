@@ -33,47 +33,45 @@ void RunCompare(const CompareArguments& arguments) {
 }  // namespace
 
 void AddCompareCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "compare", "Each estimator against one of them, on the same trials: does it fail more often?");
-  command->footer(
-      "All estimators of a study see the same problems, so a trial is a pair. For the events failure,\n"
-      "refusal and failure_or_refusal, in every condition: in how many trials it happened to both, to one\n"
-      "only, to neither; the difference of the rates with Tango's 95 % interval, as a rule narrower than "
-      "the\n"
-      "intervals of the two rates suggest, because hard trials are hard for both; and McNemar's exact\n"
-      "p-value. Where nothing differs, up to one in twenty of these is still below 0.05: claim a difference\n"
-      "by Holm's p-value, which is adjusted for all tests of the comparison: everything compared, every\n"
-      "estimator and condition that has trials.\n"
-      "\n"
-      "--of scores compares means (auc_5_deg, ..., maa_10_deg: `rcme list quantities`), --of errors the\n"
-      "error of each trial (the median of the differences, and the sign test); names, or several of all\n"
-      "these with commas, choose. What is not asked for costs the others nothing.\n"
-      "\n"
-      "Scores have intervals and p-values that hold for any law of the scores and at every look. A run of\n"
-      "--until stopped by what it saw: its events have such ones too (a confidence sequence of the\n"
-      "discordant trials), and its errors the sign test in this way. --anytime asks for the same where\n"
-      "trials were added by hand until something was seen.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme compare run.sqlite                                    against the study's first estimator\n"
-      "  rcme compare run.sqlite --against rcme_rank_aware          against another\n"
-      "  rcme compare run.sqlite --of auc_10_deg,failure            one score and one event\n"
-      "  rcme compare run.sqlite --format csv --out comparison.csv\n"
-      "  rcme plot paired_difference comparison.csv --x outlier_ratio --out difference");
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare each estimator with a reference on the same trials");
+  command->footer(R"(All estimators of a study solve the same problems, so every trial is a pair. For the
+events failure, refusal and failure_or_refusal the table has, in each condition, the
+trials in which the event happened to both estimators, to one, or to none; the
+difference of the rates with Tango's 95 % interval; and McNemar's exact p-value. The
+interval is usually narrower than those of the two rates suggest, because hard trials
+are hard for both. Without any difference up to one p-value in twenty is still below
+0.05, so judge by Holm's p-value: it is adjusted for all tests of the comparison.
+
+--of scores compares mean scores (auc_5_deg, ..., maa_10_deg: `rcme list quantities`),
+--of errors the errors of each trial (median difference and sign test). You can also
+give names, separated by commas. Only what you ask for enters Holm's adjustment.
+
+Scores have intervals and p-values that are valid for any distribution and at every
+look. After `rcme run --until`, which stops by what it saw, events and errors have such
+intervals and p-values too (from the sequence of discordant trials). Use --anytime if
+you added trials by hand until you saw a difference.
+
+Examples:
+  rcme compare run.sqlite                                 against the first estimator
+  rcme compare run.sqlite --against rcme_rank_aware       against another
+  rcme compare run.sqlite --of auc_10_deg,failure         one score and one event
+  rcme compare run.sqlite --format csv --out comparison.csv
+  rcme plot paired_difference comparison.csv --x outlier_ratio --out difference)");
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("--against", arguments->against,
-                      "label of the reference estimator; default: the first of the study");
+                      "label of the reference estimator; default: the study's first");
   command
       ->add_option("--of", arguments->options.compared,
-                   "events, scores, errors, or names of some, with commas between them")
+                   "events, scores, errors, or single names, separated by commas")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->capture_default_str();
   command->add_flag("--pooled", arguments->is_pooled,
-                    "all conditions as one, every pair with the same weight");
+                    "all conditions together, every trial with the same weight");
   command->add_flag("--anytime", arguments->options.is_anytime_valid,
-                    "intervals and p-values that hold however often somebody has looked");
+                    "intervals and p-values that stay valid however often you look");
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
       ->check(OneOf({"table", "csv", "json"}))
       ->capture_default_str();

@@ -137,13 +137,12 @@ std::string Fish(const CLI::App& app) {
 }  // namespace
 
 void AddCompletionCommand(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("completion", "A script that completes commands, options and names in a shell");
-  command->footer(
-      "Where rcme is installed the scripts are, too, and a new shell knows them. Otherwise:\n"
-      "  bash   rcme completion bash > ~/.local/share/bash-completion/completions/rcme\n"
-      "  zsh    rcme completion zsh > _rcme      in a folder of $fpath\n"
-      "  fish   rcme completion fish > ~/.config/fish/completions/rcme.fish");
+  CLI::App* command = app.add_subcommand(
+      "completion", "Print a script that completes commands, options and names in your shell");
+  command->footer(R"(If rcme is installed, its scripts are too, and every new shell uses them. Otherwise:
+  bash   rcme completion bash > ~/.local/share/bash-completion/completions/rcme
+  zsh    rcme completion zsh > _rcme      in a folder of $fpath
+  fish   rcme completion fish > ~/.config/fish/completions/rcme.fish)");
   auto shell = std::make_shared<std::string>();
   command->add_option("shell", *shell, "bash, zsh or fish")
       ->required()

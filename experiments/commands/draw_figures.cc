@@ -27,9 +27,9 @@ std::string FindScript(const std::string& kind) {
   const std::string folder = PathOf(SharedFolder::kPlots);
   if (folder.empty())
     throw InputError(
-        "the scripts that draw figures are not there: they come with the program, in share/rcme/plots beside "
-        "its "
-        "folder bin; move the whole installation, or install it again with cmake --install");
+        "the scripts that draw figures are missing: they belong in share/rcme/plots beside the program's "
+        "folder bin; "
+        "move the whole installation, or install it again with cmake --install");
   return (std::filesystem::path(folder) / (kind + ".py")).string();
 }
 

@@ -263,64 +263,60 @@ void RunEstimate(const EstimateArguments& arguments) {
 
 void AddEstimateCommand(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("estimate", "Estimate the motion between two images from files of matches");
-  command->footer(
-      "Says what was found (how camera 2 is turned and where it stands), how sure it is, and what it rests\n"
-      "on: inliers, the noise of their residuals against the assumed one, parallax, the share that could\n"
-      "lie on one plane. Where there is no motion, why, and what to try.\n"
-      "\n"
-      "Several files, or a folder: a table with one line each; with --json one line of JSON each.\n"
-      "'-' reads standard input. A file may be bare, four columns x1 y1 x2 y2 separated by commas or "
-      "blanks;\n"
-      "then --K says the intrinsics, once for both images or once for each. A K that does not fit the size "
-      "of\n"
-      "the images, or where the key points lie, is a warning; one that cannot be theirs is refused.\n"
-      "\n"
-      "Without a word about the estimator it is rcme_calibrated, which says how likely it is to be wrong; "
-      "the\n"
-      "paper's is --estimator rcme. An estimator file (YAML) holds a name, a label and options, so that an\n"
-      "estimator that was tuned by simulation runs on a real pair with the very options that were\n"
-      "validated; the answer goes by its label. It may be as short as\n"
-      "  name: rcme\n"
-      "  label: rcme_tuned\n"
-      "  options: {reading: rank_aware, mu: 5.25, lambda: 0.6}\n"
-      "and the same file serves `rcme run STUDY --add-estimator tuned.yaml`.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme estimate matches.csv.gz --sigma 0.7 --json\n"
-      "  rcme estimate pairs/                                               one line for each file\n"
-      "  rcme estimate bare.txt --K 800,800,319.5,239.5                     four columns, no header\n"
-      "  some_matcher a.jpg b.jpg | rcme estimate - --K 800,800,319.5,239.5\n"
-      "  rcme estimate matches.csv.gz --estimator standard --set num_iterations=1000\n"
-      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml --set mu=6   the file's options but mu\n"
-      "\n"
-      "Exit codes: 0 answered, a refusal too; 2 a file that cannot be read or holds no problem (too few\n"
-      "matches, all on one line), of several files when one is so.");
+      app.add_subcommand("estimate", "Estimate the motion between two images from match files");
+  command->footer(R"(Prints the rotation and direction of camera 2, how certain they are, and the evidence:
+inliers, the noise of their residuals compared with the assumed one, parallax, and the
+share of matches that could lie on one plane. If there is no motion, it says why and
+what to try.
+
+For several files, or a folder, it prints a table with a line per file, or with --json a
+line of JSON per file. '-' reads standard input. A file may have just four columns
+x1 y1 x2 y2, separated by commas or blanks; give the intrinsics with --K, once for both
+images or once for each. A K that does not fit the size of the images or the positions
+of the key points gives a warning; an impossible K is refused.
+
+The default estimator, rcme_calibrated, states the probability that its motion is wrong;
+--estimator rcme is that of the paper. An estimator file (YAML) has a name, a label and
+options, so an estimator that you tuned by simulation runs on real pairs with the same
+options. Its answer has its label. For example:
+  name: rcme
+  label: rcme_tuned
+  options: {reading: rank_aware, mu: 5.25, lambda: 0.6}
+`rcme run STUDY --add-estimator tuned.yaml` reads the same file.
+
+Examples:
+  rcme estimate matches.csv.gz --sigma 0.7 --json
+  rcme estimate pairs/                                  a line per file
+  rcme estimate bare.txt --K 800,800,319.5,239.5        four columns, no header
+  some_matcher a.jpg b.jpg | rcme estimate - --K 800,800,319.5,239.5
+  rcme estimate matches.csv.gz --estimator standard --set num_iterations=1000
+  rcme estimate matches.csv.gz --estimator-file tuned.yaml --set mu=6
+
+Exit codes: 0 answered or refused; 2 if a file cannot be read or is no problem (too few
+matches, all matches on a line).)");
   auto arguments = std::make_shared<EstimateArguments>();
   command
       ->add_option("matches", arguments->matches,
-                   "match files, plain or gzip (header '# size1: w h', '# K1_fx_fy_cx_cy: ...' and 2, rows "
-                   "x1,y1,x2,y2), folders of them, or - for standard input")
+                   "match files (plain or gzip), folders of them, or - for standard input; "
+                   "header '# size1: w h', '# K1_fx_fy_cx_cy: ...' and 2, rows x1,y1,x2,y2")
       ->required();
   command
       ->add_option("--K", arguments->intrinsics,
-                   "fx,fy,cx,cy in px, of files that have none; given twice: of image 1, of image 2")
+                   "fx,fy,cx,cy in px, for files without intrinsics; give it twice if the images differ")
       ->allow_extra_args(false);
   CLI::Option* estimator =
       command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
           ->capture_default_str();
   AddEstimatorOptions(command, estimator, &arguments->estimator);
-  command->add_option("--sigma", arguments->sigma_px, "noise standard deviation per coordinate, px")
+  command->add_option("--sigma", arguments->sigma_px, "standard deviation of the noise per coordinate, px")
       ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
-  command->add_flag(
-      "--json", arguments->as_json,
-      "one JSON object (of several files one a line); R row-major (9), pose_cov row-major (36), of [w, dt]; "
-      "without a direction "
-      "(direction_not_observable) R and rotation_cov (9) alone");
+  command->add_flag("--json", arguments->as_json,
+                    "one JSON object per file: R (9) and pose_cov (36, of [w, dt]), row-major; "
+                    "without a direction (direction_not_observable) only R and rotation_cov (9)");
   command->callback([arguments] { RunEstimate(*arguments); });
 }
 

@@ -13,15 +13,13 @@ namespace rcme {
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice) {
   command
       ->add_option("--estimator-file", choice->file,
-                   "estimator file, or the name of one that comes with the program (`rcme list "
-                   "estimator_files`): name and "
-                   "options from there, in place of a name")
+                   "estimator file with name and options, or the name of an installed one (`rcme list "
+                   "estimator_files`)")
       ->excludes(name);
   command
       ->add_option(
           "--set", choice->overrides,
-          "option=value of the estimator, repeatable, after those of --estimator-file; see `rcme list "
-          "options`")
+          "option=value of the estimator, repeatable; overrides --estimator-file; see `rcme list options`")
       ->allow_extra_args(false);
   AddProcessOption(command, &choice->allow_process);
 }

@@ -88,25 +88,23 @@ void Export(const ExportArguments& arguments) {
 
 void AddExportCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "export", "Write the problems of a study, with the truth apart, for an estimator that runs elsewhere");
-  command->footer(
-      "FOLDER/problems.jsonl   a problem per line, as estimators of {process: ...} get it; what answers "
-      "them\n"
-      "                        there does so here: python3 mine.py < problems.jsonl > answers.jsonl\n"
-      "FOLDER/matches/ID.csv   the same matches as match files, of `rcme estimate`; ID is the problem's id\n"
-      "FOLDER/truth.jsonl      the motion and the true matches by id: not for the estimator\n"
-      "FOLDER/study.yaml       the study as it was exported, for `rcme import`\n"
-      "\n"
-      "Example:\n"
-      "  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
-      "  python3 mine.py < problems/problems.jsonl > answers.jsonl\n"
-      "  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite");
+      "export", "Write the problems of a study, and separately their truth, for an estimator elsewhere");
+  command->footer(R"(Files that it writes:
+  FOLDER/problems.jsonl   a problem per line, as an estimator {process: ...} gets it
+  FOLDER/matches/ID.csv   the same problems as match files for `rcme estimate`
+  FOLDER/truth.jsonl      the motion and the true matches by id; not for the estimator
+  FOLDER/study.yaml       the study as it was exported, for `rcme import`
+
+Example:
+  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
+  python3 mine.py < problems/problems.jsonl > answers.jsonl
+  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite)");
   auto arguments = std::make_shared<ExportArguments>();
   command
       ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of one that comes with the program")
+                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
       ->required();
-  command->add_option("-o,--out", arguments->out, "folder, made if missing")->required();
+  command->add_option("-o,--out", arguments->out, "folder to write, created if missing")->required();
   AddStudyOptions(command, &arguments->changes);
   command->add_option("--trials", arguments->trials, "trials per condition")
       ->transform(WholeNumberIn(1, 2'000'000'000));

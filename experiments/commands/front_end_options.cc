@@ -18,11 +18,11 @@ void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOpt
               if (name == chosen) detector->detector = value;
             }
           },
-          "what finds and describes key points; default: sift")
+          "detector and descriptor of key points; default: sift")
       ->check(OneOf(names));
   command
       ->add_option("--max-features", detector->max_features,
-                   "keep the strongest key points of an image; 0: all that sift and akaze find, 2,000 of orb")
+                   "number of strongest key points to keep per image; 0: all of sift and akaze, 2,000 of orb")
       ->transform(WholeNumberIn(0, 1'000'000))
       ->capture_default_str();
   command->add_option("--ratio", matcher->max_ratio, "keep a match if nearest / second nearest is below this")
@@ -30,7 +30,8 @@ void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOpt
       ->capture_default_str();
   command->add_flag_callback(
       "--one-way", [matcher] { matcher->is_mutual = false; },
-      "keep matches that are not each other's nearest too; a key point of image 2 may then be in several");
+      "also keep matches that are nearest in one direction only; "
+      "a key point of image 2 may then have several");
 }
 
 }  // namespace rcme

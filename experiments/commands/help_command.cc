@@ -11,9 +11,9 @@
 namespace rcme {
 
 void AddHelpCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("help", "Help for a command, as its --help");
+  CLI::App* command = app.add_subcommand("help", "Print the help of a command, like its --help");
   auto name = std::make_shared<std::string>();
-  command->add_option("command", *name, "its name; default: the program itself");
+  command->add_option("command", *name, "name of a command; default: the program itself");
   command->callback([&app, name] {
     if (name->empty()) {
       // Not app.help(), which would be that of the command that was given.
@@ -22,7 +22,7 @@ void AddHelpCommand(CLI::App& app) {
     }
     const std::vector<std::string> names = CommandNames(app);
     if (std::ranges::count(names, *name) == 0) {
-      throw InputError(fmt::format("help: {} is no command{}; give one of: {}", Quoted(*name),
+      throw InputError(fmt::format("help: {} is not a command{}; give one of: {}", Quoted(*name),
                                    DidYouMean(*name, names), fmt::join(names, ", ")));
     }
     fmt::print("{}", app.get_subcommand(*name)->help(app.get_name()));

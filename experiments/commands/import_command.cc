@@ -41,7 +41,7 @@ std::int64_t CountMissing(const ResultStore& store, size_t estimator) {
 void Import(const ImportArguments& arguments) {
   const StopOnSignals stop;
   if (arguments.labels.size() != arguments.answers.size()) {
-    throw InputError(fmt::format("--label: {} for {} files of answers; give one for each",
+    throw InputError(fmt::format("--label: {} labels for {} files of answers; give one for each file",
                                  arguments.labels.size(), arguments.answers.size()));
   }
   for (const std::string& label : arguments.labels) {
@@ -63,7 +63,7 @@ void Import(const ImportArguments& arguments) {
   for (size_t i = 0; i < arguments.answers.size(); ++i) {
     const std::int64_t num_missing = CountMissing(store, num_own + i);
     if (num_missing > 0) {
-      PrintMessage("warning: {}: {} of {} trials have no answer; each is the status no_answer\n",
+      PrintMessage("warning: {}: {} of {} trials have no answer and get the status no_answer\n",
                    arguments.answers[i], num_missing, report.num_trials);
     }
   }
@@ -74,28 +74,27 @@ void Import(const ImportArguments& arguments) {
 
 void AddImportCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "import", "Score answers that were made elsewhere, beside a study's own estimators on the same trials");
-  command->footer(
-      "Answers are lines of JSON with the id of their problem (docs/estimators_in_any_language.md); the "
-      "study\n"
-      "is the one that `rcme export` wrote. A problem without an answer is the status no_answer, one whose\n"
-      "answer cannot be read unreadable_answer.\n"
-      "\n"
-      "Example:\n"
-      "  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems\n"
-      "  python3 mine.py < problems/problems.jsonl > answers.jsonl\n"
-      "  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite\n"
-      "  rcme compare run.sqlite --against mine");
+      "import", "Score answers from elsewhere beside a study's own estimators, on the same trials");
+  command->footer(R"(Answers are lines of JSON with the id of their problem
+(docs/estimators_in_any_language.md). The study is the one that `rcme export` wrote. A
+problem without an answer gets the status no_answer; an answer that cannot be read gets
+unreadable_answer.
+
+Example:
+  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
+  python3 mine.py < problems/problems.jsonl > answers.jsonl
+  rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite
+  rcme compare run.sqlite --against mine)");
   auto arguments = std::make_shared<ImportArguments>();
   command->add_option("answers", arguments->answers, "files of answers")->required();
   command->add_option("--study", arguments->study, "study.yaml of `rcme export`")->required();
-  command->add_option("--label", arguments->labels, "what the results call each of the files, in their order")
+  command
+      ->add_option("--label", arguments->labels, "label of each file of answers, in their order; repeatable")
       ->required()
       ->allow_extra_args(false);
   command->add_option("-o,--out", arguments->out, "result file (SQLite)")->required();
   command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The results do not depend on it")
+      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
   AddProcessOption(command, &arguments->allow_process);
   command->callback([arguments] { Import(*arguments); });

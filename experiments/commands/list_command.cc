@@ -170,12 +170,12 @@ void AddListCommand(CLI::App& app) {
                                                                      {"estimator_files", ListEstimatorFiles}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
-  CLI::App* command = app.add_subcommand("list",
-                                         "Estimators, scenes, noise and other parts with their settings, and "
-                                         "what else the program knows by name");
+  CLI::App* command = app.add_subcommand(
+      "list",
+      "List what you can name: estimators, options, scenes, study keys, quantities, claims, studies, ...");
   auto what = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("table");
-  command->add_option("what", *what, "one list; default: all but studies and estimator_files")
+  command->add_option("what", *what, "which list; default: all except studies and estimator_files")
       ->check(OneOf(names));
   command->add_option("--format", *format, "table: columns for a terminal; markdown: as in docs/reference")
       ->check(OneOf({"table", "markdown"}))

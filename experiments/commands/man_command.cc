@@ -101,8 +101,8 @@ std::string Page(const DescribedCommand& command, const std::vector<DescribedCom
         text += fmt::format(".TP\n\\fB{}\\fR(1)\n{}\n", Roff(PageName(other.name)), Roff(other.description));
     }
     text +=
-        ".SH EXIT STATUS\n0: done; 2: usage or bad input; 130 and 143: stopped by Ctrl\\-C and SIGTERM; 1: "
-        "else.\n";
+        ".SH EXIT STATUS\n0: done; 2: usage or bad input; 75: more to do, run again; "
+        "130 and 143: stopped by Ctrl\\-C and SIGTERM; 1: other errors.\n";
     return text;
   }
   return text + ".SH SEE ALSO\n.BR rcme (1)\n";
@@ -122,20 +122,19 @@ void WriteMan(const CLI::App& app, const std::string& command, const std::string
     return;
   }
   const std::vector<std::string> names = CommandNames(app);
-  throw InputError(fmt::format("man: {} is no command{}; give one of: {}", Quoted(command),
+  throw InputError(fmt::format("man: {} is not a command{}; give one of: {}", Quoted(command),
                                DidYouMean(command, names), fmt::join(names, ", ")));
 }
 
 }  // namespace
 
 void AddManCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("man", "The manual page of a command, or of all, for man(1)");
-  command->footer(
-      "Where rcme is installed its pages are, too: man rcme, man rcme-run. Otherwise:\n"
-      "  rcme man run | man -l -");
+  CLI::App* command = app.add_subcommand("man", "Write manual pages for man(1)");
+  command->footer(R"(If rcme is installed, so are its manual pages: man rcme, man rcme-run. Otherwise:
+  rcme man run | man -l -)");
   auto name = std::make_shared<std::string>(), folder = std::make_shared<std::string>();
-  CLI::Option* of = command->add_option("command", *name, "its name; default: the program itself");
-  command->add_option("-o,--out", *folder, "write the pages of all commands into this folder")->excludes(of);
+  CLI::Option* of = command->add_option("command", *name, "name of a command; default: the program itself");
+  command->add_option("-o,--out", *folder, "folder to write the pages of all commands into")->excludes(of);
   command->callback([&app, name, folder] { WriteMan(app, *name, *folder); });
 }
 

@@ -93,55 +93,52 @@ void Map(const MapArguments& arguments) {
 
 void AddMapCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "map", "Where are first-order covariances good enough? Coverage over noise, points and parallax");
-  command->footer(
-      "Draws correct samples of 8 to 100 matches, estimates f and the motion linearly, propagates the noise "
-      "to\n"
-      "first order and counts how often the truth lies in the 95 % region. Below 0.95 a covariance is too\n"
-      "small: it promises more than it holds. Writes two tables, with n and exact 95 % intervals:\n"
-      "  validity_map.csv        120 cells (8 noise levels, 5 sample sizes, 3 baselines); for f, pose, a\n"
-      "                          fresh_point's inlier test, and ml_pose (maximum likelihood on the sample);\n"
-      "                          over all trials and over thirds of the sample's conditioning, without "
-      "noise\n"
-      "                          (exact_) and as an estimator sees it (observed_)\n"
-      "  validity_reference.csv  6 cells: the same draws covered by first-order, unscented and Monte-Carlo\n"
-      "                          covariances, to tell linearisation error from a wrong formula\n"
-      "A sample without a model counts as not covered. The defaults take six minutes of one core.\n"
-      "\n"
-      "With a STUDY the samples are true matches of its scene, cameras and motion under its noise law, for "
-      "each "
-      "of\n"
-      "its conditions and at its own noise level beside the map's eight; there is no reference table then. A "
-      "cell\n"
-      "for which no trial has enough true matches, or a direction of translation, has n = 0.\n"
-      "\n"
-      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part until the "
-      "end.\n"
-      "\n"
-      "Example:\n"
-      "  rcme map --out map\n"
-      "  rcme map study.yaml --set outlier_ratio=0 --out map\n"
-      "  rcme plot validity_map map\n"
-      "  rcme map --shard 3/64 --out parts/3.json        one of 64 machines' share (docs/many_machines.md)\n"
-      "  rcme map --merge parts/*.json --out map         all of them: the bytes of one machine");
+      "map", "Map where first-order covariances hold: coverage over noise, points and parallax");
+  command->footer(R"(Draws correct samples of 8 to 100 matches, estimates f and the motion linearly,
+propagates the noise to first order, and counts how often the truth lies in the 95 %
+region. A coverage below 0.95 means that the covariance is too small. A sample without a
+model counts as not covered. The defaults take six minutes on one core.
+Writes two tables with n and exact 95 % intervals:
+  validity_map.csv        120 cells (8 noise levels, 5 sample sizes, 3 baselines) for f,
+                          pose, the inlier test of a fresh_point, and ml_pose (maximum
+                          likelihood); over all trials, and over thirds of the sample's
+                          conditioning, without noise (exact_) and as observed (observed_)
+  validity_reference.csv  6 cells: the same draws with first-order, unscented and
+                          Monte-Carlo covariances, to tell linearisation error from a
+                          wrong formula
+
+With a STUDY the samples are true matches of its scene, cameras and motion, with its
+noise law. There is a map per condition, at the study's noise level and the map's
+eight, and no reference table. A cell has n = 0 if no trial has enough true matches or
+a direction of translation.
+
+If the command is stopped or killed, run it again: finished work is kept in
+OUT/unfinished.part until the end.
+
+Examples:
+  rcme map --out map
+  rcme map study.yaml --set outlier_ratio=0 --out map
+  rcme plot validity_map map
+  rcme map --shard 3/64 --out parts/3.json   the share of one of 64 machines
+                                             (docs/many_machines.md)
+  rcme map --merge parts/*.json --out map    all shares: the bytes of a single run)");
   auto arguments = std::make_shared<MapArguments>();
   command->add_option("study", arguments->study,
-                      "study file (YAML) or its name; without one: the built-in scene");
+                      "study file (YAML) or its name; default: the built-in scene");
   command
       ->add_option("-o,--out", arguments->out,
-                   "folder for the tables; made if it is missing; with --shard the file of the part")
+                   "folder for the tables, created if missing; with --shard the file of the part")
       ->required();
   AddShardOptions(command, "trials", &arguments->shards);
   command
-      ->add_option("--trials", arguments->trials,
-                   "trials per cell of the map; the reference takes a hundredth as many samples, with 100 "
-                   "draws each")
+      ->add_option(
+          "--trials", arguments->trials,
+          "trials per cell of the map; the reference takes a hundredth as many samples of 100 draws each")
       ->transform(WholeNumberIn(1, 100'000'000))
       ->capture_default_str();
   AddStudyOptions(command, &arguments->changes);
   command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The results do not depend on it")
+      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { Map(*arguments); });
 }

@@ -14,26 +14,24 @@ namespace rcme {
 
 void AddMatchCommand(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("match", "Match two undistorted images into a file for `rcme estimate`");
-  command->footer(
-      "Every match carries the sigma that its key points' sizes stand for (sigma_px, "
-      "experiments/real/images/features.h):\n"
-      "how noisy it is beside the others. A K that does not fit the size of its image is a warning, or "
-      "refused.");
+      app.add_subcommand("match", "Match two undistorted images and write a file for `rcme estimate`");
+  command->footer(R"(Every match has a column sigma_px: its noise relative to the other matches, from the
+sizes of its key points (experiments/real/images/features.h). A K that does not fit the
+size of its image gives a warning; an impossible K is refused.)");
   auto arguments = std::make_shared<MatchImagesOptions>();
   auto out = std::make_shared<std::string>();
   command
       ->add_option("image1", arguments->image1,
-                   "first image: PNG, JPEG, TIFF, BMP or PNM; one of more than 4096 x 4096 px is scaled down "
-                   "to find key "
-                   "points, which are given in its own pixels")
+                   "first image: PNG, JPEG, TIFF, BMP or PNM; above 4096 x 4096 px it is scaled down to find "
+                   "key points, "
+                   "which are written in its original pixels")
       ->required();
   command->add_option("image2", arguments->image2, "second image")->required();
-  command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, px of the image as it is")
+  command->add_option("--K1", arguments->K1, "fx fy cx cy of the first camera, in px of the original image")
       ->transform(NumberIn())
       ->expected(4)
       ->required();
-  command->add_option("--K2", arguments->K2, "fx fy cx cy of the second camera; default: as the first")
+  command->add_option("--K2", arguments->K2, "fx fy cx cy of the second camera; default: --K1")
       ->transform(NumberIn())
       ->expected(4);
   AddFrontEndOptions(command, &arguments->detector, &arguments->matcher);

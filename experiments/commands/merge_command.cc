@@ -27,8 +27,8 @@ struct MergeArguments {
 std::string MissingInWords(const MergeReport& report) {
   if (report.num_shards == 0) {
     return fmt::format(
-        "{} trials are missing; which shards have them is not known, for the parts are of "
-        "different numbers of shards",
+        "{} trials are missing; their shards are unknown: "
+        "the parts come from different numbers of shards",
         report.num_missing);
   }
   if (report.num_shards == 1) return fmt::format("{} trials are missing", report.num_missing);
@@ -47,7 +47,7 @@ void CheckMissing(const MergeArguments& arguments) {
   if (report.num_missing == 0) {
     PrintMessage("{} trials, none is missing\n", report.num_trials);
     if (report.unreadable.empty()) return;
-    throw InputError("the parts above cannot be merged; the others have all trials");
+    throw InputError("the parts above cannot be merged; the other parts have all trials");
   }
   PrintMessage("{}\n", MissingInWords(report));
   if (report.num_shards > 1) fmt::print("{}\n", ArrayText(report.missing_shards));
@@ -59,8 +59,9 @@ void CheckMissing(const MergeArguments& arguments) {
 void JoinTheParts(const MergeArguments& arguments) {
   if (!arguments.is_partial) {
     throw InputError(
-        "these are parts of `rcme audit`, `tune`, `transfer` or `map`: the same command with --merge puts "
-        "them together and says what is missing; --partial makes one part of several");
+        "these are parts of `rcme audit`, `tune`, `transfer` or `map`: merge them with --merge of the same "
+        "command, "
+        "or join several into one part with --partial");
   }
   CheckIsNoInput(arguments.out, arguments.parts);
   const Part joined = JoinParts(arguments.parts);
@@ -74,7 +75,8 @@ void MergeResultFiles(const MergeArguments& arguments) {
   const auto merge = KeepCounts(arguments.parts) ? MergeCounts : MergeResults;
   const MergeReport report = merge(arguments.parts, arguments.out, arguments.is_partial, arguments.options);
   if (report.num_missing > 0 && !arguments.is_partial) {
-    PrintMessage("{}; nothing was written (--partial writes what there is)\n", MissingInWords(report));
+    PrintMessage("{}; nothing was written (--partial writes the trials that there are)\n",
+                 MissingInWords(report));
     throw EndWith{kTryAgain};
   }
   PrintMessage("{} parts, {} trials{} -> {}; next: rcme summarize {}\n", arguments.parts.size(),
@@ -87,19 +89,17 @@ void MergeResultFiles(const MergeArguments& arguments) {
 }  // namespace
 
 void AddMergeCommand(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("merge", "The result files of many shards, or runs, of a study as one");
-  command->footer(
-      "A trial is a function of the study, its seed and its number: whatever the parts were computed by, in\n"
-      "any number, order and grouping, `rcme summarize` gives the bytes that it gives for one run. Refused,\n"
-      "with what differs: parts of another study, option or seed, program or instruction set, and a trial\n"
-      "that two parts have and not equal. The file appears whole or not at all, and only if no trial is\n"
-      "missing; else the exit code is 75 (try again), also of --check.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme merge parts/*.sqlite --out run.sqlite\n"
-      "  sbatch --array=$(rcme merge parts/*.sqlite --check) job.sh    what is missing, again\n"
-      "  rcme merge parts/1*.sqlite --partial --out some.sqlite        to be merged further, or to look at");
+  CLI::App* command = app.add_subcommand("merge", "Merge result files of shards or runs of a study into one");
+  command->footer(R"(The merged file gives the bytes of a single run in `rcme summarize`, for any number,
+order and grouping of the parts. Parts of another study, option, seed, program or
+instruction set are refused, with the difference. So is a trial that differs between
+two parts. The file is written whole or not at all, and only if no trial is missing.
+Otherwise the exit code is 75 (try again), also with --check.
+
+Examples:
+  rcme merge parts/*.sqlite --out run.sqlite
+  sbatch --array=$(rcme merge parts/*.sqlite --check) job.sh   run missing shards again
+  rcme merge parts/1*.sqlite --partial --out some.sqlite       merge a group first)");
   auto arguments = std::make_shared<MergeArguments>();
   command
       ->add_option(
@@ -112,14 +112,14 @@ void AddMergeCommand(CLI::App& app) {
       command
           ->add_flag(
               "--check", arguments->is_check,
-              "write nothing; print the shards that are lost or not whole as the tasks of a Slurm array "
-              "(3,17-19)")
+              "write nothing; print the missing or incomplete shards as tasks of a Slurm array (3,17-19)")
           ->excludes(out);
-  command->add_flag("--partial", arguments->is_partial, "write what there is, although trials are missing")
+  command
+      ->add_flag("--partial", arguments->is_partial,
+                 "write the trials that there are, even if some are missing")
       ->excludes(check);
   command->add_flag("--mixed-instruction-sets", arguments->options.are_instruction_sets_mixed,
-                    "parts of machines with different instruction sets: their trials may differ in the last "
-                    "bits of a number");
+                    "accept parts of different instruction sets, whose numbers may differ in the last bits");
   command->callback([arguments] {
     const bool are_parts = std::ranges::any_of(arguments->parts, IsPart);
     if (arguments->is_check && !are_parts) return CheckMissing(*arguments);

@@ -46,47 +46,46 @@ void RunModelChoice(const ModelChoiceArguments& arguments) {
 
 void AddModelChoiceCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "model-choice", "Do criteria of model choice recognise planes, rotations and too little parallax?");
-  command->footer(
-      "Every criterion (the values of the option model_choice) gives its verdict on every trial of a study,\n"
-      "which is scored by the exact scene: a confusion matrix per criterion, a row per truth. The "
-      "estimators\n"
-      "of the study are not asked. The truth of a trial:\n"
-      "  rotation_only        the baseline is zero\n"
-      "  too_little_parallax  of the right matches at most 5 % would show parallax beyond a rotation's "
-      "noise\n"
-      "  planar               one homography carries at least 95 % of the exact points to within sqrt(2) "
-      "sigma\n"
-      "  general              at most 75 % of them, whichever homography\n"
-      "  borderline           between these, with parallax of 5 to 20 %, or fewer than eight right matches\n"
-      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme model-choice studies/model_choice.yaml --out choice\n"
-      "  rcme model-choice studies/model_choice.yaml --by outlier_ratio --out choice\n"
-      "  rcme plot heat_map choice/model_choice.csv --x verdict --y truth --quantities share --out matrix "
-      "\\\n"
-      "      --where outlier_ratio=0.2");
+      "model-choice", "Test whether model-choice criteria recognise planes, rotations and low parallax");
+  command->footer(R"(Every criterion (a value of the option model_choice) gives a verdict on every trial of
+a study, and the verdict is compared with the exact scene. The result is a confusion
+matrix per criterion with a row per truth. The study's estimators are not run. The
+truth of a trial:
+  rotation_only        the baseline is zero
+  too_little_parallax  at most 5 % of the right matches show more parallax than the
+                       noise of a rotation
+  planar               one homography maps at least 95 % of the exact points to within
+                       sqrt(2) sigma
+  general              no homography does so for more than 75 % of them
+  borderline           between these, with parallax of 5 to 20 %, or fewer than eight
+                       right matches
+If the command is stopped or killed, run it again: finished work is kept in
+OUT/unfinished.part.
+
+Examples:
+  rcme model-choice studies/model_choice.yaml --out choice
+  rcme model-choice studies/model_choice.yaml --by outlier_ratio --out choice
+  rcme plot heat_map choice/model_choice.csv --x verdict --y truth --quantities share \
+      --where outlier_ratio=0.2 --out matrix)");
   auto arguments = std::make_shared<ModelChoiceArguments>();
   command
       ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of one that comes with the program")
+                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
       ->required();
   command
       ->add_option("-o,--out", arguments->out,
-                   "folder for model_choice.txt, .csv and .json; made if it is missing")
+                   "folder for model_choice.txt, .csv and .json, created if missing")
       ->required();
   command
       ->add_option("--by", arguments->by,
-                   "factor, repeatable: matrices for each of its levels; default: one for all")
+                   "factor, repeatable: a matrix for each of its levels; default: one matrix for all")
       ->allow_extra_args(false);
   command->add_option("--trials", arguments->trials, "trials per condition; default: the study's")
       ->transform(WholeNumberIn(1, 100'000'000));
   AddTimeLimit(command, "blocks of trials", &arguments->max_time);
   AddStudyOptions(command, &arguments->changes);
   command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The results do not depend on it")
+      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { RunModelChoice(*arguments); });
 }

@@ -55,8 +55,8 @@ std::vector<std::string> GateNames() {
 void CheckApplies(const PairsArguments& arguments) {
   const auto refuse = [&](const char* option, bool is_given, const std::vector<std::string>& layouts) {
     if (!is_given || std::ranges::find(layouts, arguments.layout) != layouts.end()) return;
-    throw InputError(fmt::format("{}: does not apply to the layout {}; it does to {}", option,
-                                 arguments.layout, fmt::join(layouts, ", ")));
+    throw InputError(fmt::format("{}: does not apply to the layout {}, only to {}", option, arguments.layout,
+                                 fmt::join(layouts, ", ")));
   };
   const DatasetOptions& dataset = arguments.dataset;
   const std::vector<std::string> sequences = {"kitti", "euroc", "tum"};
@@ -104,7 +104,7 @@ void RunPairs(PairsArguments arguments) {
   const std::string& out = arguments.pairs.out;
   std::error_code ignored;
   if (std::filesystem::equivalent(out, arguments.dataset.folder, ignored))
-    throw InputError("--out: is the data set itself; give another folder");
+    throw InputError("--out: this is the data set itself; give another folder");
   std::vector<Sequence> sequences;
   std::unique_ptr<ListedPairs> listed;
   std::vector<std::string> notes;
@@ -116,7 +116,7 @@ void RunPairs(PairsArguments arguments) {
     notes.push_back(listed->Note());
   }
   PairJournal journal(out, IdentityOf(arguments));
-  if (journal.num_before() > 0) PrintMessage("goes on after {} pairs in {}\n", journal.num_before(), out);
+  if (journal.num_before() > 0) PrintMessage("continues after {} pairs in {}\n", journal.num_before(), out);
   if (listed) {
     MakeListedPairs(*listed, arguments.pairs, &journal);
   } else {
@@ -140,39 +140,41 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
       ->add_option("dataset", arguments->dataset.folder,
                    "the data set's folder (colmap: or its database; posebench: a file)")
       ->required();
-  command->add_option("--layout", arguments->layout, "how it lies there, see below")
+  command->add_option("--layout", arguments->layout, "layout of the data set, see below")
       ->check(OneOf(LayoutNames()))
       ->required();
   command
       ->add_option("-o,--out", arguments->pairs.out,
-                   "folder for match files, INDEX.csv and pairs.txt; goes on in it")
+                   "folder for match files, INDEX.csv and pairs.txt; an unfinished one is continued")
       ->required();
   command
       ->add_option("--sequence", arguments->dataset.only,
-                   "kitti, euroc, tum: a sequence, repeatable, as its folder is named; default: all")
+                   "kitti, euroc, tum: name of a sequence's folder, repeatable; default: all")
       ->allow_extra_args(false);
   command
       ->add_option("--max-frames", arguments->dataset.max_frames,
                    "only the first images of each sequence; 0: all")
       ->transform(WholeNumberIn(0, 100'000'000));
-  command->add_option(
-      "--name", arguments->dataset.name,
-      "scene of the pairs (images, colmap), or what goes before the sequence's name (KITTI/)");
-  command->add_option("--K", arguments->dataset.K, "images, tum: fx fy cx cy, px, pixel (0, 0) a centre")
+  command->add_option("--name", arguments->dataset.name,
+                      "scene of the pairs (images, colmap), or prefix of the sequence's name (KITTI/)");
+  command
+      ->add_option("--K", arguments->dataset.K,
+                   "images, tum: fx fy cx cy in px, where (0, 0) is the centre of the first pixel")
       ->transform(NumberIn())
       ->expected(4);
   command->add_option("--lens", arguments->lens, "images, tum: the distortion of --K; default: pinhole")
       ->check(OneOf({"pinhole", "radtan", "fisheye"}));
   command
       ->add_option("--distortion", arguments->dataset.distortion,
-                   "its coefficients as OpenCV's: radtan k1 k2 p1 p2 [k3 [k4 k5 k6]], fisheye k1 k2 k3 k4")
+                   "coefficients in OpenCV's order: radtan k1 k2 p1 p2 [k3 [k4 k5 k6]], fisheye k1 k2 k3 k4")
       ->transform(NumberIn())
       ->expected(4, 8);
   command->add_option("--model", arguments->dataset.model,
-                      "colmap: reconstruction whose poses are the truth; default: sparse/0 if it is there");
+                      "colmap: reconstruction whose poses are the truth; default: sparse/0 if present");
   command
-      ->add_option("--truth-sd", arguments->truth_sd,
-                   "standard deviations of the data set's poses per axis: degrees, and its unit of length")
+      ->add_option(
+          "--truth-sd", arguments->truth_sd,
+          "standard deviations of the data set's poses per axis: in degrees, and in its unit of length")
       ->transform(NumberIn({0.0, 1e6}))
       ->expected(2);
 }
@@ -181,25 +183,25 @@ void AddGateOptions(CLI::App* command, PairsArguments* arguments) {
   KeyFrameGate& gate = arguments->pairs.gate;
   command
       ->add_option("--gate", arguments->gate,
-                   "what pairs have to pass; off: all are kept; default: orb_slam2")
+                   "test that pairs must pass; off keeps all pairs; default: orb_slam2")
       ->check(OneOf(GateNames()));
-  command->add_option("--least-matches", gate.least_matches, "gate: fewer are too few")
+  command->add_option("--least-matches", gate.least_matches, "gate: least number of matches")
       ->transform(WholeNumberIn(8, 1'000'000))
       ->capture_default_str();
   command
       ->add_option("--least-parallax", gate.least_parallax_deg,
-                   "gate: least angle of the 50th match, degrees")
+                   "gate: least parallax of the 50th match, degrees")
       ->transform(NumberIn({0.0, 90.0}))
       ->capture_default_str();
   command->add_option("--sigma", gate.sigma_px, "gate: noise it assumes, px")
       ->transform(NumberIn({0.01, 100.0}))
       ->capture_default_str();
-  command->add_option("--every", arguments->pairs.every, "of the images every n-th")
+  command->add_option("--every", arguments->pairs.every, "use every n-th image")
       ->transform(WholeNumberIn(1, 1'000'000))
       ->capture_default_str();
   command
       ->add_option("--neighbours", arguments->pairs.neighbours,
-                   "pairs of a key frame with that many before it; 2 gives rcme validate its triples")
+                   "pair each key frame with this many before it; 2 gives `rcme validate` triples")
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();
 }
@@ -208,52 +210,50 @@ void AddGateOptions(CLI::App* command, PairsArguments* arguments) {
 
 void AddPairsCommand(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("pairs", "From a data set of images to a folder of match files for any study");
-  command->footer(
-      "Layouts, as downloaded:\n"
-      "  kitti    dataset/{sequences/NN/{image_0/*.png, calib.txt, times.txt}, poses/NN.txt}   KITTI "
-      "odometry, grey\n"
-      "  euroc    NAME/mav0/{cam0/{data.csv, data/*.png, sensor.yaml}, state_groundtruth_estimate0/data.csv} "
-      "  EuRoC MAV\n"
-      "  tum      NAME/{rgb.txt, rgb/*.png, groundtruth.txt}   TUM RGB-D; the camera by freiburg1, 2, 3 in "
-      "the name, or --K\n"
-      "  images   *.png, *.jpg, ... of one folder, by name; needs --K, and skips images of another size\n"
-      "  colmap   database.db {cameras, images, keypoints, matches}, and sparse/0, if it is there, as truth "
-      "and for "
-      "the cameras\n"
-      "  posebench  FILE.h5, a group a pair {x1, x2, R, t, camera1, camera2}\n"
-      "  matches  match files, judged again and indexed\n"
-      "\n"
-      "An image waits as the first of a pair until a later one makes a pair with it that the gate keeps, and "
-      "then that\n"
-      "one waits: the initialiser of ORB-SLAM2, by which the paper chose its pairs. Dropped are pairs with\n"
-      "too_few_matches, planar_scene, rotation_only, too_little_parallax, too_few_in_front (of both "
-      "cameras), and what\n"
-      "no model explains (not_better_than_chance, ...). INDEX.csv lists all, kept or not, with the images' "
-      "names;\n"
-      "truth, where the layout has one, goes into the match files and plays no part in the choice. Damaged "
-      "images\n"
-      "are skipped and named; anything that is missing or contradicts itself ends with its path and exit "
-      "code 2,\n"
-      "and so does a folder of which no pair is kept. A K that does not fit the images' size is a warning.\n"
-      "Images of more than 4096 x 4096 px are scaled down to find key points, which are given in their own "
-      "pixels.\n"
-      "Key points are undistorted; the sizes of a match's are kept as its sigma_px: how noisy it is "
-      "beside the others.\n"
-      "Cut off, the same command goes on. --cache keeps features (1 MB an image) for other options of the "
-      "gate.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme pairs dataset --layout kitti --name KITTI/ --out kitti_pairs\n"
-      "  rcme pairs MH_01_easy --layout euroc --detector orb --out euroc_pairs\n"
-      "  rcme pairs corridor --layout images --K 520 520 320 240 --lens radtan --distortion -0.2 0.1 0 0 "
-      "--out pairs\n"
-      "  rcme pairs project/database.db --layout colmap --gate off --out colmap_pairs");
+      app.add_subcommand("pairs", "Turn a data set of images into a folder of match files for studies");
+  command->footer(R"(Layouts, as downloaded:
+  kitti      KITTI odometry, grey: dataset/sequences/NN/{image_0/*.png, calib.txt,
+             times.txt} and dataset/poses/NN.txt
+  euroc      EuRoC MAV: NAME/mav0/cam0/{data.csv, data/*.png, sensor.yaml} and
+             NAME/mav0/state_groundtruth_estimate0/data.csv
+  tum        TUM RGB-D: NAME/{rgb.txt, rgb/*.png, groundtruth.txt}; the camera follows
+             from freiburg1, 2 or 3 in the name, or from --K
+  images     *.png, *.jpg, ... of one folder, by name; needs --K, and skips images of
+             another size
+  colmap     database.db {cameras, images, keypoints, matches}; sparse/0, if present,
+             gives the truth and the cameras
+  posebench  FILE.h5, a group per pair {x1, x2, R, t, camera1, camera2}
+  matches    match files, tested by the gate and indexed again
+
+Pairs are chosen as the initialiser of ORB-SLAM2 chooses them, which the paper used. An
+image waits as the first of a pair until a later image makes a pair with it that passes
+the gate; then the later image waits. The gate drops pairs with too_few_matches,
+planar_scene, rotation_only, too_little_parallax or too_few_in_front (of both cameras),
+and pairs that no model explains (not_better_than_chance, ...). INDEX.csv lists all
+pairs, kept or not, with the names of their images. If the layout has ground truth, the
+match files state it; the gate does not use it.
+
+Damaged images are skipped and named. Anything missing or contradictory ends the command
+with its path and exit code 2, and so does a folder of which no pair is kept. A K that
+does not fit the size of the images gives a warning. Images of more than 4096 x 4096 px
+are scaled down to find key points; the key points are in the original pixels. Key points
+are undistorted. Each match has a column sigma_px: its noise relative to the other
+matches, from the sizes of its key points.
+
+If the command is cut off, run it again to continue. --cache keeps features (1 MB per
+image), so that you can try other options of the gate.
+
+Examples:
+  rcme pairs dataset --layout kitti --name KITTI/ --out kitti_pairs
+  rcme pairs MH_01_easy --layout euroc --detector orb --out euroc_pairs
+  rcme pairs corridor --layout images --K 520 520 320 240 --lens radtan \
+      --distortion -0.2 0.1 0 0 --out pairs
+  rcme pairs project/database.db --layout colmap --gate off --out colmap_pairs)");
   auto arguments = std::make_shared<PairsArguments>();
   AddDatasetOptions(command, arguments.get());
   AddFrontEndOptions(command, &arguments->pairs.detector, &arguments->pairs.matcher);
   command->add_option("--cache", arguments->pairs.cache,
-                      "folder that keeps features by the images' contents");
+                      "folder for features, which are found again by the content of the image");
   AddGateOptions(command, arguments.get());
   command->callback([arguments] { RunPairs(*arguments); });
 }

@@ -40,35 +40,31 @@ void RunPaperTable(const PaperTableArguments& arguments) {
 
 void AddPaperTableCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "paper-table", "The paper's table for pairs of one's own: Detect-fail and Failure per sequence");
-  command->footer(
-      "Of a run over a folder of match files (`rcme run studies/paper_table.yaml --set "
-      "folder=PAIRS`):\n"
-      "per scene and group of scenes, and for every estimator, Detect-fail and other refusals, failures by "
-      "the\n"
-      "paper's flag (n*_I / n_I <= kappa), failures by the truth where the files state one, and how often "
-      "the\n"
-      "flag is right. Pairs that share an image are not independent: intervals are exact binomial ones of "
-      "as\n"
-      "many independent pairs as would tell as much. The paper's printed figures follow with their own.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme run studies/paper_table.yaml --set folder=PAIRS --out run.sqlite\n"
-      "  rcme paper-table run.sqlite --out table\n"
-      "  rcme paper-table run.sqlite --group indoor='MH_*,V1_*,office' --group outdoor='kitti*'");
+      "paper-table", "Print the paper's table for your own pairs: Detect-fail and Failure per sequence");
+  command->footer(R"(Reads a run over a folder of match files. For each scene, group of scenes and estimator
+it counts Detect-fail and other refusals, failures by the paper's flag
+(n*_I / n_I <= kappa), failures by ground truth where the files state it, and how often
+the flag is right. Pairs that share an image are not independent: the intervals are
+exact binomial ones for the number of independent pairs with the same information. The
+paper's printed figures follow, with intervals.
+
+Examples:
+  rcme run studies/paper_table.yaml --set folder=PAIRS --out run.sqlite
+  rcme paper-table run.sqlite --out table
+  rcme paper-table run.sqlite --group indoor='MH_*,V1_*,office' --group outdoor='kitti*')");
   auto arguments = std::make_shared<PaperTableArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("-o,--out", arguments->out,
-                      "folder for paper_table.txt, .csv and .json; made if it is missing");
+                      "folder for paper_table.txt, .csv and .json, created if missing");
   command
-      ->add_option("--group", arguments->groups,
-                   "NAME=SCENE,SCENE,..., repeatable: scenes (names, or beginnings with a star) to be "
-                   "counted together; default: indoor and outdoor by the names of KITTI, EuRoC, HRBB4 and "
-                   "TUM sequences")
+      ->add_option(
+          "--group", arguments->groups,
+          "NAME=SCENE,SCENE,..., repeatable: scenes to count together (names, or prefixes with a star); "
+          "default: indoor and outdoor, by the names of KITTI, EuRoC, HRBB4 and TUM sequences")
       ->allow_extra_args(false);
   command
       ->add_option("--clusters", arguments->clusters,
-                   "what makes pairs dependent: images that they share, or all of a sequence")
+                   "which pairs are dependent: those that share images, or all of a sequence")
       ->check(OneOf({"images", "sequences"}))
       ->capture_default_str();
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")

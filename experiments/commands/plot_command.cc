@@ -17,19 +17,20 @@ struct Kind {
 
 const std::vector<Kind>& Kinds() {
   static const std::vector<Kind> kinds = {
-      {"failure_rate", "SUMMARY.csv", "rates against one factor, of `rcme summarize --format csv`"},
-      {"heat_map", "SUMMARY.csv", "rates over two factors, of `rcme summarize --format csv`"},
-      {"paired_difference", "COMPARISON.csv", "differences to a reference, of `rcme compare --format csv`"},
+      {"failure_rate", "SUMMARY.csv", "rates over one factor, from `rcme summarize --format csv`"},
+      {"heat_map", "SUMMARY.csv", "rates over two factors, from `rcme summarize --format csv`"},
+      {"paired_difference", "COMPARISON.csv",
+       "differences from a reference, from `rcme compare --format csv`"},
       {"time_against_success", "SUMMARY.csv ...",
-       "success against the time of a call, of `rcme summarize --pooled --times`"},
+       "success over the time of a call, from `rcme summarize --pooled --times`"},
       {"reliability", "RELIABILITY.json",
-       "stated probabilities of failure against what happened, of `rcme reliability`"},
-      {"tune", "TUNE.json", "what `rcme tune --figures` draws, again"},
-      {"transfer", "TRANSFER.json", "what `rcme transfer` draws, again"},
-      {"audit", "FOLDER", "what `rcme audit` draws, again"},
-      {"validity_map", "FOLDER", "where first-order covariances hold, of `rcme map`"},
-      {"validation", "VALIDATION.json", "what `rcme validate` draws, again"},
-      {"audit_power", "POWER.csv", "how often the audit notices a wrong sigma"},
+       "stated probabilities of failure and what happened, from `rcme reliability`"},
+      {"tune", "TUNE.json", "the figures of `rcme tune --figures`"},
+      {"transfer", "TRANSFER.json", "the figures of `rcme transfer`"},
+      {"audit", "FOLDER", "the figures of `rcme audit`"},
+      {"validity_map", "FOLDER", "where first-order covariances hold, from `rcme map`"},
+      {"validation", "VALIDATION.json", "the figure of `rcme validate`"},
+      {"audit_power", "POWER.csv", "how often the audit detects a wrong sigma"},
       {"benchmarks", "BENCHMARKS.json", "times of `scripts/benchmark`"}};
   return kinds;
 }
@@ -55,22 +56,19 @@ void RunPlot(const std::vector<std::string>& words) {
 
 void AddPlotCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "plot", "Draw a figure of a table, PNG, PDF, SVG or TikZ: rcme plot KIND FILE [OPTIONS of that kind]");
+      "plot", "Draw a figure from a table, as PNG, PDF, SVG or TikZ: rcme plot KIND FILE [OPTIONS]");
   std::string kinds;
   for (const Kind& kind : Kinds())
     kinds += fmt::format("  {:<18} {:<16} {}\n", kind.name, kind.input, kind.doc);
-  command->footer(
-      "Kinds, what they draw from, and what it is:\n" + kinds +
-      "\n"
-      "Every kind takes --width INCHES (3.3: a column; texts of 7 to 9 points), --labels NAME=TEXT, "
-      "--no-caption\n"
-      "and --format png,pdf,svg,tikz.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme plot failure_rate --help                      the options of that kind\n"
-      "  rcme summarize run.sqlite --format csv --out summary.csv\n"
-      "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure\n"
-      "  rcme plot failure_rate summary.csv --x outlier_ratio --out figure --width 3.3 --format tikz");
+  command->footer("Kinds, their input, and what they show:\n" + kinds + R"(
+Every kind takes --width INCHES (3.3 for a column, with text of 7 to 9 points), --labels NAME=TEXT,
+--no-caption and --format png,pdf,svg,tikz.
+
+Examples:
+  rcme plot failure_rate --help                      the options of that kind
+  rcme summarize run.sqlite --format csv --out summary.csv
+  rcme plot failure_rate summary.csv --x outlier_ratio --out figure
+  rcme plot failure_rate summary.csv --x outlier_ratio --out figure --width 3.3 --format tikz)");
   command->prefix_command();
   command->callback([command] { RunPlot(command->remaining()); });
 }

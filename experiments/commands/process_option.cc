@@ -8,10 +8,9 @@
 namespace rcme {
 
 void AddProcessOption(CLI::App* command, bool* is_allowed) {
-  command->add_flag(
-      "--allow-process", *is_allowed,
-      "run the commands that estimators `process` of a file name; they are shown first. Without "
-      "it such a file is refused (docs/threat_model.md)");
+  command->add_flag("--allow-process", *is_allowed,
+                    "run the commands of `process` estimators in files, after printing them; "
+                    "without it such a file is refused (docs/threat_model.md)");
 }
 
 void AllowAndSay(std::vector<EstimatorSpec>* estimators) {

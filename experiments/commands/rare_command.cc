@@ -66,40 +66,32 @@ void RunRare(const RareArguments& arguments) {
 }  // namespace
 
 void AddRareCommand(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("rare", "Failure rates far below what can be counted: splitting, or strata");
-  command->footer(
-      "How often each estimator fails in each condition of a study where plain trials would take too many.\n"
-      "  splitting   down to 1e-7 and below, where noise and geometry make errors grow by degrees: scene, "
-      "noise,\n"
-      "              outliers and samples of a trial are moved by a Markov chain from level to level of the "
-      "error\n"
-      "              over its bound; independent replicates give the interval. Needs noise: gaussian. "
-      "Failures\n"
-      "              that come at once, with no level before them (a wrong mode), are beyond it: `unseen up "
-      "to`\n"
-      "              says which rate of them would be missed\n"
-      "  stratified  plain trials, of which those with a hard scene (Cramer-Rao bound) are run and of the "
-      "others\n"
-      "              one in 2, 4, ..., 64: for any failure and noise; pays where calls are slow and hard "
-      "scenes\n"
-      "              hold the failures\n"
-      "Where the number of outliers drives failures: `rcme run` with tilted_to. A rate that cannot be "
-      "trusted says\n"
-      "so and why. Stopped or killed, the same command goes on: what is done is kept in "
-      "OUT/unfinished.part.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme rare studies/rare_noise.yaml --out rare\n"
-      "  rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare\n"
-      "  rcme rare STUDY --method stratified --trials 1000000 --out strata");
+  CLI::App* command = app.add_subcommand("rare", "Estimate failure rates too small to count");
+  command->footer(R"(Estimates how often each estimator fails in each condition of a study, where plain
+trials would take too many calls. Two methods:
+  splitting   for failures whose error grows gradually with noise and geometry; down to
+              1e-7 and below. A Markov chain moves scene, noise, outliers and samples of
+              a trial from level to level of the error over its bound. Independent
+              replicates give the interval. Needs noise: gaussian. It cannot see sudden
+              failures without levels before them (a wrong mode); `unseen up to` is the
+              largest rate of these that it could have missed
+  stratified  for any failure and noise. Plain trials: all of those with a hard scene
+              (Cramer-Rao bound) and one in 2, 4, ..., 64 of the others. Pays off if
+              calls are slow and hard scenes have most of the failures
+If the number of outliers drives the failures, use `rcme run` with tilted_to. A rate
+that cannot be trusted is marked, with the reason. If the command is stopped or killed,
+run it again: finished work is kept in OUT/unfinished.part.
+
+Examples:
+  rcme rare studies/rare_noise.yaml --out rare
+  rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare
+  rcme rare STUDY --method stratified --trials 1000000 --out strata)");
   auto arguments = std::make_shared<RareArguments>();
   command
       ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of one that comes with the program")
+                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
       ->required();
-  command
-      ->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json; made if it is missing")
+  command->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json, created if missing")
       ->required();
   AddTimeLimit(command, "replicates, or blocks of trials", &arguments->max_time);
   AddStudyOptions(command, &arguments->changes);
@@ -112,7 +104,7 @@ void AddRareCommand(CLI::App& app) {
       ->transform(WholeNumberIn(1000, 100'000'000));
   command
       ->add_option("--run-share", arguments->stratified.run_share,
-                   "stratified: share of them to be run (default: 0.1)")
+                   "stratified: share of these to run (default: 0.1)")
       ->transform(NumberIn({0.02, 1.0}));
   command
       ->add_option("--particles", arguments->splitting.splitting.num_particles,
@@ -131,8 +123,7 @@ void AddRareCommand(CLI::App& app) {
                    "splitting: share of the particles beyond each level (default: 0.2)")
       ->transform(NumberIn({0.02, 0.9}));
   command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The results do not depend on it")
+      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { RunRare(*arguments); });
 }

@@ -12,33 +12,33 @@ namespace rcme {
 
 void AddReliabilityCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "reliability", "Do motions fail as often as their stated probabilities say? From result files");
-  command->footer(
-      "Of every estimator, over the answers whose truth is known: Brier and logarithmic score with "
-      "intervals,\n"
-      "their parts (miscalibration, discrimination, uncertainty), expected calibration error, calibration\n"
-      "slope and intercept, area under the ROC and the risk-coverage curve, failures among the sure "
-      "answers.\n"
-      "Where right probabilities would not give 0 either, what they would give stands beside it.\n"
-      "\n"
-      "An estimator that states no probability is given one: its share of inliers, recalibrated by isotonic\n"
-      "regression on the other half of the scenes of the run.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme reliability run.sqlite\n"
-      "  rcme reliability run.sqlite --by outlier_ratio\n"
-      "  rcme reliability indoor.sqlite outdoor.sqlite\n"
-      "  rcme reliability run.sqlite --format json --out reliability.json\n"
-      "  rcme plot reliability reliability.json --out figure");
+      "reliability", "Test whether motions fail as often as their stated probabilities say");
+  command->footer(R"(For each estimator, over the answers whose truth is known: Brier and logarithmic score
+with intervals and their parts (miscalibration, discrimination, uncertainty), expected
+calibration error, calibration slope and intercept, area under the ROC and the
+risk-coverage curve, and failures among the sure answers. Where even right probabilities
+would not give 0, the table shows what they would give.
+
+If an estimator states no probability, its share of inliers is used, recalibrated by
+isotonic regression on the other half of the scenes of the run.
+
+Examples:
+  rcme reliability run.sqlite
+  rcme reliability run.sqlite --by outlier_ratio
+  rcme reliability indoor.sqlite outdoor.sqlite
+  rcme reliability run.sqlite --format json --out reliability.json
+  rcme plot reliability reliability.json --out figure)");
   struct Arguments {
     std::vector<std::string> runs;
     std::string by, format = "table", out;
   };
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("runs", arguments->runs, "result files of `rcme run`; of several all trials together")
+  command
+      ->add_option("runs", arguments->runs,
+                   "result files of `rcme run`; the trials of several are taken together")
       ->required();
   command->add_option("--by", arguments->by,
-                      "a factor of the study: one line per level, not one for all trials");
+                      "factor of the study: a line per level instead of one for all trials");
   command->add_option("--format", arguments->format, "table (for people) or json (for programs and figures)")
       ->check(OneOf({"table", "json"}))
       ->capture_default_str();

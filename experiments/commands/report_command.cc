@@ -54,26 +54,23 @@ void WriteReport(const ReportArguments& arguments) {
 
 void AddReportCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "report", "One page of one or more runs: what was found, figures, every number, how to do it again");
-  command->footer(
-      "The page is one HTML file that needs nothing else and asks for nothing: no network, no further "
-      "files.\n"
-      "For each run it begins with what was found and the figures, beside them how hard the problems are;\n"
-      "then tables that fold and sort: the rates with exact 95 % intervals and n, every quantity of\n"
-      "`rcme summarize`, the paired comparisons of `rcme compare`; the study in full, and for every "
-      "condition\n"
-      "the commands that give the same numbers again. For wide and narrow screens, light and dark, and "
-      "paper.\n"
-      "Equal runs give equal bytes. Needs Python with matplotlib and pandas.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme report run.sqlite --out report.html\n"
-      "  rcme report outliers.sqlite noise.sqlite --against rcme_rank_aware --out report.html");
+      "report", "Write one HTML page about one or more runs: findings, figures, numbers, commands");
+  command->footer(R"(The page is one self-contained HTML file: no network, no further files. For each run it
+starts with the findings and the figures, and how hard the problems are. Then follow
+tables that fold and sort: the rates with exact 95 % intervals and n, every quantity of
+`rcme summarize`, and the paired comparisons of `rcme compare`. At the end are the study
+in full and the commands that repeat the numbers of every condition. The page suits
+wide and narrow screens, light and dark, and paper. Equal runs give equal bytes. Needs
+Python with matplotlib and pandas.
+
+Examples:
+  rcme report run.sqlite --out report.html
+  rcme report outliers.sqlite noise.sqlite --against rcme_rank_aware --out report.html)");
   auto arguments = std::make_shared<ReportArguments>();
   command->add_option("runs", arguments->runs, "result files of `rcme run`")->required();
   command->add_option("--against", arguments->against,
-                      "label of the reference estimator, in every run; default: the first of each study");
-  command->add_option("-o,--out", arguments->out, "the page to write, whole or not at all")->required();
+                      "label of the reference estimator, in every run; default: each study's first");
+  command->add_option("-o,--out", arguments->out, "page to write (HTML)")->required();
   command->callback([arguments] { WriteReport(*arguments); });
 }
 

@@ -111,11 +111,12 @@ void RunRound(const StudyPlan& plan, const RunArguments& arguments, const Shard&
     }
   }
   if (RunRoundUntil(plan, UntilOptionsFrom(arguments), shard, merged ? &*merged : nullptr, store)) {
-    PrintMessage("the round's trials of shard {} are done; when those of all are: rcme merge\n",
-                 shard.Text());
+    PrintMessage(
+        "the trials of shard {} in this round are done; next, when all shards are done: rcme merge\n",
+        shard.Text());
     throw EndWith{kTryAgain};
   }
-  PrintMessage("no trial is missing; next: the same command without --shard and --merged, --out {}\n",
+  PrintMessage("no trial is missing; next: the same command without --shard and --merged, with --out {}\n",
                arguments.merged);
 }
 
@@ -144,7 +145,8 @@ void Run(const RunArguments& arguments) {
   const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
   const bool keeps_counts = arguments.keep == "counts";
   if (keeps_counts && !arguments.retry.empty())
-    throw InputError("--retry: not with --keep counts: which trials to run again is not in the counts");
+    throw InputError(
+        "--retry does not work with --keep counts: counts do not tell which trials to run again");
   std::optional<ResultStore> store;
   if (!keeps_counts) store.emplace(ResultStore::OpenForRun(arguments.out, plan, shard));
   if (!arguments.retry.empty()) RemoveForRetry(plan, arguments, &*store);
@@ -172,31 +174,30 @@ void AddRunCommand(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   command
       ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of one that comes with the program")
+                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
       ->required();
   command
       ->add_option("-o,--out", arguments->out,
-                   "result file (SQLite); a run that was cut off is resumed, another study is refused")
+                   "result file (SQLite); resumes an unfinished run, refuses a file of another study")
       ->required();
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   CLI::Option* trials =
       command
-          ->add_option("--trials", arguments->trials, "trials per condition; more than before extends a run")
+          ->add_option("--trials", arguments->trials, "trials per condition; a greater number extends a run")
           ->transform(WholeNumberIn(1, 2'000'000'000));
   CLI::Option* repeats =
       command
-          ->add_option(
-              "--repeats-per-scene", arguments->repeats_per_scene,
-              "so many trials, one after the other, are of one scene with its noise and outliers: "
-              "`rcme summarize` then says how much of a failure rate is the scene, how much the sampler")
+          ->add_option("--repeats-per-scene", arguments->repeats_per_scene,
+                       "number of consecutive trials that share a scene with its noise and outliers; "
+                       "`rcme summarize` then separates the variance between scenes from that of the sampler")
           ->transform(WholeNumberIn(1, kMaxRepeatsPerScene));
   CLI::Option* until =
       command
           ->add_option("--until", arguments->until,
                        "add trials to each condition until every estimator's 95 % interval is narrow: "
-                       "ci=0.002 (half width) or rel=0.1 "
-                       "(half width over rate); the intervals hold although the run looks and stops")
+                       "ci=0.002 (half width) or rel=0.1 (half width over rate); "
+                       "the intervals are valid although the run stops by what it sees")
           ->check([](const std::string& text) {
             PrecisionTarget::Parse(text);  // throws
             return std::string();
@@ -205,44 +206,46 @@ void AddRunCommand(CLI::App& app) {
           ->excludes(repeats);
   command
       ->add_option("--until-event", arguments->until_event,
-                   "whose rate: failure, refusal or failure_or_refusal")
+                   "event of --until: failure, refusal or failure_or_refusal")
       ->check(OneOf(EventNames()))
       ->capture_default_str()
       ->needs(until);
-  command->add_option("--max-trials", arguments->max_trials, "most trials per condition of --until")
+  command
+      ->add_option("--max-trials", arguments->max_trials,
+                   "greatest number of trials per condition of --until")
       ->transform(WholeNumberIn(100, 2'000'000'000))
       ->capture_default_str()
       ->needs(until);
   CLI::Option* shard = command->add_option(
       "--shard", arguments->shard,
-      "I/N: the I-th of N shares of every condition's trials, for one of N machines, into a file of its "
-      "own that `rcme merge` puts together with the others; auto/N or auto: which one this is "
-      "in a Slurm array or a Kubernetes indexed job (docs/many_machines.md)");
+      "I/N: run the I-th of N shares of every condition's trials into a file for `rcme merge`; "
+      "auto/N or auto: the share of this task of a Slurm array or Kubernetes indexed job "
+      "(docs/many_machines.md)");
   command
       ->add_option("--merged", arguments->merged,
-                   "merged result file of the rounds before, for a further round of --until in shards")
+                   "merged result file of the earlier rounds, for the next round of --until in shards")
       ->needs(until)
       ->needs(shard);
   command
       ->add_option(
           "--keep", arguments->keep,
-          "all: every trial; counts: what `rcme summarize` needs of all, exactly, with a few trials as "
-          "they are, in a file that does not grow with their number")
+          "all: every trial; counts: the exact sums that `rcme summarize` needs and a few complete trials, "
+          "in a file that does not grow with the number of trials")
       ->check(OneOf({"all", "counts"}))
       ->capture_default_str()
       ->excludes(until)
       ->excludes(repeats);
   command
-      ->add_option("--retry", arguments->retry,
-                   "no_answer,timed_out,unreadable_answer: trials in which an estimator outside the program "
-                   "ended so are run again, whole, and replaced; the file notes how many")
+      ->add_option(
+          "--retry", arguments->retry,
+          "run trials with these statuses again and replace them: no_answer,timed_out,unreadable_answer; "
+          "the file records how many")
       ->delimiter(',')
       ->check(OneOf(NamesOfMissingAnswers()))
       ->excludes(until);
   AddTimeLimit(command, "trials", &arguments->max_time);
   command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The results do not depend on it")
+      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
   command->callback([arguments] { Run(*arguments); });
 }

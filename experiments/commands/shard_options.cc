@@ -15,16 +15,18 @@ ShardOptions AddShardOptions(CLI::App* command, const std::string& pieces, Shard
   ShardOptions options{};
   options.shard = command->add_option(
       "--shard", arguments->shard,
-      fmt::format("I/N: the I-th of N shares of the {}, into a file of its own, --out; auto/N or auto: which "
-                  "one this is in a Slurm array or a Kubernetes indexed job (docs/many_machines.md)",
+      fmt::format("I/N: run the I-th of N shares of the {} into the file --out; "
+                  "auto/N or auto: the share of this task of a Slurm array or Kubernetes indexed job "
+                  "(docs/many_machines.md)",
                   pieces));
-  options.merge = command
-                      ->add_option("--merge", arguments->parts,
-                                   fmt::format("the files of all shards, given with the study and options "
-                                               "that they were made with; where {} are missing, prints the "
-                                               "shards that have them (3,17-19) and ends with exit code 75",
-                                               pieces))
-                      ->excludes(options.shard);
+  options.merge =
+      command
+          ->add_option(
+              "--merge", arguments->parts,
+              fmt::format("merge the files of all shards; give the same study and options. "
+                          "If {} are missing, prints their shards (3,17-19) and ends with exit code 75",
+                          pieces))
+          ->excludes(options.shard);
   AddTimeLimit(command, pieces, &arguments->max_time);
   return options;
 }
@@ -55,8 +57,9 @@ void PrintCosts(const Runner& runner) {
 }
 
 void PrintPartIsDone(const Shard& shard, const std::string& path) {
-  PrintMessage("done: shard {} of {} in {}; next, with all of them: the same command, --merge PARTS\n",
-               shard.number, shard.count, path);
+  PrintMessage(
+      "done: shard {} of {} in {}; next, when all shards are done: the same command with --merge PARTS\n",
+      shard.number, shard.count, path);
 }
 
 }  // namespace rcme

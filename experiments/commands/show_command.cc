@@ -45,8 +45,8 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
   }
   if (arguments.changes.AreAny()) {
     throw InputError(
-        fmt::format("{}: a result file has a study and a seed of its own; --set, --add-estimator "
-                    "and --seed go with a study file (YAML)",
+        fmt::format("{}: a result file has its own study and seed; use --set, --add-estimator and --seed "
+                    "with a study file (YAML)",
                     arguments.study));
   }
   return PlanOfStored(ResultStore::OpenForReading(arguments.study), arguments.changes.allow_process);
@@ -112,26 +112,28 @@ void Show(const ShowArguments& arguments, bool has_out) {
 
 void AddShowCommand(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("show", "Draw one trial: images, matches, epipolar lines, scene from above");
-  command->footer(
-      "The trial is run again, from the study, its seed and the two numbers: nothing has to be stored.\n"
-      "A trial beyond those the study asks for is what more trials would add. For a folder of real pairs,\n"
-      "trial t is pair t modulo the number of pairs; there is no scene to draw then.\n"
-      "\n"
-      "The picture (PNG and PDF) has both images for each estimator drawn: every match by what it is and\n"
-      "what the estimator took it for, and in image 2 the epipolar lines of up to eight numbered points,\n"
-      "of the truth (broad) and of the estimate (dashed). Below, the scene from above, how hard the\n"
-      "problem is, and all estimators of the study in a table. Without --estimators one is drawn: the\n"
-      "first that failed or refused, else the first of the study. Standard output gets a summary, and why\n"
-      "answers are wrong: whether the true motion, had it been found, would have scored better than the\n"
-      "answer by the estimator's own score (the search failed: more samples help) or not (the model cannot\n"
-      "tell: they do not), with the parallax, the planar share and the runner-up.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme show studies/failure_vs_outliers.yaml --condition 6 --trial 17\n"
-      "  rcme show run.sqlite --condition 6 --trial 17 --estimators standard,rcme_rank_aware --out figure\n"
-      "  rcme show study.yaml --condition 0 --trial 3 --seed 5 --set motion=forward --set outlier_ratio=0.4\n"
-      "The trials worth a look: `rcme report` names the first failure and refusal of every condition.");
+      app.add_subcommand("show", "Draw one trial: images, matches, epipolar lines, and the scene from above");
+  command->footer(R"(Computes the trial again from the study, its seed and the two numbers, so nothing has to
+be stored. You can also show trials beyond the number that the study asks for. In a
+folder of real pairs, trial t is pair t modulo the number of pairs, and no scene is drawn.
+
+The figure (PNG and PDF) has both images for each estimator. It marks every match by
+what it is and by what the estimator took it for. In image 2 it draws the epipolar lines
+of up to eight numbered points, of the truth (broad) and of the estimate (dashed). Below
+are the scene from above, how hard the problem is, and a table of all estimators.
+Without --estimators it draws the first that failed or refused, or else the first of the
+study.
+
+Standard output gets a summary and the causes of wrong answers, with the parallax, the
+planar share and the runner-up. If the true motion would have had a better score than
+the answer, by the estimator's own score, then the search failed and more samples help.
+Otherwise the model cannot distinguish them and more samples do not help.
+
+Examples:
+  rcme show studies/failure_vs_outliers.yaml --condition 6 --trial 17
+  rcme show run.sqlite --condition 6 --trial 17 --estimators standard,rcme_rank_aware
+  rcme show study.yaml --condition 0 --trial 3 --seed 5 --set outlier_ratio=0.4
+`rcme report` names the first failure and refusal of every condition.)");
   auto arguments = std::make_shared<ShowArguments>();
   command
       ->add_option("study", arguments->study, "study file (YAML) or its name, or result file of `rcme run`")
@@ -143,12 +145,14 @@ void AddShowCommand(CLI::App& app) {
   command->add_option("--trial", arguments->trial, "trial, from 0")
       ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
       ->required();
-  command->add_option("--estimators", arguments->estimators, "labels a,b,...: one row of images each")
+  command
+      ->add_option("--estimators", arguments->estimators,
+                   "labels a,b,... of the estimators to draw, a row of images each")
       ->delimiter(',')
       ->allow_extra_args(false);
   CLI::Option* out = command->add_option("-o,--out", arguments->out,
-                                         "where to draw, without suffix; default: trial_STUDY_cC_tT here");
-  command->add_option("--json", arguments->json, "also keep what is drawn, as JSON, in this file");
+                                         "figure to write, without suffix; default: trial_STUDY_cC_tT");
+  command->add_option("--json", arguments->json, "also write the data of the figure to this JSON file");
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   command->callback([arguments, out] { Show(*arguments, out->count() > 0); });

@@ -29,15 +29,15 @@ void AddEstimatorOfFile(const std::string& path, Study* study) {
 
 void AddStudyOptions(CLI::App* command, StudyChanges* changes) {
   command
-      ->add_option(
-          "--set", changes->overrides,
-          "key=value, repeatable: a data key (sigma_px=1), a failure bound, or an option of all estimators "
-          "that have it (mu=-2) or of one (rcme.mu=-2)")
+      ->add_option("--set", changes->overrides,
+                   "key=value, repeatable: a data key (sigma_px=1), a failure bound, or an option of one "
+                   "estimator (rcme.mu=-2) "
+                   "or of all that have it (mu=-2)")
       ->allow_extra_args(false);
   command
-      ->add_option("--add-estimator", changes->estimators,
-                   "estimator file (YAML: name, label, options), repeatable: one more estimator on the same "
-                   "trials; --set reaches it by its label")
+      ->add_option(
+          "--add-estimator", changes->estimators,
+          "estimator file (YAML: name, label, options), repeatable: one more estimator on the same trials")
       ->allow_extra_args(false);
   command->add_option("--seed", changes->seed, "seed of all random streams")->transform(WholeNumberIn(0));
 }

@@ -51,9 +51,8 @@ Settings LabelsOf(const std::vector<std::string>& texts) {
 void WarnOfRefusals(const Summary& summary) {
   for (const std::string& label : FindAlwaysRefusing(summary)) {
     PrintMessage(
-        "warning: {} refused every trial: no number here is of a motion of its; rcme replay RUN --condition "
-        "0 "
-        "--trial 0 shows why\n",
+        "warning: {} refused every trial, so no number here describes its motions; "
+        "rcme replay RUN --condition 0 --trial 0 shows why\n",
         label);
   }
 }
@@ -69,32 +68,30 @@ std::string TextOf(const Summary& summary, const Arguments& arguments) {
 }  // namespace
 
 void AddSummarizeCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "summarize",
-      "Rates, scores and medians with 95 % intervals, means with standard errors, from a result file");
-  command->footer(
-      "Beside rates and means: AUC at 5, 10 and 20 degrees, the mean over trials of max(0, 1 - e / T), e "
-      "the\n"
-      "greater of rotation and direction error: the area under the recall curve up to T, exactly; mAA(10),\n"
-      "the mean over the thresholds 1, 2, ..., 10 degrees of the share of trials with an error up to that\n"
-      "(as in the image-matching benchmark; elsewhere a mean of AUCs is called so); and median errors. "
-      "There\n"
-      "a refusal and an answer that is not valid are as wrong as can be; quantities called _answered leave\n"
-      "refusals out. A direction that is opposite to the true one is wrong.\n"
-      "\n"
-      "--raw gives the trials themselves: one row per trial and estimator with the study, the condition, "
-      "the\n"
-      "level of each factor, the outcome as a word (success, failure, not_scored, or the status of an "
-      "answer\n"
-      "that is refused or not valid), every number of the result file, and what the problem was like. It is\n"
-      "written as it is read, in memory that does not grow with the trials.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme summarize run.sqlite\n"
-      "  rcme summarize run.sqlite --format csv --out summary.csv\n"
-      "  rcme summarize run.sqlite --format latex --quantities failure,nees_coverage --labels rcme=RCME\n"
-      "  rcme summarize run.sqlite --fifths-of crb_direction_deg\n"
-      "  rcme summarize run.sqlite --raw csv --out trials.csv");
+  CLI::App* command =
+      app.add_subcommand("summarize", "Print rates, scores, medians and means of a run with their intervals");
+  command->footer(R"(Beside rates and means the summary has three kinds of scores. The error e of a trial is
+the greater of its rotation and direction error.
+  AUC at 5, 10, 20 degrees  mean over trials of max(0, 1 - e / T): the exact area under
+                            the recall curve up to T
+  mAA(10)                   share of trials with an error up to 1, 2, ..., 10 degrees,
+                            averaged over these thresholds (as in the image-matching
+                            benchmark; others use the name for a mean of AUCs)
+  median errors             of rotation, direction and e
+A refusal or an invalid answer counts as infinitely wrong. Quantities called _answered
+leave out refusals. A direction opposite to the true one is wrong.
+
+--raw writes a row per trial and estimator: the study, the condition, the level of each
+factor, the outcome (success, failure, not_scored, or the status of a refused or invalid
+answer), every number of the result file, and the severity of the problem. Its memory
+does not grow with the number of trials.
+
+Examples:
+  rcme summarize run.sqlite
+  rcme summarize run.sqlite --format csv --out summary.csv
+  rcme summarize run.sqlite --format latex --quantities failure,nees_coverage --labels rcme=RCME
+  rcme summarize run.sqlite --fifths-of crb_direction_deg
+  rcme summarize run.sqlite --raw csv --out trials.csv)");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   CLI::Option* format =
@@ -115,21 +112,21 @@ void AddSummarizeCommand(CLI::App& app) {
                    "name=text, repeatable: what --format latex prints for an estimator, factor or quantity")
       ->allow_extra_args(false)
       ->needs(format);
-  command->add_option("--raw", arguments->raw, "csv: every trial in a row of its own, nothing summarized")
+  command->add_option("--raw", arguments->raw, "csv: a row per trial and estimator, nothing summarized")
       ->check(OneOf({"csv"}))
       ->excludes(format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->add_flag("--times", arguments->with_times,
-                    "add the time per call; without it, equal studies give equal bytes");
+                    "add the time per call; without it equal studies give equal bytes");
   command
       ->add_flag("--pooled", arguments->is_pooled,
-                 "all conditions as one: rates over the whole study, every trial with the same weight")
+                 "all conditions together, every trial with the same weight")
       ->excludes("--raw");
   command
-      ->add_option(
-          "--fifths-of", arguments->fifths_of,
-          "a number of the problem (rcme list quantities: crb_direction_deg, planarity): five groups with "
-          "equally many trials in place of the conditions, those with the least of it first")
+      ->add_option("--fifths-of", arguments->fifths_of,
+                   "five groups of equally many trials instead of the conditions, ordered by this quantity "
+                   "of the problem: "
+                   "crb_direction_deg, planarity, ... (rcme list quantities)")
       ->excludes("--raw")
       ->excludes("--pooled");
   command->callback([arguments] {

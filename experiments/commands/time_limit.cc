@@ -15,8 +15,8 @@ CLI::Option* AddTimeLimit(CLI::App* command, const std::string& pieces, std::str
       ->add_option(
           "--max-time", *max_time,
           fmt::format(
-              "end after this time (55m, 1h30m, 90s) between two {}; if some are left, with exit code "
-              "75: the same command resumes",
+              "stop after this time (55m, 1h30m, 90s), between two {}; exit code 75 if some are left: "
+              "the same command resumes",
               pieces))
       ->check([](const std::string& text) {
         return ParseDuration(text) ? std::string()

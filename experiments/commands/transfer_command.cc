@@ -54,29 +54,26 @@ void RunTransfer(const TransferArguments& arguments) {
 }  // namespace
 
 void AddTransferCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "transfer", "Tune on one family of scenes, verify on all others: does a threshold survive?");
-  command->footer(
-      "Every condition of the study is a family of its own, or all those with a level of --by in common. "
-      "Each\n"
-      "is tuned as `rcme tune` would, and what it is tuned to is measured on fresh trials of every family: "
-      "a\n"
-      "matrix, at the price of one tuning. A cell holds (its whole exact 95 % interval is within the "
-      "target),\n"
-      "is violated, or undecided.\n"
-      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part until the "
-      "end.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme transfer studies/transfer_mu.yaml --out transfer\n"
-      "  rcme transfer studies/tune_mu_lambda.yaml --by scene --out by_scene\n"
-      "  rcme transfer STUDY --shard 3/64 --out parts/3.json         one of 64 machines' share of the "
-      "trials\n"
-      "  rcme transfer STUDY --merge parts/*.json --out transfer     all of them: the bytes of one machine");
+  CLI::App* command =
+      app.add_subcommand("transfer", "Tune on each family of scenes and verify the threshold on all others");
+  command->footer(R"(Every condition of the study is a family; with --by, all conditions with the same level
+are one family. Each family is tuned as by `rcme tune`, and the tuned setting is measured
+on fresh trials of every family, at the cost of one tuning. The result is a matrix. A
+cell holds if its whole exact 95 % interval meets the target; otherwise it is violated or
+undecided.
+
+If the command is stopped or killed, run it again: finished work is kept in
+OUT/unfinished.part until the end.
+
+Examples:
+  rcme transfer studies/transfer_mu.yaml --out transfer
+  rcme transfer studies/tune_mu_lambda.yaml --by scene --out by_scene
+  rcme transfer STUDY --shard 3/64 --out parts/3.json       the share of one machine
+  rcme transfer STUDY --merge parts/*.json --out transfer   the bytes of a single run)");
   auto arguments = std::make_shared<TransferArguments>();
   AddTuningOptions(command, arguments.get());
   command->add_option("--by", arguments->by,
-                      "factor whose levels are the families; default: every condition");
+                      "factor whose levels are the families; default: every condition is a family");
   command
       ->add_option(
           "-o,--out", arguments->out,

@@ -39,7 +39,8 @@ void RunPart(const TuneArguments& arguments, const StudyPlan& plan, const Settin
                  missing.num_items, work.items.item_name, ArrayText(missing.shards), merged.num_shards);
   }
   PrintMessage(
-      "the first round of shard {} is done; when those of all are: the same command, --merged PARTS\n",
+      "the first round of shard {} is done; next, when all shards are done: the same command with --merged "
+      "PARTS\n",
       runner->shard().Text());
   throw EndWith{kTryAgain};
 }
@@ -89,7 +90,8 @@ void RunTune(const TuneArguments& arguments) {
     RunRepetitions(arguments, plan, settings);
     return;
   }
-  if (arguments.out.empty()) throw InputError("tune: --out is needed: the file for the tuned estimator");
+  if (arguments.out.empty())
+    throw InputError("tune: --out is missing; give the file for the tuned estimator");
   CheckIsNoInput(arguments.out, {arguments.study});
   CheckIsNoInput(arguments.out, arguments.shards.parts);
   const TuningWork work = PlanTuningWork(plan);
@@ -117,52 +119,49 @@ void RunTune(const TuneArguments& arguments) {
 }  // namespace
 
 void AddTuneCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "tune", "Find an estimator's thresholds that meet a target, with a guarantee, and verify them");
-  command->footer(
-      "The study's block `tune` names the estimator, the options and their levels, and the target:\n"
-      "  false_refusal  of the trials that would be good if nothing were refused, at most at_most are\n"
-      "                 refused; then the least failure\n"
-      "  failure        at most at_most fail and at most max_refusal are refused; then the least refusal\n"
-      "  accepted_failure  at most at_most of those that are not refused fail (an option "
-      "max_failure_probability\n"
-      "                 is a limit on the stated probability), and at most max_refusal are; then the least "
-      "refusal\n"
-      "  risk           cost_of_failure * failure + cost_of_refusal * refusal is least\n"
-      "Trials to explore propose settings, trials to calibrate certify one by exact binomial tests in a "
-      "fixed\n"
-      "order, so that it violates the target with probability at most delta; trials to verify, which played "
-      "no\n"
-      "part in either, give the figures that are printed, beside what tuning promised. All settings are\n"
-      "decided from the same scores, so that more levels of mu or lambda cost no further estimation.\n"
-      "Where no setting is certified, nothing is written: the message says what is nearest, or how many "
-      "trials\n"
-      "would do (exit code 2).\n"
-      "\n"
-      "Stopped (Ctrl-C, SIGTERM, --max-time) or killed, the same command goes on: what is done is kept in\n"
-      "OUT.unfinished.part until the end.\n"
-      "\n"
-      "On many machines each does a share of the trials; the parts give the bytes of one tuning, in two "
-      "rounds\n"
-      "(docs/many_machines.md): the second needs what the first has chosen.\n"
-      "\n"
-      "  rcme tune STUDY --shard 3/64 --out parts/3.json                           exit code 75: round one\n"
-      "  rcme tune STUDY --shard 3/64 --out parts/3.json --merged parts/*.json     round two\n"
-      "  rcme tune STUDY --merge parts/*.json --out tuned.yaml\n"
-      "\n"
-      "Examples:\n"
-      "  rcme tune studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned\n"
-      "  rcme tune STUDY --out tuned.yaml --tune target=false_refusal --tune at_most=0.02\n"
-      "  rcme tune STUDY --repeat 200              is the guarantee kept? 200 tunings with fresh seeds\n"
-      "  rcme run STUDY --seed 2 --add-estimator tuned.yaml --out run.sqlite     other trials than the "
-      "tuning's\n"
-      "  rcme estimate matches.csv.gz --estimator-file tuned.yaml");
+  CLI::App* command =
+      app.add_subcommand("tune", "Find thresholds of an estimator that meet a target, with a guarantee");
+  command->footer(R"(The study's block `tune` names the estimator, its open options with their levels, and
+the target:
+  false_refusal     at most at_most of the trials that would be right if nothing were
+                    refused are refused; then the least failure
+  failure           at most at_most fail and at most max_refusal are refused; then the
+                    least refusal
+  accepted_failure  at most at_most of the answered trials fail and at most max_refusal
+                    are refused; then the least refusal. An option
+                    max_failure_probability limits the stated probability
+  risk              the least cost_of_failure * failure + cost_of_refusal * refusal
+Exploration trials propose settings. Calibration trials certify one of them by exact
+binomial tests in a fixed order, so it violates the target with probability at most
+delta. Verification trials, used for nothing else, give the printed rates, beside those
+that the tuning promised. All settings are decided from the same scores, so more levels
+of mu or lambda cost no further estimation. If no setting is certified, nothing is
+written: the message names the nearest setting or the number of trials that would be
+enough (exit code 2).
+
+If the command is stopped (Ctrl-C, SIGTERM, --max-time) or killed, run it again: finished
+work is kept in OUT.unfinished.part until the end.
+
+On many machines each runs a share of the trials, in two rounds; the second needs the
+choice of the first. The merged parts have the bytes of a single tuning
+(docs/many_machines.md):
+
+  rcme tune STUDY --shard 3/64 --out parts/3.json                         exit code 75
+  rcme tune STUDY --shard 3/64 --out parts/3.json --merged parts/*.json   second round
+  rcme tune STUDY --merge parts/*.json --out tuned.yaml
+
+Examples:
+  rcme tune studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned
+  rcme tune STUDY --out tuned.yaml --tune target=false_refusal --tune at_most=0.02
+  rcme tune STUDY --repeat 200       checks the guarantee by 200 tunings with fresh seeds
+  rcme run STUDY --seed 2 --add-estimator tuned.yaml --out run.sqlite   fresh trials
+  rcme estimate matches.csv.gz --estimator-file tuned.yaml)");
   auto arguments = std::make_shared<TuneArguments>();
   AddTuningOptions(command, arguments.get());
-  command->add_option("-o,--out", arguments->out,
-                      "the tuned estimator, a file for studies "
-                      "and `rcme estimate`; with --shard the file of the part, with "
-                      "--repeat a file for the table");
+  command->add_option(
+      "-o,--out", arguments->out,
+      "estimator file to write, for studies and `rcme estimate`; with --shard the file of the part, "
+      "with --repeat a file for the table");
   CLI::Option* figures =
       command->add_option("--figures", arguments->figures,
                           "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
@@ -170,13 +169,12 @@ void AddTuneCommand(CLI::App& app) {
   shards.shard->excludes(figures);
   command
       ->add_option("--merged", arguments->merged,
-                   "the files of all shards after the first round, for the second of --shard")
+                   "files of all shards after the first round, for the second round of --shard")
       ->needs(shards.shard);
   command
-      ->add_option(
-          "--repeat", arguments->repeat,
-          "number of repetitions: tune again with fresh seeds, and count how often the target is violated; "
-          "what is done is kept beside --out, if that is given")
+      ->add_option("--repeat", arguments->repeat,
+                   "tune this many times with fresh seeds and count how often the target is violated; "
+                   "finished work is kept beside --out, if that is given")
       ->transform(WholeNumberIn(1, 100'000))
       ->excludes(figures)
       ->excludes(shards.shard)

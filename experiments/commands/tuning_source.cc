@@ -13,8 +13,9 @@ namespace rcme {
 
 void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
   command
-      ->add_option("study", arguments->study,
-                   "study file (YAML) with a block `tune`, or the name of one (`rcme list studies`)")
+      ->add_option(
+          "study", arguments->study,
+          "study file (YAML) with a block `tune`, or the name of an installed one (`rcme list studies`)")
       ->required();
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
@@ -25,8 +26,7 @@ void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
           "calibrate=1000, ...")
       ->allow_extra_args(false);
   command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The results do not depend on it")
+      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
 }
 
@@ -39,9 +39,8 @@ StudyPlan TuningPlanOf(const TuningArguments& arguments) {
                     arguments.study));
   }
   if (study.repeats_per_scene > 1) {
-    throw InputError(
-        fmt::format("{}: repeats_per_scene: tuning needs a scene of its own for every trial; leave it out",
-                    arguments.study));
+    throw InputError(fmt::format(
+        "{}: repeats_per_scene: tuning needs a new scene for every trial; leave it out", arguments.study));
   }
   for (const std::string& text : arguments.overrides) {
     const size_t equals = std::min(text.find('='), text.size());

@@ -105,7 +105,8 @@ void RunTwin(const TwinArguments& arguments) {
   if (!arguments.scene.empty()) {
     std::erase_if(scenes, [&](const auto& scene) { return scene.first != arguments.scene; });
     if (scenes.empty())
-      throw InputError(fmt::format("--scene: '{}' is not there; give one of: {}", arguments.scene, names));
+      throw InputError(
+          fmt::format("--scene: there is no scene '{}'; give one of: {}", arguments.scene, names));
   }
   const std::filesystem::path out(arguments.out);
   const bool is_one_study = out.extension() == ".yaml";
@@ -119,8 +120,8 @@ void RunTwin(const TwinArguments& arguments) {
   std::set<std::string> file_names;
   for (const auto& [scene, data] : scenes) {
     if (!file_names.insert(MakeFileName(scene)).second)
-      throw InputError(
-          fmt::format("scene {}: its files would be those of another scene; give --scene", Quoted(scene)));
+      throw InputError(fmt::format(
+          "scene {}: its files would have the names of another scene's; give --scene", Quoted(scene)));
   }
   Runner runner = MakeRunner(
       PlanTwinSteps(arguments, spec, scenes, images),
@@ -153,28 +154,24 @@ void RunTwin(const TwinArguments& arguments) {
 
 void AddTwinCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
-      "twin", "Simulated studies fitted to real pairs, and what simulation does not explain of them");
-  command->footer(
-      "Of each scene of a folder of match files two studies for `rcme run`:\n"
-      "  semi-real  the real key points, put where the estimated geometry has them (as match files of their "
-      "own);\n"
-      "             noise of the size, tails and correlation of the residuals drawn anew, wrong matches "
-      "dealt out\n"
-      "             again\n"
-      "  simulated  a scene of the simulator with the cameras, depths, parallax, motion, planarity, "
-      "clustering,\n"
-      "             noise and wrong matches of the pairs\n"
-      "and a report: what the estimator does on the pairs (refusals, failures, stated probability of "
-      "failure,\n"
-      "estimated noise, inlier test, tails, stated deviations, halves, correlation of residuals) beside what "
-      "it\n"
-      "does on the twins, with a test of each difference, and what is not explained.\n"
-      "Stopped or killed, the same command goes on: what is done is kept in OUT/unfinished.part, or beside\n"
-      "STUDY.yaml, until the end.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme twin PAIRS --out twins\n"
-      "  rcme twin PAIRS --scene kitti00 --out kitti00.yaml && rcme run kitti00.yaml --out run.sqlite");
+      "twin", "Fit simulated studies to real pairs, and report what simulation does not explain");
+  command->footer(R"(Writes two studies for `rcme run` for each scene of a folder of match files:
+  semi-real  the real key points, moved to agree with the estimated geometry (as match
+             files); fresh noise with the size, tails and correlation of the residuals,
+             and wrong matches dealt out again
+  simulated  a scene of the simulator with the cameras, depths, parallax, motion,
+             planarity, clustering, noise and wrong matches of the pairs
+It also writes a report that compares what the estimator does on the pairs and on the
+twins: refusals, failures, stated probability of failure, estimated noise, inlier test,
+tails, stated deviations, halves, and correlation of residuals. The report tests each
+difference and lists what simulation does not explain.
+
+If the command is stopped (Ctrl-C, SIGTERM, --max-time) or killed, run it again: finished
+work is kept in OUT/unfinished.part, or beside STUDY.yaml, until the end.
+
+Examples:
+  rcme twin PAIRS --out twins
+  rcme twin PAIRS --scene kitti00 --out kitti00.yaml && rcme run kitti00.yaml --out run.sqlite)");
   auto arguments = std::make_shared<TwinArguments>();
   command->add_option("pairs", arguments->pairs, "folder of match files")->required();
   CLI::Option* estimator =
@@ -182,17 +179,17 @@ void AddTwinCommand(CLI::App& app) {
           ->capture_default_str();
   AddEstimatorOptions(command, estimator, &arguments->estimator);
   command
-      ->add_option(
-          "-o,--out", arguments->out,
-          "STUDY.yaml (one scene), with STUDY_simulated.yaml and STUDY_pairs/ beside it; or a folder for "
-          "those of every scene, twin.txt, .csv and .json")
+      ->add_option("-o,--out", arguments->out,
+                   "for one scene STUDY.yaml, with STUDY_simulated.yaml and STUDY_pairs/ beside it; "
+                   "otherwise a folder for those of every scene, twin.txt, .csv and .json")
       ->required();
-  command->add_option("--scene", arguments->scene, "this scene alone");
+  command->add_option("--scene", arguments->scene, "only this scene");
   command
-      ->add_option("--sigma", arguments->sigma_px, "noise standard deviation that the estimator assumes, px")
+      ->add_option("--sigma", arguments->sigma_px,
+                   "standard deviation of the noise that the estimator assumes, px")
       ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
-  command->add_option("--twins", arguments->num_twins, "of either kind for each pair")
+  command->add_option("--twins", arguments->num_twins, "number of twins of each kind per pair")
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();
   AddTimeLimit(command, "pairs", &arguments->max_time);

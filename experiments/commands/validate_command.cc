@@ -40,7 +40,7 @@ struct ValidateArguments {
 std::vector<PairSet> ReadSets(const std::string& pairs, const ValidateArguments& arguments) {
   if (std::filesystem::is_directory(pairs)) {
     if (!arguments.data.empty() || arguments.trials > 0)
-      throw InputError("validate: --data and --trials are of a study; PAIRS is a folder");
+      throw InputError("validate: --data and --trials need a study; PAIRS is a folder");
     return PairSetsOfFolder(pairs, arguments.sigma_px);
   }
   Study study = LoadStudy(pairs);
@@ -90,7 +90,8 @@ std::vector<PairSet> ChooseSets(const ValidateArguments& arguments, const Plante
     for (const PairSet& set : sets) names += (names.empty() ? "" : ", ") + set.name;
     std::erase_if(sets, [&](const PairSet& set) { return set.name != arguments.scene; });
     if (sets.empty())
-      throw InputError(fmt::format("--scene: '{}' is not there; give one of: {}", arguments.scene, names));
+      throw InputError(
+          fmt::format("--scene: there is no scene '{}'; give one of: {}", arguments.scene, names));
   }
   for (PairSet& set : sets) set = PlantFaultsIn(std::move(set), planted);
   return sets;
@@ -138,33 +139,35 @@ void RunValidate(const ValidateArguments& arguments) {
 }  // namespace
 
 void AddValidateCommand(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("validate", "Do covariances hold on real pairs, whose true motions nobody knows?");
-  command->footer(
-      "PAIRS is a folder of match files (see `rcme estimate --help`; `# scene:` groups them, `# image1:` "
-      "and\n"
-      "`# image2:` say which share an image) or a study, whose trials are the pairs.\n"
-      "Each test holds differences of estimates against their covariances as these are stated, and says\n"
-      "whether simulated twins of the pairs have the same fault:\n"
-      "  spatial_halves  left and right, upper and lower half of the matches\n"
-      "  random_halves   the same of halves drawn at random: independent errors alone\n"
-      "  closure         rotations around loops of three to six images, where pairs name them\n"
-      "  directions      directions of translation around three images\n"
-      "  simulation      the answers to the twins against the motion that these were made of: the\n"
-      "                  estimator's own covariance, of independent errors\n"
-      "Beside them: is the calibration right that all pairs share (focal length, principal point,\n"
-      "distortion, key points of the second image; a rolling shutter where files state # seconds_between),\n"
-      "does the noise grow as a column sigma_px of the files says, how great is it, and how alike are the\n"
-      "residuals of neighbours. A verdict for each scene (holds, too small by ..., undecided and what it\n"
-      "would take), what it comes from (the data, or the estimator itself), and what to change: each change\n"
-      "is made and the scene validated again, and the advice says what came of it.\n"
-      "Stopped or killed, the same command with --out goes on: what is done is kept in OUT/unfinished.part.\n"
-      "\n"
-      "Examples:\n"
-      "  rcme validate PAIRS --out validation\n"
-      "  rcme validate PAIRS --set covariance=robust --scene kitti00\n"
-      "  rcme validate studies/indoor_like.yaml --data noise=correlated --trials 40\n"
-      "  rcme validate PAIRS --plant focal_length=0.01 --no-advice      would these pairs show it?");
+  CLI::App* command = app.add_subcommand("validate", "Check covariances on real pairs without ground truth");
+  command->footer(R"(PAIRS is a folder of match files (see `rcme estimate --help`), or a study whose trials
+are the pairs. In a folder, `# scene:` lines group the files, and `# image1:` and
+`# image2:` lines tell which files share an image.
+
+Each test compares differences of estimates with their stated covariances, and says
+whether simulated twins of the pairs have the same fault:
+  spatial_halves  left and right, upper and lower half of the matches
+  random_halves   random halves of the matches; tests for independent errors only
+  closure         rotations around loops of three to six images, where pairs name them
+  directions      directions of translation around three images
+  simulation      answers on the twins compared with their true motion; tests the
+                  estimator's own covariance for independent errors
+The report also estimates the calibration that all pairs share (focal length, principal
+point, distortion, key points of the second image; a rolling shutter if files state
+# seconds_between), whether the noise grows as the column sigma_px says, the noise level,
+and the correlation of neighbouring residuals. Each scene gets a verdict (holds, too
+small by ..., or undecided with the number of pairs that would decide), its cause (the
+data or the estimator), and advice. The program tries each advised change, validates the
+scene again, and reports the result.
+
+If the command is stopped or killed, run it again with --out: finished work is kept in
+OUT/unfinished.part until the end.
+
+Examples:
+  rcme validate PAIRS --out validation
+  rcme validate PAIRS --set covariance=robust --scene kitti00
+  rcme validate studies/indoor_like.yaml --data noise=correlated --trials 40
+  rcme validate PAIRS --plant focal_length=0.01 --no-advice   would these pairs show it?)");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("pairs", arguments->pairs, "folders of match files, or study files (YAML)")->required();
   CLI::Option* estimator =
@@ -172,11 +175,11 @@ void AddValidateCommand(CLI::App& app) {
           ->capture_default_str();
   AddEstimatorOptions(command, estimator, &arguments->estimator);
   command->add_option("-o,--out", arguments->out,
-                      "folder for validation.txt, .csv, .json and the figure; made if it is missing");
-  command->add_option("--scene", arguments->scene, "this scene, or condition of a study, alone");
+                      "folder for validation.txt, .csv, .json and the figure, created if missing");
+  command->add_option("--scene", arguments->scene, "only this scene, or this condition of a study");
   command
       ->add_option("--sigma", arguments->sigma_px,
-                   "noise standard deviation that a folder's pairs assume, px")
+                   "standard deviation of the noise, for pairs of a folder, px")
       ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
   command->add_option("--data", arguments->data, "key=value, repeatable: a setting of the study's data block")
@@ -190,16 +193,16 @@ void AddValidateCommand(CLI::App& app) {
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command
-      ->add_option(
-          "--plant", arguments->planted,
-          "NAME=VALUE, repeatable: puts a fault in before validating, to see whether these pairs show "
-          "it. covariance and sigma are factors, the others as the report has them (focal_length 0.01 "
-          "is 1 %). NAME is one of: " +
-              PlantableFaults())
+      ->add_option("--plant", arguments->planted,
+                   "NAME=VALUE, repeatable: plant a fault first, to see whether these pairs reveal it. "
+                   "covariance and sigma are factors; the others have the units of the report (focal_length "
+                   "0.01 is 1 %). "
+                   "NAME is one of: " +
+                       PlantableFaults())
       ->allow_extra_args(false);
   AddTimeLimit(command, "pairs", &arguments->max_time);
-  command->add_flag("--no-advice", arguments->tests_alone, "the tests alone: no change is tried");
-  command->add_flag("--no-figure", arguments->draws_no_figure, "write the tables alone");
+  command->add_flag("--no-advice", arguments->tests_alone, "only run the tests; try no changes");
+  command->add_flag("--no-figure", arguments->draws_no_figure, "write only the tables");
   command->callback([arguments] { RunValidate(*arguments); });
 }
 

@@ -69,7 +69,7 @@ Choices ChoicesIn(const Settings& settings) {
     }
   }
   if (choices.scene.empty())
-    throw InputError("data: key 'scene' is missing; `rcme list scenes` shows what there is");
+    throw InputError("data: key 'scene' is missing; `rcme list scenes` lists the scenes");
   return choices;
 }
 

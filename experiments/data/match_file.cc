@@ -80,9 +80,10 @@ class Header {
   // The `count` numbers of a key that must be there.
   std::vector<double> Numbers(const std::string& key, size_t count) const {
     if (!Has(key)) {
-      throw InputError(fmt::format(
-          "{}: header key '# {}: ...' is missing (of a bare file `rcme estimate --K` says the intrinsics)",
-          path_, key));
+      throw InputError(
+          fmt::format("{}: header key '# {}: ...' is missing (without a header, give the intrinsics by `rcme "
+                      "estimate --K`)",
+                      path_, key));
     }
     std::vector<double> numbers;
     for (const std::string& word : SplitAtBlanks(entries_.at(key).text)) {
@@ -137,8 +138,7 @@ Camera CameraFrom(const Header& header, const std::string& number, const Camera*
   const std::string size_key = "size" + number, k_key = "K" + number + "_fx_fy_cx_cy";
   Camera camera;
   if (given) {
-    if (header.Has(k_key))
-      header.Fail(k_key, "the file has intrinsics of its own; leave out those given (--K)");
+    if (header.Has(k_key)) header.Fail(k_key, "the file has its own intrinsics; leave out --K");
     camera = *given;
   }
   const std::array<int, 2> size =
@@ -180,7 +180,8 @@ std::optional<RelativePose> TruePoseFrom(const Header& header) {
 std::optional<TruthSd> TruthSdFrom(const Header& header) {
   if (!header.Has("truth_sd")) return std::nullopt;
   const std::vector<double> sd = header.Numbers("truth_sd", 6);
-  if (!header.Has("R_rowmajor")) header.Fail("truth_sd", "is of no truth; R_rowmajor and t_unit are missing");
+  if (!header.Has("R_rowmajor"))
+    header.Fail("truth_sd", "needs a true motion, but R_rowmajor and t_unit are missing");
   if (std::ranges::any_of(sd, [](double x) { return x < 0.0; }))
     header.Fail("truth_sd", "standard deviations must be >= 0");
   return TruthSd{kRadPerDeg * Eigen::Vector3d(sd[0], sd[1], sd[2]), {sd[3], sd[4], sd[5]}};

@@ -23,8 +23,7 @@ void RequireDrawnScenes(const Study& study) {
     for (const auto& [key, value] : SettingsOf(study, levels)) {
       if (key == "scene" && value == kMatchFilesScene) {
         throw InputError(
-            "rare: scene: match_files is not allowed; rare failures need trials without end, and those of "
-            "real pairs are counted");
+            "rare: scene: match_files is not allowed; real pairs give too few trials for rare failures");
       }
     }
   }
@@ -46,9 +45,7 @@ FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, 
   RequireDrawnScenes(plan.study);
   data_ = MakeSimulatedData(SettingsOf(plan.study, condition.levels));
   if (!data_->HasNormalNoise()) {
-    throw InputError(
-        "rare: noise: only gaussian is allowed, for splitting moves normal numbers; for other noise give "
-        "--method stratified");
+    throw InputError("rare: noise: splitting needs gaussian noise; for other noise give --method stratified");
   }
   for (const auto& [part, name] : data_->ChosenParts())
     has_free_points_ = has_free_points_ || (part == "scene" && name == "uniform_volume");
@@ -56,7 +53,7 @@ FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, 
   const State first = Draw(rng);
   RandomStream outlier_rng = StreamFor({first.outlier_seed, stream_key_, 0, 0}, StreamPurpose::kOutliers);
   if (data_->MakeFrom(*first.scene, first.noise, outlier_rng).weight != 1.0)
-    throw InputError("rare: tilted_to: trials with weights are not allowed; leave it out");
+    throw InputError("rare: tilted_to: weighted trials are not allowed; leave it out");
 }
 
 std::shared_ptr<const Scene> FailingMotion::DrawScene(RandomStream& rng) const {

@@ -86,9 +86,8 @@ namespace {
 void Begin(const StudyPlan& plan, ResultStore* store) {
   if (plan.study.repeats_per_scene > 1) {
     throw InputError(
-        "--until: the repeats of a scene (repeats_per_scene) are not independent, which the intervals it "
-        "looks "
-        "at ask for; give --trials instead");
+        "--until: repeats of a scene (repeats_per_scene) are not independent, as its intervals require; "
+        "give --trials instead");
   }
   store->NoteStoppingRule("a rate's interval is narrow enough");
 }

@@ -204,8 +204,7 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
                         run.NumTrials(),
                         {}};
   if (pairs.is_weighted()) {
-    comparison.caution =
-        "trials are weighted (tilted_to): counts of them say nothing, so there are none here";
+    comparison.caution = "trials are weighted (tilted_to), so this comparison has no counts of them";
     return comparison;
   }
   const bool is_anytime_valid = options.is_anytime_valid || !run.stopping_rule.empty();

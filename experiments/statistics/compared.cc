@@ -72,7 +72,7 @@ std::vector<Compared> ComparedByName(const std::vector<std::string>& names) {
   };
   for (const std::string& name : names) {
     if (std::ranges::none_of(all, [&](const Compared& compared) { return IsNamed(compared, name); }))
-      fail(fmt::format("nothing called {} can be compared", Quoted(name)));
+      fail(fmt::format("{} cannot be compared", Quoted(name)));
   }
   std::vector<Compared> chosen;
   for (const Compared& compared : all) {

@@ -25,7 +25,8 @@ constexpr std::chrono::seconds kWriteInterval{10};
 void CheckCanBeCounted(const StudyPlan& plan) {
   if (plan.study.repeats_per_scene > 1) {
     throw InputError(
-        "--keep counts: not with repeats_per_scene: what is between scenes is not in the counts");
+        "--keep counts does not work with repeats_per_scene: "
+        "counts cannot separate the variance between scenes from that within them");
   }
 }
 

@@ -40,9 +40,7 @@ class MergedCounts {
     report->run = counts_.run;
     report->num_shards = descriptions.num_shards();
     if (report->num_shards == 0) {
-      throw InputError(
-          "the parts are of different numbers of shards: counts cannot tell which trials they have in "
-          "common");
+      throw InputError("the parts come from different numbers of shards, so their common trials are unknown");
     }
   }
 
@@ -53,10 +51,9 @@ class MergedCounts {
     const std::vector<std::uint32_t> digest = DigestOf(part);
     if (HasCommonTrials(part)) {
       if (!digests_.contains(digest)) {
-        throw InputError(
-            fmt::format("{}: counts trials that a part before counts too, and not the same numbers; leave "
-                        "one of the two out",
-                        path));
+        throw InputError(fmt::format(
+            "{}: counts trials that an earlier part counts with other numbers; leave out one of the two",
+            path));
       }
       report_->num_twice += part.NumTrials();
       return;

@@ -39,7 +39,7 @@ class Names {
   void CheckAllWereNeeded() const {
     for (const auto& [name, label] : labels_) {
       if (!known_.contains(name))
-        throw InputError(fmt::format("--labels: {} is no name in the table; allowed: {}", Quoted(name),
+        throw InputError(fmt::format("--labels: {} is not a name in the table; allowed: {}", Quoted(name),
                                      fmt::join(known_, ", ")));
     }
   }
@@ -57,7 +57,7 @@ void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& 
   for (const std::string& quantity : quantities) {
     if (!known.contains(quantity))
       throw InputError(
-          fmt::format("--quantities: {} is no quantity of an estimator in this summary; allowed: {}",
+          fmt::format("--quantities: {} is not a quantity of an estimator in this summary; allowed: {}",
                       Quoted(quantity), fmt::join(known, ", ")));
   }
 }

@@ -20,7 +20,7 @@ const SeverityColumn& FindSeverityColumn(const std::string& name) {
     if (column.name == name) return column;
     names.emplace_back(column.name);
   }
-  throw InputError(fmt::format("fifths-of: no number of the problem is called '{}'; there are {}", name,
+  throw InputError(fmt::format("--fifths-of: '{}' is not a quantity of the problem; allowed: {}", name,
                                fmt::join(names, ", ")));
 }
 

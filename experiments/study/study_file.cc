@@ -89,8 +89,9 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
     EstimatorSpec spec = ReadEstimator(place, entry);
     for (const EstimatorSpec& other : study->estimators) {
       if (other.label == spec.label) {
-        place.Fail(entry, fmt::format("estimators: label '{}' stands twice; give each a label of its own",
-                                      spec.label));
+        place.Fail(entry,
+                   fmt::format("estimators: label '{}' stands twice; give each estimator its own label",
+                               spec.label));
       }
     }
     study->estimators.push_back(std::move(spec));
@@ -142,7 +143,7 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
     for (std::string& level : factor.levels) {
       if (factor.key == "scene" && level == kMatchFilesScene)
         place.Fail(line,
-                   "factors: scene: match_files is no simulated scene; write a study of its own for it");
+                   "factors: scene: match_files is not a simulated scene; write a separate study for it");
       const std::string given = level;
       place.At(line, [&] { level = Canonical(IsChoice(factor.key) ? first : choices, factor.key, given); });
       if (!seen.insert(level).second)

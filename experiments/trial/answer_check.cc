@@ -75,11 +75,11 @@ Description FaultOfMotion(const MotionEstimate& estimate) {
   const bool has_direction = estimate.status == MotionStatus::kOk;
   if (!has_direction && estimate.status != MotionStatus::kDirectionNotObservable) return std::nullopt;
   if (!IsRotation(R)) {
-    return fmt::format("R is no rotation: largest entry of |R'R - I| {:.3g}, det R {:.3g}",
+    return fmt::format("R is not a rotation: largest entry of |R'R - I| {:.3g}, det R {:.3g}",
                        (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(),
                        R.determinant());
   }
-  if (has_direction && !IsUnitVector(t)) return fmt::format("t is no unit vector: |t| = {:.9g}", t.norm());
+  if (has_direction && !IsUnitVector(t)) return fmt::format("t is not a unit vector: |t| = {:.9g}", t.norm());
   return std::nullopt;
 }
 

@@ -20,7 +20,8 @@ class TrialDecisions {
       : name_(NameOfTrial(plan, condition, trial)),
         bounds_(plan.study.failure),
         data_(condition.source->Make(name_)) {
-    if (data_.weight != 1.0) throw InputError("tune: tilted_to: trials with weights cannot be tuned on");
+    if (data_.weight != 1.0)
+      throw InputError("tune: tilted_to: weighted trials cannot be used to tune; leave it out");
   }
 
   // How each setting of the group ends, and how it would without its limits.
@@ -90,8 +91,8 @@ void CheckTrialsAreFresh(const StudyPlan& plan) {
   for (const Condition& condition : plan.conditions) {
     if (condition.source->SharedScene()) {
       throw InputError(
-          "tune: scene: match_files: the pairs of a folder repeat, so that no fresh trials are left to "
-          "verify a setting on; tune in simulation, then `rcme run` the pairs with --add-estimator");
+          "tune: scene: match_files: the pairs of a folder repeat, so no fresh trials can verify a setting; "
+          "tune in simulation, then run the pairs with --add-estimator");
     }
   }
 }

@@ -83,10 +83,10 @@ SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning) {
   }
   const bool has_limits = AddEstimators(&plan);
   if (tuning.target == TuneTarget::kFalseRefusal && !has_limits) {
-    throw InputError(
-        fmt::format("tune: target: false_refusal: no setting of {} has a limit that could be lifted, so that "
-                    "nothing is refused falsely; tune for failure or risk",
-                    base.label));
+    throw InputError(fmt::format(
+        "tune: target: false_refusal: no setting of {} has a limit to lift, so nothing is refused falsely; "
+        "tune for failure or risk",
+        base.label));
   }
   AddGroups(&plan);
   return plan;

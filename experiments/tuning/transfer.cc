@@ -60,7 +60,8 @@ std::vector<Family> FamiliesBy(const StudyPlan& plan, const std::string& by) {
 void CheckFamilies(const StudyPlan& plan, const std::vector<Family>& families) {
   const Tuning& tuning = *plan.study.tuning;
   if (tuning.target == TuneTarget::kRisk) {
-    throw InputError("transfer: target: risk: the least risk is no promise that could be kept or broken");
+    throw InputError(
+        "transfer: target: risk: a least risk has no limit that could be violated; give another target");
   }
   if (families.size() < 2) throw InputError("transfer: the study has one family of scenes; two are needed");
   for (const Family& family : families) {

@@ -223,7 +223,7 @@ TEST(Audit, WrongArgumentsAreNamed) {
 
   const ProgramResult round = RunRcme({"audit", "--round", folder.Path("r"), "--out", folder.Path("x")});
   EXPECT_EQ(round.exit_code, 2);
-  EXPECT_THAT(round.err, HasSubstr("--round: only with --shard or --merge"));
+  EXPECT_THAT(round.err, HasSubstr("--round needs --shard or --merge"));
   EXPECT_EQ(RunRcme({"audit", "--budget", "huge", "--out", folder.Path("x")}).exit_code, 2);
   EXPECT_EQ(RunRcme({"audit"}).exit_code, 2);
 }

@@ -32,7 +32,7 @@ TEST(PairsProgram, FromKittiToARateAndToAValidation) {
   const std::string journal = ReadBytes(out + "/pairs.journal");
   const ProgramResult again = RunRcme(command);
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_NE(again.err.find("goes on after"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("continues after"), std::string::npos) << again.err;
   EXPECT_EQ(again.out, made.out);
   EXPECT_EQ(ReadBytes(out + "/pairs.journal"), journal);
   std::vector<std::string> other = command;

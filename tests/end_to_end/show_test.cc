@@ -69,7 +69,7 @@ TEST_F(Show, AResultFileHasTheSameTrials) {
       study_, {"--condition", "1", "--trial", "2", "--estimators", "ours,standard", "--seed", "8"}));
   EXPECT_EQ(ReadBytes(json_), of_run);
   ExpectRefused({run_, "--condition", "0", "--trial", "0", "--seed", "9"},
-                {"run.sqlite", "--seed", "of its own"});
+                {"run.sqlite", "--seed", "its own study and seed"});
   ExpectRefused({run_, "--condition", "0", "--trial", "0", "--set", "sigma_px=1"}, {"run.sqlite", "--set"});
 }
 

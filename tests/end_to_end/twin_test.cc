@@ -123,7 +123,8 @@ TEST_F(TwinProgram, SaysWhatIsWrong) {
     return RunRcme(arguments);
   };
   EXPECT_TRUE(IsRefused(call({"--out", folder_.Path("s.yaml")}), {"--out", "one scene's study", "a, b"}));
-  EXPECT_TRUE(IsRefused(call({"--out", folder_.Path("x"), "--scene", "c"}), {"--scene: 'c' is not there"}));
+  EXPECT_TRUE(
+      IsRefused(call({"--out", folder_.Path("x"), "--scene", "c"}), {"--scene: there is no scene 'c'"}));
   EXPECT_TRUE(IsRefused(RunRcme({"twin", folder_.Path("none"), "--out", folder_.Path("x")}), {"none"}));
   TempFolder few;
   few.Write("a.csv", "# scene: a\n" + MatchHeader() + MatchRows(5));

@@ -68,7 +68,7 @@ TEST_F(ValidateProgram, OfAStudyTakesItsTrials) {
 
 TEST_F(ValidateProgram, SaysWhatIsWrong) {
   pairs_.Write("a.csv", "# scene: a\n" + MatchHeader() + MatchRows(20));
-  EXPECT_TRUE(IsRefused(Call(pairs_.path(), {"--scene", "b"}), {"--scene: 'b' is not there", "a"}));
+  EXPECT_TRUE(IsRefused(Call(pairs_.path(), {"--scene", "b"}), {"--scene: there is no scene 'b'", "a"}));
   EXPECT_TRUE(IsRefused(Call(pairs_.path(), {"--trials", "3"}), {"PAIRS is a folder"}));
   EXPECT_TRUE(
       IsRefused(Call(study_, {"--data", "noise"}), {"--data: 'noise' is not allowed; give key=value"}));

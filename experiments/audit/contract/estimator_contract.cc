@@ -24,7 +24,8 @@ std::optional<std::string> FaultOf(const MotionEstimate& estimate, const Contrac
     return fmt::format("{}: {}", StatusName(fault->status), fault->message);
   const MotionStatus status = estimate.status;
   if (status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance)
-    return fmt::format("returns the status {}, which is for the judge of the answer", StatusName(status));
+    return fmt::format("returns the status {}, which only the check of its answer may give",
+                       StatusName(status));
   if (!std::is_sorted(estimate.inliers.begin(), estimate.inliers.end()))
     return "the inliers are not in ascending order";
   if (status != MotionStatus::kOk && estimate.message.empty())
@@ -47,7 +48,7 @@ std::string ExpectSoundAnswers(Bench& bench, const std::vector<ContractProblem>&
     } catch (const std::exception& error) {
       fault = fmt::format("throws: {}", error.what());
     } catch (...) {
-      fault = "throws what is no std::exception";
+      fault = "throws something that is not a std::exception";
     }
     num_broken += fault.has_value();
     if (fault && !first) first = Breach{problem.name, *fault};
@@ -241,7 +242,7 @@ std::string Attempt(const RunnableCheck& check, const EstimatorMaker& make, cons
   } catch (const std::exception& error) {
     return text(kBroken, problem, fmt::format("throws: {}", error.what()));
   } catch (...) {
-    return text(kBroken, problem, "throws what is no std::exception");
+    return text(kBroken, problem, "throws something that is not a std::exception");
   }
 }
 

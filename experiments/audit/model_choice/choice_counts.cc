@@ -46,8 +46,7 @@ void CheckCanBeScored(const StudyPlan& plan) {
   for (const Condition& condition : plan.conditions) {
     if (condition.source->SharedScene()) {
       throw InputError(
-          "model-choice: scene: match_files: of real pairs nobody knows the exact scene; take a simulated "
-          "one");
+          "model-choice: scene: match_files: real pairs have no known exact scene; use a simulated one");
     }
   }
 }
@@ -89,7 +88,7 @@ Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRan
     const StreamName name = NameOfTrial(plan, condition, trial);
     const TrialData data = condition.source->Make(name);
     if (data.weight != 1.0)
-      throw InputError("model-choice: tilted_to: trials with weights have no plain rates");
+      throw InputError("model-choice: tilted_to: weighted trials have no plain rates; leave it out");
     const auto kind = static_cast<size_t>(KindOfTrial(condition.source->SceneOf(name).value(), data, name));
     RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
     const std::vector<ModelChoice> choices = ChooseModels(data.problem, criteria, rng);

@@ -81,8 +81,8 @@ std::string FindFile(const std::string& name, SharedFolder folder, const FileKin
   if (std::ranges::count(names, bare) > 0) return (fs::path(PathOf(folder)) / (bare + kEnding)).string();
   const std::string suggestion = DidYouMean(fs::path(bare).filename().string(), names);
   if (suggestion.empty()) return name;
-  throw InputError(fmt::format("{}: no such {}{}; those that come with the program: {}", name, kind.name,
-                               suggestion, ListOf(folder)));
+  throw InputError(
+      fmt::format("{}: no such {}{}; installed: {}", name, kind.name, suggestion, ListOf(folder)));
 }
 
 }  // namespace rcme

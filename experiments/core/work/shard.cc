@@ -30,7 +30,7 @@ std::optional<long long> NumberIn(const Environment& environment, const std::str
   if (!text) return std::nullopt;
   const std::optional<long long> number = Number(*text);
   if (!number || *number < 0)
-    throw InputError(fmt::format("--shard: {} is {}, which is no whole number", name, Quoted(*text)));
+    throw InputError(fmt::format("--shard: {} is {}, which is not a whole number", name, Quoted(*text)));
   return number;
 }
 

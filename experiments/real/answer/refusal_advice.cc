@@ -12,8 +12,7 @@ namespace {
 constexpr const char* kCheckCalibration =
     "check the intrinsics (--K, or # K1_fx_fy_cx_cy) and that x1,y1 are of image 1, x2,y2 of image 2";
 constexpr const char* kWiderBaseline =
-    "take two images from places further apart: the rotation can be used, a direction is not in these "
-    "matches";
+    "take two images from places further apart: these matches determine the rotation but no direction";
 
 // "more samples: --set num_iterations=2000": ten times those there are, as far as the option allows.
 void AddMoreSamples(const EstimatorSpec& spec, std::vector<std::string>* advice) {

@@ -178,7 +178,7 @@ PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>&
                           TableClusters clusters) {
   if (run.Description().keeps_counts)
     throw InputError(
-        "the run keeps counts alone; the table needs every trial: rcme run without --keep counts");
+        "the run keeps only counts, but the table needs every trial; run it without --keep counts");
   const StudyPlan plan = run.Plan(run.StoredStudy(), PlanEstimators::kNotMade);
   PaperTable table{plan.study.name, {}, plan.study.failure, {}};
   for (const EstimatorSpec& spec : plan.study.estimators) table.estimators.push_back(spec.label);

@@ -166,7 +166,7 @@ Views ReadImagesBinary(const fs::path& path, const Lenses& lenses) {
 Views ReadColmapModel(const fs::path& folder) {
   if (fs::exists(folder / "images.bin"))
     return ReadImagesBinary(folder / "images.bin", ReadCamerasBinary(folder / "cameras.bin"));
-  CheckIsThere(folder / "images.txt", "and neither is images.bin: it is no reconstruction of COLMAP");
+  CheckIsThere(folder / "images.txt", "and neither is images.bin: this is not a reconstruction of COLMAP");
   return ReadImagesText(folder / "images.txt", ReadCamerasText(folder / "cameras.txt"));
 }
 

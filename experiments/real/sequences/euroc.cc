@@ -106,9 +106,9 @@ Sequence EurocSequence(const DatasetOptions& options, const fs::path& folder) {
 
 std::vector<Sequence> ReadEuroc(const DatasetOptions& options) {
   std::vector<Sequence> sequences;
-  for (const fs::path& folder : SequenceFolders(
-           options, "mav0",
-           "the archives of EuRoC (ASL format) unpack to mav0, no folder in this one has it either"))
+  for (const fs::path& folder :
+       SequenceFolders(options, "mav0",
+                       "the archives of EuRoC (ASL format) unpack to mav0, and no subfolder has it either"))
     sequences.push_back(EurocSequence(options, folder));
   return sequences;
 }

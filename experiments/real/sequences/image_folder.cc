@@ -29,8 +29,8 @@ std::vector<Sequence> ReadImageFolder(const DatasetOptions& options) {
   CheckIsThere(folder, "give a folder with images");
   if (!fs::is_directory(folder)) throw InputError(fmt::format("{}: is not a folder", folder.string()));
   if (options.K.empty())
-    throw InputError(
-        fmt::format("--K: fx fy cx cy of the camera is needed; {} holds images alone", folder.string()));
+    throw InputError(fmt::format("--K: fx fy cx cy of the camera is needed, because {} holds only images",
+                                 folder.string()));
   Sequence sequence;
   sequence.name = options.name.empty() ? FolderName(folder) : options.name;
   sequence.lens = MakeLens({options.K[0], options.K[1], options.K[2], options.K[3], 0, 0}, options.lens,

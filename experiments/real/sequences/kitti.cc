@@ -22,7 +22,7 @@ Eigen::Matrix<double, 3, 4> MatrixIn(const TableFile& table, size_t first) {
 
 // Of "P0: fx 0 cx 0 0 fy cy 0 0 0 1 0".
 Lens KittiLens(const fs::path& path) {
-  TableFile table(path, "it comes with the calibration files (data_odometry_calib.zip)",
+  TableFile table(path, "it is part of the calibration files (data_odometry_calib.zip)",
                   TableFile::Separator::kSpace);
   while (table.Next()) {
     if (table.fields().front() != "P0:") continue;
@@ -91,7 +91,7 @@ std::vector<Sequence> ReadKitti(const DatasetOptions& options) {
   in_sequences.folder = (root / "sequences").string();
   std::vector<Sequence> sequences;
   for (const fs::path& folder : SequenceFolders(
-           in_sequences, "image_0", "no folder NN/image_0 is in it either (data_odometry_gray.zip)"))
+           in_sequences, "image_0", "no subfolder NN/image_0 is in it either (data_odometry_gray.zip)"))
     sequences.push_back(KittiSequence(options, root, folder));
   return sequences;
 }

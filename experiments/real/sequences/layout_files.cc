@@ -114,8 +114,8 @@ void SkipOtherSize(const Size& size, const Camera& camera, Frame* frame) {
   frame->why_skipped =
       fmt::format("{}: is of {} x {} px; K is of images of {} x {} px: {}", frame->path, size.first,
                   size.second, camera.width, camera.height,
-                  is_turned ? "turn it back to how the sensor had it"
-                            : "put images of another size into a folder of their own, with their K");
+                  is_turned ? "rotate it back to the orientation of the sensor"
+                            : "put images of another size into their own folder, with their K");
 }
 
 void CheckImages(Sequence* sequence, OtherSizes other_sizes) {

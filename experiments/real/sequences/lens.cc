@@ -72,7 +72,7 @@ Lens MakeLens(const Camera& camera, LensModel model, const std::vector<double>& 
   if (camera.width == 0) sized.width = sized.height = 1;
   if (!sized.IsValid())
     throw InputError(
-        fmt::format("{}: fx {}, fy {}, cx {}, cy {} are no camera; fx and fy must be > 0 and all finite",
+        fmt::format("{}: fx {}, fy {}, cx {}, cy {} are not a camera; all must be finite, fx and fy > 0",
                     place, camera.fx, camera.fy, camera.cx, camera.cy));
   const size_t n = coefficients.size();
   const bool fits = model == LensModel::kPinhole  ? n == 0

@@ -68,8 +68,9 @@ void CheckHoldsNoOtherPairs(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (!name.ends_with(".csv") && !name.ends_with(".csv.gz")) continue;
-    throw InputError(fmt::format("--out: {} holds {}, which is not from here; give a new or empty folder",
-                                 folder.string(), name));
+    throw InputError(
+        fmt::format("--out: {} holds {}, which this command did not write; give a new or empty folder",
+                    folder.string(), name));
   }
 }
 

@@ -244,7 +244,7 @@ StoredPair PosebenchFile::ReadGroup(const std::string& name) const {
   const std::string place = fmt::format("{}: group {}", path_, Quoted(name));
   CheckIsHere(file_->id, name.c_str(), place);
   const Hdf5Id group(H5Gopen2(file_->id, name.c_str(), H5P_DEFAULT), H5Gclose);
-  if (group < 0) throw InputError(fmt::format("{}: is no group; a group per pair is needed", place));
+  if (group < 0) throw InputError(fmt::format("{}: is not a group; a group per pair is needed", place));
   StoredPair pair;
   pair.x1 = ReadPoints(group, "x1", place);
   pair.x2 = ReadPoints(group, "x2", place);

@@ -42,8 +42,8 @@ Lens TumLens(const DatasetOptions& options, const fs::path& folder) {
                     known.name);
   }
   throw InputError(
-      fmt::format("{}: nothing in this layout says which camera it was; give --K (and --lens, "
-                  "--distortion), or a folder with freiburg1, freiburg2 or freiburg3 in its name",
+      fmt::format("{}: this layout does not state the camera; give --K (and --lens, --distortion), "
+                  "or a folder with freiburg1, freiburg2 or freiburg3 in its name",
                   folder.string()));
 }
 
@@ -66,9 +66,9 @@ Sequence TumSequence(const DatasetOptions& options, const fs::path& folder) {
 
 std::vector<Sequence> ReadTum(const DatasetOptions& options) {
   std::vector<Sequence> sequences;
-  for (const fs::path& folder : SequenceFolders(
-           options, "rgb.txt",
-           "it lists the colour images of a TUM RGB-D sequence, no folder in this one has it either"))
+  for (const fs::path& folder :
+       SequenceFolders(options, "rgb.txt",
+                       "it lists the colour images of a TUM RGB-D sequence, and no subfolder has it either"))
     sequences.push_back(TumSequence(options, folder));
   return sequences;
 }

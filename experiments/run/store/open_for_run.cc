@@ -120,8 +120,7 @@ std::string NoteOriginIn(RunDescription* run, const std::string& path, bool has_
                  WithName(before.instruction_set, origin.instruction_set)};
   if (run->origin == origin || !has_trials) return {};
   return fmt::format(
-      "{}: its trials are of {} ({}), the further ones will be of {} ({}): they may differ in their last "
-      "bits",
+      "{}: its trials come from {} ({}), new ones will come from {} ({}), and may differ in their last bits",
       path, before.program, before.instruction_set, origin.program, origin.instruction_set);
 }
 

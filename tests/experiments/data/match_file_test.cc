@@ -222,7 +222,7 @@ TEST_F(MatchFileTest, TruthSdThatCannotBe) {
   EXPECT_TRUE(Refuses("# truth_sd: 1 1 1\n" + FullText(), {":1: truth_sd", "6 are needed"}));
   EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 -1 1 1\n" + FullText(), {":1: truth_sd", ">= 0"}));
   EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 nan 1 1\n" + FullText(), {":1: truth_sd", "'nan'"}));
-  EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 1 1 1\n" + MatchHeader(), {":1: truth_sd", "is of no truth"}));
+  EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 1 1 1\n" + MatchHeader(), {":1: truth_sd", "needs a true motion"}));
 }
 
 TEST_F(MatchFileTest, DamagedGzip) {

@@ -114,7 +114,7 @@ TEST_F(RunCountsTest, NamesWhatIsMissingAndRefusesWhatIsThereTwice) {
   EXPECT_EQ(last_.num_twice, 20);
   study_.trials = 60;
   again.back() = Run({2, 4}, "longer");
-  EXPECT_TRUE(ThrowsInputError([&] { Merge(again); }, {"longer_2_4", "a part before counts too"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Merge(again); }, {"longer_2_4", "an earlier part counts"}));
   study_.trials = 40;
   EXPECT_TRUE(ThrowsInputError([&] { Merge({parts[0], Run({2, 3})}); }, {"different numbers of shards"}));
   EXPECT_TRUE(ThrowsInputError([&] { Merge({parts[0], RunTrials()}); }, {"keeps"}));

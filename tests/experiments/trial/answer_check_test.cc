@@ -49,15 +49,15 @@ std::vector<Fault> Faults() {
   constexpr auto kCovariance = MotionStatus::kInvalidCovariance;
   using E = MotionEstimate;
   return {
-      {"NaN in R", [](E& e) { e.cam2_from_cam1.R(1, 2) = kNaN; }, kMotion, "R is no rotation"},
-      {"infinity in R", [](E& e) { e.cam2_from_cam1.R(0, 0) = kInfinity; }, kMotion, "R is no rotation"},
+      {"NaN in R", [](E& e) { e.cam2_from_cam1.R(1, 2) = kNaN; }, kMotion, "R is not a rotation"},
+      {"infinity in R", [](E& e) { e.cam2_from_cam1.R(0, 0) = kInfinity; }, kMotion, "R is not a rotation"},
       {"reflection", [](E& e) { e.cam2_from_cam1.R *= -1.0; }, kMotion, "det R -1"},
-      {"1000 R", [](E& e) { e.cam2_from_cam1.R *= 1000.0; }, kMotion, "R is no rotation"},
+      {"1000 R", [](E& e) { e.cam2_from_cam1.R *= 1000.0; }, kMotion, "R is not a rotation"},
       {"R of four digits",
        [](E& e) { e.cam2_from_cam1.R = (e.cam2_from_cam1.R.array() * 1e4).round() / 1e4; }, kMotion,
-       "R is no rotation"},
-      {"zero R", [](E& e) { e.cam2_from_cam1.R.setZero(); }, kMotion, "R is no rotation"},
-      {"NaN in t", [](E& e) { e.cam2_from_cam1.t.y() = kNaN; }, kMotion, "t is no unit vector"},
+       "R is not a rotation"},
+      {"zero R", [](E& e) { e.cam2_from_cam1.R.setZero(); }, kMotion, "R is not a rotation"},
+      {"NaN in t", [](E& e) { e.cam2_from_cam1.t.y() = kNaN; }, kMotion, "t is not a unit vector"},
       {"t = 0", [](E& e) { e.cam2_from_cam1.t.setZero(); }, kMotion, "|t| = 0"},
       {"2 t", [](E& e) { e.cam2_from_cam1.t *= 2.0; }, kMotion, "|t| = 2"},
       {"NaN in the covariance", [](E& e) { e.pose_cov(4, 1) = kNaN; }, kCovariance, "covariance"},

@@ -71,7 +71,7 @@ TEST_F(Kitti, WhatIsBrokenIsNamedByPath) {
       {Remove(s + "image_0/000005.png"), {s + "image_0/000005.png: is not there"}},
       {ShrinkImage(s + "image_0/000003.png"), {s + "image_0/000003.png: is of 160 x 120 px", "320 x 240"}},
       {Replace(s + "calib.txt", "P0: 2.6", "P0: x"), {s + "calib.txt:1: 'x", "is not a finite number"}},
-      {Replace(s + "calib.txt", "P0: 2.6", "P0: 0.0"), {s + "calib.txt: P0: fx 0", "are no camera"}},
+      {Replace(s + "calib.txt", "P0: 2.6", "P0: 0.0"), {s + "calib.txt: P0: fx 0", "are not a camera"}},
       {Replace(s + "calib.txt", "P0:", "P9:"), {s + "calib.txt: has no line 'P0: ...'"}},
       {Replace(s + "calib.txt", "\nP1", " 1\nP1"), {}},  // more numbers than are needed
       {Replace(s + "times.txt", "2.000000e-01", "5.000000e-02"),

@@ -164,8 +164,8 @@ TEST_F(Posebench, WhatIsBrokenIsNamedByFileAndGroup) {
   EXPECT_TRUE(Refuses(put("a/camera1/model", {1}, 1.0), {place + "camera1: model is not one short text"}));
   EXPECT_TRUE(Refuses(put("a/camera1/width", {1}, 0.5), {place + "camera1: width is 0.5; a whole number"}));
   EXPECT_TRUE(Refuses(put("a/camera1/params", {3}, 1.0), {place + "camera1: params holds 3 numbers; 4 are"}));
-  EXPECT_TRUE(Refuses(put("a/camera1/params", {4}, 0.0), {place + "camera1: fx 0", "are no camera"}));
-  EXPECT_TRUE(Refuses([](hid_t file) { PutNumbers(file, "c", {1}, {1.0}); }, {"group 'c': is no group"}));
+  EXPECT_TRUE(Refuses(put("a/camera1/params", {4}, 0.0), {place + "camera1: fx 0", "are not a camera"}));
+  EXPECT_TRUE(Refuses([](hid_t file) { PutNumbers(file, "c", {1}, {1.0}); }, {"group 'c': is not a group"}));
   const auto text_for_x1 = [](hid_t file) {
     H5Ldelete(file, "a/x1", H5P_DEFAULT);
     PutText(file, "a/x1", "1 2", true);
