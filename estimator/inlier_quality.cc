@@ -1,7 +1,8 @@
 #include "estimator/inlier_quality.h"
 
 #include <cmath>
-#include <limits>
+
+#include "stats/constants.h"
 
 namespace rcme {
 
@@ -22,7 +23,6 @@ bool IsBetter(const InlierScore& a, const InlierScore& b, DecidingScore decides)
 }
 
 double ZStatistic(const InlierScore& score, double mu) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (score.num_inliers == 0) return kInfinity;
   const double n = score.num_inliers;
   const double s = score.num_inliers > 1 ? std::sqrt(score.sum_squares / (n - 1.0)) : 0.0;

@@ -9,6 +9,7 @@
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/match_whitening.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -23,7 +24,6 @@ struct Box {
 };
 
 Box BoxOfSecondPoints(const MotionProblem& problem) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Eigen::Array2d low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);
   for (const Correspondence& match : problem.matches) {
     if (!problem.camera2.IsInImage(match.x2_px)) continue;

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
+
+#include "stats/constants.h"
 
 namespace rcme {
 
@@ -46,7 +47,6 @@ MeasuredQuantile MeasureQuantile(std::vector<double> values, double p, double co
   const double n = static_cast<double>(values.size());
   const auto ranked = [&](double rank) { return values[static_cast<size_t>(std::clamp(rank, 1.0, n)) - 1]; };
 
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const double spread = std::sqrt(n * p * (1.0 - p));
   MeasuredQuantile measured;
   measured.value = ranked(std::ceil(n * p));

@@ -1,7 +1,6 @@
 #include "stats/calibration_line.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -9,8 +8,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Line {
   double intercept = 0.0, slope = 0.0;

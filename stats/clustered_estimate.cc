@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -13,8 +12,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // In rising order of the clusters.
 std::vector<double> SumsByCluster(std::span<const double> numbers, std::span<const std::int64_t> clusters) {

@@ -6,6 +6,7 @@
 
 namespace rcme {
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;

@@ -4,7 +4,6 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "stats/constants.h"
@@ -17,7 +16,6 @@ using boost::multiprecision::cpp_int;
 constexpr int kUnit = -1074;       // exponent of the smallest double
 constexpr size_t kNumDigits = 68;  // 2^1024 * 2^1074, with room for 2^64 numbers
 constexpr int kAddsToCarry = 1 << 30;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMaxSquared = 1e150;
 
 cpp_int WholeNumber(const ExactSum& sum) {

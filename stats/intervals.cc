@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
-#include <limits>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -30,7 +30,6 @@ Interval WilsonInterval(std::int64_t successes, std::int64_t n, double confidenc
 }
 
 Interval StudentInterval(const Moments& moments, double confidence) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (moments.n() < 2) return {-kInfinity, kInfinity};
   const double quantile = StudentQuantile(static_cast<int>(moments.n() - 1), 0.5 * (1.0 + confidence));
   const double half_width = quantile * moments.standard_error();

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "stats/constants.h"
@@ -13,7 +12,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of information in units in which every parameter alone has one: below it a combination is not determined.
 constexpr double kLeastInformation = 1e-9;
 constexpr double kCommonDegreesOfFreedom = 10.0;  // nu_0, at most

@@ -84,7 +84,6 @@ SharedMemberRate MeasureSharedMemberRate(std::span<const PairEvent> pairs, doubl
 }
 
 SharedMemberMean MeasureSharedMemberMean(std::span<const PairValue> pairs, double confidence) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::set<std::int64_t> members;
   double sum = 0.0;
   for (const PairValue& pair : pairs) {

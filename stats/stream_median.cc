@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "stats/accuracy.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -82,7 +83,6 @@ double StreamMedian::median() const {
 }
 
 Interval StreamMedian::interval(double confidence) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (n_ == 0) return {-kInfinity, kInfinity};
   const RankInterval ranks = QuantileRanks(n_, 0.5, confidence);
   return {ranks.lower < 1 ? -kInfinity : CellOf(ranks.lower).least,

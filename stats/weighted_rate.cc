@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
-#include <limits>
+
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -43,7 +44,6 @@ void WeightedEvents::Merge(const WeightedEvents& other) {
 
 WeightedRate EstimateWeightedRate(const WeightedEvents& events, double confidence) {
   WeightedRate rate;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (events.num_trials == 0) return {0.0, kInfinity, 0.0, {0.0, kInfinity}, kInfinity};
   const double n = static_cast<double>(events.num_trials);
   rate.estimate = events.sum_weights / n;

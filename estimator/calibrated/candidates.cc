@@ -11,9 +11,9 @@
 namespace rcme {
 namespace {
 
-constexpr int kFewSteps = 3, kMostSteps = 18;
+constexpr int kFewSteps = 3, kCandidateSteps = 18;
 constexpr int kMatchesOfCandidates = 192;  // that refine and rank the candidates; a whole number of blocks
-constexpr int kFirstMatches = 128;         // that a first scale is estimated from
+constexpr int kScaleMatches = 128;         // that a first scale is estimated from
 constexpr int kCheiralityBlocks = 32;      // of matches: decide on which side the cameras are
 
 void SortByLikelihood(std::vector<Mode>* modes) {
@@ -34,12 +34,12 @@ std::vector<Mode> Distinct(std::vector<Mode> modes, size_t count) {
   return distinct;
 }
 
-// Of some scales the one that explains the matches best at the mode's motion, by their first kFirstMatches.
+// Of some scales the one that explains the matches best at the mode's motion, by their first kScaleMatches.
 // From a scale that is too wide, a fit may end in a compromise between two motions.
 double StartScale(const MatchBlocks& matches, const Mode& mode) {
   MatchTermLists terms;
   EvaluateTerms(matches, mode.pose, &terms);
-  const auto n = static_cast<size_t>(std::min(matches.num_matches(), kFirstMatches));
+  const auto n = static_cast<size_t>(std::min(matches.num_matches(), kScaleMatches));
   const MixtureParameters& m = mode.mixture;
   const double wrong = (1.0 - m.inlier_ratio) * m.outlier_density;
   double best = m.scale, greatest = -std::numeric_limits<double>::infinity();
@@ -132,7 +132,7 @@ void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode
   };
   mode.used = matches.All();
   ModeFit fit(matches, prior, &mode);
-  for (int step = 0; step < kMostSteps && !fit.is_converged(); ++step) {
+  for (int step = 0; step < kCandidateSteps && !fit.is_converged(); ++step) {
     if (!fit.Step() || (step < kFewSteps && is_known())) return;
   }
   if (fit.Finish() && !is_known()) optima->push_back(std::move(mode));

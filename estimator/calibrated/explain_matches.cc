@@ -15,7 +15,7 @@ constexpr double kWrong = 0.5;
 // Where the motion follows so few matches, a large influence is nothing unusual.
 constexpr int kLeastExplained = 30;
 constexpr int kMostRounds = 3, kStepsWithout = 8;
-constexpr int kFewSteps = 3, kMostSteps = 20;
+constexpr int kStepsToCompare = 3, kStepsToConverge = 20;
 // Of a mode's right matches near one plane: its other motion is looked at.
 constexpr double kPlanarShare = 0.6;
 
@@ -90,9 +90,9 @@ class ModeList {
     Mode mode = modes_[i].mode;
     mode.pose = *other;
     mode.origin = ModeOrigin::kTwistedPair;
-    FitMode(matches_, prior_, kFewSteps, &mode);
+    FitMode(matches_, prior_, kStepsToCompare, &mode);
     if (Knows(mode)) return;
-    if (FitMode(matches_, prior_, kMostSteps, &mode) && !Knows(mode)) Add(std::move(mode));
+    if (FitMode(matches_, prior_, kStepsToConverge, &mode) && !Knows(mode)) Add(std::move(mode));
   }
   // The likelihood's optimum for the other sign of t is not sought: only c(z) tells the two apart.
   void AddOppositeWay(size_t i) {

@@ -5,7 +5,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kMostSteps = 12;
+constexpr int kBranchSteps = 12;
 
 std::vector<int> InfluentialMatches(const Explanation& explanation) {
   std::vector<int> found;
@@ -32,7 +32,7 @@ std::vector<Mode> LeverageBranches(const MatchBlocks& matches, const MixturePrio
       branch.used[static_cast<size_t>(i / kBlockSize)] &=
           static_cast<std::uint8_t>(~(1u << (i % kBlockSize)));
     }
-    if (FitMode(matches, prior, kMostSteps, &branch)) branches.push_back(std::move(branch));
+    if (FitMode(matches, prior, kBranchSteps, &branch)) branches.push_back(std::move(branch));
   };
   for (const int i : influential) add_without({i});
   if (influential.size() > 1) add_without(influential);

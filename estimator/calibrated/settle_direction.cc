@@ -4,12 +4,12 @@ namespace rcme {
 namespace {
 
 constexpr double kLowParallax = 6.0, kSettled = 0.8;
-constexpr int kMostSteps = 15;
+constexpr int kDirectionSteps = 15;
 
 // The mode at its optimum from the most likely direction; nothing where it explains no more matches than any
 // motion through them.
 std::optional<ExplainedMode> MovedTo(const MatchBlocks& matches, const MixturePrior& prior, Mode mode) {
-  if (!FitMode(matches, prior, kMostSteps, &mode)) return std::nullopt;
+  if (!FitMode(matches, prior, kDirectionSteps, &mode)) return std::nullopt;
   ExplainedMode moved{mode, Explain(matches, mode)};
   if (moved.explanation.num_explained <= 5) return std::nullopt;
   return moved;

@@ -12,11 +12,12 @@
 namespace rcme {
 namespace {
 
-constexpr int kMostSteps = 15, kShareSteps = 6, kMostSamples = 512, kCandidates = 8;
+constexpr int kSplitSteps = 15, kSplitShareSteps = 6, kSplitSamples = 512, kCandidates = 8;
 constexpr double kTightScale = 1.5;   // of the soft score, in units of the assumed sigma
 constexpr double kWideScale = 1.15;   // of the noise level of one motion: it may be a compromise between two
 constexpr size_t kLeastMatches = 12;  // of a second motion
-constexpr double kLeastGain = 40.0;   // nats: the search for the second motion, its five parameters, a margin
+constexpr double kLeastSplitGain =
+    40.0;  // nats: the search for the second motion, its five parameters, a margin
 
 // The matches that the mode does not explain.
 std::vector<size_t> Unexplained(const Explanation& explanation) {
@@ -38,7 +39,7 @@ std::optional<Mode> MotionOf(const MotionProblem& problem, const MatchBlocks& ma
                              const MixturePrior& fixed, const std::vector<size_t>& some, RandomStream& rng) {
   const MatchBlocks blocks(PartOf(problem, some));
   CalibratedOptions options;
-  options.max_samples = kMostSamples;
+  options.max_samples = kSplitSamples;
   options.num_candidates = kCandidates;
   const HypothesisSearch search = SearchHypotheses(blocks, ScoreMatches(blocks), options, rng, kTightScale);
   std::optional<Mode> best;
@@ -48,7 +49,7 @@ std::optional<Mode> MotionOf(const MotionProblem& problem, const MatchBlocks& ma
     mode.mixture = FirstGuess(fixed, NoiseLaw().scale_of_gaussian, 0.5);
     mode.used = matches.All();
     Leave(some, &mode.used);
-    const bool is_fitted = FitMode(matches, fixed, kMostSteps, &mode);
+    const bool is_fitted = FitMode(matches, fixed, kSplitSteps, &mode);
     if (is_fitted && (!best || mode.log_likelihood > best->log_likelihood)) best = mode;
   }
   return best;
@@ -64,7 +65,7 @@ TwoMotions Mix(const Explanation& a, const Explanation& b, double q) {
   const size_t n = a.inlier_density.size();
   double share_a = 0.4, share_b = 0.3;
   TwoMotions mix;
-  for (int step = 0; step <= kShareSteps; ++step) {
+  for (int step = 0; step <= kSplitShareSteps; ++step) {
     double sum_a = 0.5, sum_b = 0.5;
     mix = {};
     for (size_t i = 0; i < n; ++i) {
@@ -99,11 +100,11 @@ std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, con
   std::optional<Mode> second = MotionOf(problem, matches, fixed, rest, rng);
   if (!second) return std::nullopt;
   const TwoMotions mix = Mix(by_first, Explain(matches, *second), prior.uniform_density);
-  if (mix.log_likelihood < mode.log_likelihood + kLeastGain) return std::nullopt;
+  if (mix.log_likelihood < mode.log_likelihood + kLeastSplitGain) return std::nullopt;
   Leave(mix.not_of_second, &first->used);
   Leave(mix.not_of_first, &second->used);
   for (Mode* found : {&*first, &*second}) {
-    if (!FitMode(matches, prior, kMostSteps, found)) return std::nullopt;
+    if (!FitMode(matches, prior, kSplitSteps, found)) return std::nullopt;
     FitShares(matches, prior, found);
   }
   return std::pair{*first, *second};

@@ -39,13 +39,13 @@ class ModeComparison {
   std::vector<double> log_dets_;
 };
 
-constexpr size_t kMostRounds = 3;
+constexpr size_t kWeighingRounds = 3;
 
 // Odds of three modes need not be transitive: gone through until no mode is more likely than the answer, at
 // most three times.
 size_t ChooseAnswer(const std::vector<ExplainedMode>& modes, const ModeComparison& comparison) {
   size_t answer = 0;
-  for (size_t round = 0, num_beaten = 0; round < kMostRounds && num_beaten + 1 < modes.size(); ++round) {
+  for (size_t round = 0, num_beaten = 0; round < kWeighingRounds && num_beaten + 1 < modes.size(); ++round) {
     num_beaten = 0;
     for (size_t i = 0; i < modes.size(); ++i) {
       if (i == answer || (round == 0 && i < answer)) continue;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "estimator/geometry/essential_matrix.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -148,7 +149,6 @@ double TruncatedCost(const RayMatches& all, const Eigen::Matrix3d& H, double thr
 }
 
 Eigen::Matrix3d RefineHomography(const RayMatches& all, const Eigen::Matrix3d& start, double threshold) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Eigen::Matrix3d H = start;
   std::vector<size_t> fitted;
   for (int refit = 0; refit < kMaxRefits; ++refit) {

@@ -14,13 +14,12 @@
 #include "estimator/problem_check.h"
 #include "estimator/reference_matches.h"
 #include "estimator/refinement/rotation_mle.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // One more than determines a motion: of five the epipolar geometry has no residual, whatever they are.
 constexpr int kLeastMatches = 6;

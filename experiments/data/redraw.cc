@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/sampson.h"
 #include "parameters/input_error.h"
 #include "simulator/noise/noise_laws.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -17,7 +17,6 @@ namespace {
 // Side of the mosaic (simulator/noise/correlated.cc) whose cells near neighbours share: half of the
 // correlation is left at 1 px.
 constexpr double kNearLengthPx = 2.3;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // How often noise is drawn that leaves a right match too far, or a wrong one is exchanged that has come near.
 constexpr int kMostDraws = 100;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "experiments/core/work/thread_time.h"
 #include "experiments/trial/answer_check.h"
@@ -11,8 +10,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Whether the status comes with a rotation, or a whole motion, that is known to be one.
 bool HasMotion(MotionStatus status) {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 
 #include "experiments/audit/claims/claim_verdict.h"
+#include "stats/constants.h"
 #include "stats/intervals.h"
 #include "stats/pareto_front.h"
 #include "stats/risk_control.h"
@@ -146,7 +146,6 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
 }
 
 Verdict VerdictOf(const ErrorCount& count, double at_most) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return DecideEquivalence(ExactBinomialInterval(count.errors, count.n), {-kInfinity, at_most});
 }
 
@@ -168,7 +167,8 @@ Verdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
 }
 
 double Risk(const Tuning& tuning, const SettingCount& count) {
-  return tuning.cost_of_failure * RateOrOne(count.Failure()) + tuning.cost_of_refusal * RateOrOne(count.Refusal());
+  return tuning.cost_of_failure * RateOrOne(count.Failure()) +
+         tuning.cost_of_refusal * RateOrOne(count.Refusal());
 }
 
 Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& settings,

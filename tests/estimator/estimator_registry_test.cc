@@ -6,7 +6,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "estimator/solvers/solver_table.h"
@@ -124,7 +123,6 @@ TEST_P(EstimatorContract, CountsAddUp) {
 
 // What no estimator may crash, hang or throw at. Every call ends in a named status, and only kOk has inliers.
 TEST_P(EstimatorContract, SurvivesHostileMatches) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Pair good = MakePair(60, 0.5, 0.0, 0);
   const auto with = [&](auto change) {
     MotionProblem problem = good.problem;

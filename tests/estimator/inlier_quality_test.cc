@@ -3,16 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/random.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 InlierScore ScoreOf(const std::vector<double>& entropies) {
   InlierScore score;

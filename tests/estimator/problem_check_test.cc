@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "stats/constants.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 MotionProblem OrdinaryProblem(int num_matches, std::uint32_t trial = 0) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 140});

@@ -3,17 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/random.h"
 #include "tests/test_support/coverage_count.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(AreaUnderCurve, KnownAnswers) {
   // By the definitions, kernel by kernel:  python3 tests/known_answers/samples.py  (ties in and between the

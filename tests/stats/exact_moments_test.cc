@@ -8,15 +8,14 @@
 #include <random>
 #include <vector>
 
+#include "stats/constants.h"
 #include "stats/moments.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 template <typename Stream>
-Stream Of(const std::vector<double>& numbers) {
+Stream StreamFrom(const std::vector<double>& numbers) {
   Stream stream;
   for (const double x : numbers) stream.Add(x);
   return stream;
@@ -33,21 +32,21 @@ std::vector<double> Spread(int n) {
 }
 
 TEST(ExactMoments, LosesNothing) {
-  EXPECT_EQ(Of<ExactMoments>({1e100, 1.0, -1e100, 2.0}).mean(), 0.75);
-  EXPECT_EQ(Of<ExactMoments>({1e15 + 1.0, 1e15 + 2.0, 1e15 + 3.0}).variance(), 1.0);
-  EXPECT_EQ(Of<ExactMoments>({0.1, 0.1, 0.1}).mean(), 0.1);
-  EXPECT_EQ(Of<ExactMoments>({0.1, 0.1, 0.1}).variance(), 0.0);
+  EXPECT_EQ(StreamFrom<ExactMoments>({1e100, 1.0, -1e100, 2.0}).mean(), 0.75);
+  EXPECT_EQ(StreamFrom<ExactMoments>({1e15 + 1.0, 1e15 + 2.0, 1e15 + 3.0}).variance(), 1.0);
+  EXPECT_EQ(StreamFrom<ExactMoments>({0.1, 0.1, 0.1}).mean(), 0.1);
+  EXPECT_EQ(StreamFrom<ExactMoments>({0.1, 0.1, 0.1}).variance(), 0.0);
   constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
-  EXPECT_EQ(Of<ExactMoments>({kSmallest, kSmallest}).mean(), kSmallest);
-  EXPECT_EQ(Of<ExactMoments>({-3.0, -3.0, 3.0}).mean(), -1.0);
+  EXPECT_EQ(StreamFrom<ExactMoments>({kSmallest, kSmallest}).mean(), kSmallest);
+  EXPECT_EQ(StreamFrom<ExactMoments>({-3.0, -3.0, 3.0}).mean(), -1.0);
 }
 
 TEST(ExactMoments, AgreeWithWelford) {
   std::mt19937_64 random(1);
   std::vector<double> numbers;
   for (int i = 0; i < 10'000; ++i) numbers.push_back(std::normal_distribution<double>(3.0, 2.0)(random));
-  const ExactMoments exact = Of<ExactMoments>(numbers);
-  const Moments moments = Of<Moments>(numbers);
+  const ExactMoments exact = StreamFrom<ExactMoments>(numbers);
+  const Moments moments = StreamFrom<Moments>(numbers);
   EXPECT_EQ(exact.n(), moments.n());
   EXPECT_NEAR(exact.mean(), moments.mean(), 1e-13);
   EXPECT_NEAR(exact.variance(), moments.variance(), 1e-12);
@@ -56,14 +55,14 @@ TEST(ExactMoments, AgreeWithWelford) {
 
 TEST(ExactMoments, DoNotDependOnOrderAndGroups) {
   std::vector<double> numbers = Spread(500);
-  const ExactMoments whole = Of<ExactMoments>(numbers);
+  const ExactMoments whole = StreamFrom<ExactMoments>(numbers);
   std::ranges::reverse(numbers);
-  EXPECT_EQ(Of<ExactMoments>(numbers).Texts(), whole.Texts());
+  EXPECT_EQ(StreamFrom<ExactMoments>(numbers).Texts(), whole.Texts());
   ExactMoments merged;
   for (size_t first = 0; first < numbers.size(); first += 77) {
     const size_t end = std::min(first + 77, numbers.size());
     const auto at = [&](size_t i) { return numbers.begin() + static_cast<std::ptrdiff_t>(i); };
-    merged.Merge(ExactMoments::FromTexts(Of<ExactMoments>({at(first), at(end)}).Texts()));
+    merged.Merge(ExactMoments::FromTexts(StreamFrom<ExactMoments>({at(first), at(end)}).Texts()));
   }
   EXPECT_EQ(merged.Texts(), whole.Texts());
   EXPECT_EQ(merged.mean(), whole.mean());
@@ -72,12 +71,12 @@ TEST(ExactMoments, DoNotDependOnOrderAndGroups) {
 
 TEST(ExactMoments, NotEnoughAndInfiniteNumbers) {
   EXPECT_TRUE(std::isnan(ExactMoments().mean()));
-  EXPECT_TRUE(std::isnan(Of<ExactMoments>({1.0}).variance()));
-  EXPECT_EQ(Of<ExactMoments>({1.0, kInfinity}).mean(), kInfinity);
-  EXPECT_TRUE(std::isnan(Of<ExactMoments>({1.0, kInfinity}).variance()));
-  EXPECT_EQ(Of<ExactMoments>({1.0, -kInfinity}).mean(), -kInfinity);
-  EXPECT_TRUE(std::isnan(Of<ExactMoments>({kInfinity, -kInfinity}).mean()));
-  EXPECT_EQ(ExactMoments::FromTexts(Of<ExactMoments>({1.0, kInfinity}).Texts()).mean(), kInfinity);
+  EXPECT_TRUE(std::isnan(StreamFrom<ExactMoments>({1.0}).variance()));
+  EXPECT_EQ(StreamFrom<ExactMoments>({1.0, kInfinity}).mean(), kInfinity);
+  EXPECT_TRUE(std::isnan(StreamFrom<ExactMoments>({1.0, kInfinity}).variance()));
+  EXPECT_EQ(StreamFrom<ExactMoments>({1.0, -kInfinity}).mean(), -kInfinity);
+  EXPECT_TRUE(std::isnan(StreamFrom<ExactMoments>({kInfinity, -kInfinity}).mean()));
+  EXPECT_EQ(ExactMoments::FromTexts(StreamFrom<ExactMoments>({1.0, kInfinity}).Texts()).mean(), kInfinity);
   EXPECT_THROW(ExactMoments().Add(std::nan("")), std::invalid_argument);
 }
 

@@ -17,7 +17,7 @@ std::vector<double> Uniform(int n) {
   return scores;
 }
 
-ExactScores Of(const std::vector<double>& scores) {
+ExactScores ScoresFrom(const std::vector<double>& scores) {
   ExactScores exact;
   for (const double score : scores) exact.Add(score);
   return exact;
@@ -27,7 +27,7 @@ TEST(ExactScores, BoundTheMeanAsScoresDo) {
   const std::vector<double> scores = Uniform(500);
   ScoreMean mean;
   for (const double score : scores) mean.Add(score);
-  const ExactScores exact = Of(scores);
+  const ExactScores exact = ScoresFrom(scores);
   EXPECT_NEAR(exact.moments().mean(), mean.mean(), 1e-15);
   EXPECT_NEAR(exact.Scores().Sequence().lower, mean.Sequence().lower, 1e-9);
   EXPECT_NEAR(exact.Scores().Sequence().upper, mean.Sequence().upper, 1e-9);
@@ -36,12 +36,12 @@ TEST(ExactScores, BoundTheMeanAsScoresDo) {
 
 TEST(ExactScores, DoNotDependOnOrderAndGroups) {
   std::vector<double> scores = Uniform(300);
-  const ExactScores whole = Of(scores);
+  const ExactScores whole = ScoresFrom(scores);
   std::ranges::reverse(scores);
-  EXPECT_EQ(Of(scores).Texts(), whole.Texts());
-  ExactScores merged = ExactScores::FromTexts(Of({scores.begin(), scores.begin() + 100}).Texts());
+  EXPECT_EQ(ScoresFrom(scores).Texts(), whole.Texts());
+  ExactScores merged = ExactScores::FromTexts(ScoresFrom({scores.begin(), scores.begin() + 100}).Texts());
   merged.Merge(ExactScores());
-  merged.Merge(ExactScores::FromTexts(Of({scores.begin() + 100, scores.end()}).Texts()));
+  merged.Merge(ExactScores::FromTexts(ScoresFrom({scores.begin() + 100, scores.end()}).Texts()));
   EXPECT_EQ(merged.Texts(), whole.Texts());
   EXPECT_EQ(merged.Scores().Sequence().lower, whole.Scores().Sequence().lower);
   EXPECT_EQ(ExactScores::FromTexts(ExactScores().Texts()).Texts(), ExactScores().Texts());
@@ -49,7 +49,7 @@ TEST(ExactScores, DoNotDependOnOrderAndGroups) {
 
 TEST(ExactScores, OthersAreRefused) {
   EXPECT_THROW(ExactScores().Add(1.5), std::invalid_argument);
-  std::vector<std::string> texts = Of({0.25}).Texts();
+  std::vector<std::string> texts = ScoresFrom({0.25}).Texts();
   EXPECT_NO_THROW(ExactScores::FromTexts(texts));
   texts[3] += " 1";
   EXPECT_THROW(ExactScores::FromTexts(texts), std::invalid_argument);

@@ -9,20 +9,20 @@ namespace rcme {
 namespace {
 
 // P(X = k) of Binomial(n, p), 0 < p < 1.
-double Probability(int k, int n, double p) {
+double BinomialProbability(int k, int n, double p) {
   return std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) + k * std::log(p) +
                   (n - k) * std::log1p(-p));
 }
 
 double ProbabilityOfAtLeast(int k, int n, double p) {
   double sum = 0.0;
-  for (int i = n; i >= k; --i) sum += Probability(i, n, p);
+  for (int i = n; i >= k; --i) sum += BinomialProbability(i, n, p);
   return sum;
 }
 
 double ProbabilityOfAtMost(int k, int n, double p) {
   double sum = 0.0;
-  for (int i = 0; i <= k; ++i) sum += Probability(i, n, p);
+  for (int i = 0; i <= k; ++i) sum += BinomialProbability(i, n, p);
   return sum;
 }
 
@@ -82,7 +82,7 @@ TEST(ExactBinomialInterval, CoversEveryProbabilityAtLeastAsOftenAsItSays) {
       const double p = static_cast<double>(step) / kSteps;
       double coverage = 0.0;
       for (int k = 0; k <= n; ++k) {
-        if (intervals[static_cast<size_t>(k)].Contains(p)) coverage += Probability(k, n, p);
+        if (intervals[static_cast<size_t>(k)].Contains(p)) coverage += BinomialProbability(k, n, p);
       }
       EXPECT_GE(coverage, 0.95 - 1e-9) << "n = " << n << ", p = " << p;
       least = std::min(least, coverage);
@@ -159,7 +159,7 @@ TEST(WilsonInterval, CoversAsOftenAsItSaysOnAverageButNotForEveryProbability) {
     const double p = static_cast<double>(step) / kSteps;
     double coverage = 0.0;
     for (int k = 0; k <= kTrials; ++k) {
-      if (WilsonInterval(k, kTrials).Contains(p)) coverage += Probability(k, kTrials, p);
+      if (WilsonInterval(k, kTrials).Contains(p)) coverage += BinomialProbability(k, kTrials, p);
     }
     sum += coverage;
     least = std::min(least, coverage);

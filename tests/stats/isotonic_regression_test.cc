@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "stats/constants.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -46,7 +46,6 @@ TEST(IsotonicRegression, AgreesWithTheMaxMinFormula) {
 }
 
 TEST(IsotonicRegression, EqualPlacesAreOnePointAndLinesJoinPoints) {
-  const double kInfinity = std::numeric_limits<double>::infinity();
   const IsotonicFit fit = FitIsotonic(std::vector<double>{2, 1, 2, 4, 3}, std::vector<double>{1, 0, 2, 5, 1});
   EXPECT_EQ(fit.x, (std::vector<double>{1, 2, 3, 4}));
   ASSERT_EQ(fit.y.size(), 4U);

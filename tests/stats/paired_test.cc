@@ -12,8 +12,8 @@ namespace rcme {
 namespace {
 
 // Sum of the trinomial probabilities of the pairs (first_only, second_only) for which `holds` is true: exact.
-double Probability(int n, double p_first_only, double p_second_only,
-                   const std::function<bool(int, int)>& holds) {
+double PairedProbability(int n, double p_first_only, double p_second_only,
+                         const std::function<bool(int, int)>& holds) {
   double sum = 0.0;
   for (int b = 0; b <= n; ++b) {
     for (int c = 0; b + c <= n; ++c) {
@@ -68,12 +68,12 @@ TEST(McNemar, NeverExceedsItsLevelAndHasPower) {
   // 0.05 and 0.15 in the discordant cells (a difference of 10 %) it sees the difference with power 0.88.
   const auto rejects = [](int b, int c) { return McNemarExactPValue(Discordant(200, b, c)) <= 0.05; };
   for (const double p : {0.02, 0.05, 0.1, 0.3}) {
-    const double size = Probability(200, p, p, rejects);
+    const double size = PairedProbability(200, p, p, rejects);
     EXPECT_LE(size, 0.05) << p;
     EXPECT_GT(size, 0.015) << p;
     RecordProperty("size_" + std::to_string(p), std::to_string(size));
   }
-  EXPECT_GT(Probability(200, 0.05, 0.15, rejects), 0.8);
+  EXPECT_GT(PairedProbability(200, 0.05, 0.15, rejects), 0.8);
 }
 
 // The probability that a test of equal rates is ever significant at 0.05 when it is looked at after every
@@ -113,7 +113,7 @@ TEST(RiskDifference, CoversAsOftenAsItSays) {
   for (const auto& [b_rate, c_rate] :
        {std::pair{0.2, 0.2}, {0.05, 0.15}, {0.02, 0.02}, {0.3, 0.1}, {0.01, 0.06}, {0.4, 0.4}}) {
     const double difference = b_rate - c_rate;
-    const double coverage = Probability(150, b_rate, c_rate, [&](int b, int c) {
+    const double coverage = PairedProbability(150, b_rate, c_rate, [&](int b, int c) {
       return RiskDifferenceInterval(Discordant(150, b, c)).Contains(difference);
     });
     EXPECT_GT(coverage, 0.945) << b_rate << ", " << c_rate;
@@ -122,10 +122,10 @@ TEST(RiskDifference, CoversAsOftenAsItSays) {
                    std::to_string(coverage));
   }
   // Power: a difference of 0.1 excludes zero.
-  EXPECT_GT(
-      Probability(200, 0.05, 0.15,
-                  [](int b, int c) { return !RiskDifferenceInterval(Discordant(200, b, c)).Contains(0.0); }),
-      0.85);
+  EXPECT_GT(PairedProbability(
+                200, 0.05, 0.15,
+                [](int b, int c) { return !RiskDifferenceInterval(Discordant(200, b, c)).Contains(0.0); }),
+            0.85);
 }
 
 TEST(Paired, CountsAndEnds) {

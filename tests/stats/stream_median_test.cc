@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "stats/accuracy.h"
+#include "stats/constants.h"
 #include "stats/random.h"
 #include "tests/test_support/coverage_count.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 StreamMedian MedianOf(const std::vector<double>& values) {
   StreamMedian median;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "stats/area_under_curve.h"
+#include "stats/constants.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -14,7 +15,6 @@ namespace {
 
 TEST(Roc, ByHandWithTies) {
   const std::vector<RocPoint> curve = RocCurve({1, 2, 2, 3}, {2, 3, 4, 4, 4});
-  const double kInfinity = std::numeric_limits<double>::infinity();
   const RocPoint kExpected[] = {
       {kInfinity, 0.0, 0.0}, {4.0, 0.0, 0.6}, {3.0, 0.25, 0.8}, {2.0, 0.75, 1.0}, {1.0, 1.0, 1.0}};
   ASSERT_EQ(curve.size(), std::size(kExpected));

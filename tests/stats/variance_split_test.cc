@@ -107,14 +107,14 @@ TEST(VarianceSplit, IsUnbiased) {
   EXPECT_NEAR(within, 0.125, 1e-13);
 }
 
-// Laws of the scenes' probabilities with the share within that they make.
-struct Law {
+// SceneLaws of the scenes' probabilities with the share within that they make.
+struct SceneLaw {
   const char* name;
   double within_share;
   std::function<double(RandomStream&)> draw;
 };
-const std::vector<Law>& Laws() {
-  static const std::vector<Law> laws = {
+const std::vector<SceneLaw>& SceneLaws() {
+  static const std::vector<SceneLaw> laws = {
       {"no scene differs", 1.0, [](RandomStream&) { return 0.2; }},
       {"uniform", 2.0 / 3.0, [](RandomStream& rng) { return rng.Uniform(); }},
       {"the scene alone decides", 0.0, [](RandomStream& rng) { return rng.Uniform() < 0.3 ? 1.0 : 0.0; }},
@@ -135,7 +135,7 @@ const std::vector<Law>& Laws() {
 TEST(VarianceSplit, IntervalCovers) {
   std::uint32_t condition = 0;
   double least = 1.0;
-  for (const Law& law : Laws()) {
+  for (const SceneLaw& law : SceneLaws()) {
     for (const int num_scenes : {30, 100, 400}) {
       for (const int num_repeats : {2, 5, 10}) {
         CoverageCount covered;
@@ -166,7 +166,7 @@ TEST(VarianceSplit, IntervalIsNarrowEnoughToBeOfUse) {
   RandomStream rng({.seed = 1, .purpose = 321});
   RepeatedEvents events(10);
   for (int scene = 0; scene < 100; ++scene) {
-    const double p = Laws()[4].draw(rng);
+    const double p = SceneLaws()[4].draw(rng);
     int num_events = 0;
     for (int r = 0; r < 10; ++r) num_events += rng.Uniform() < p;
     events.AddScene(num_events);

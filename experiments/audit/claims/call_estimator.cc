@@ -15,8 +15,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 double CountedNees(const TrialRecord& record, const FailureBounds& bounds) {
   if (IsInvalid(record)) return kInfinity;
   if (HasRefused(record) || HasFailed(record, bounds)) return kNaN;

@@ -3,10 +3,10 @@
 #include <numeric>
 
 #include "estimator/refinement/reprojection_mle.h"
-#include "experiments/core/work/thread_time.h"
 #include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
+#include "experiments/core/work/thread_time.h"
 
 namespace rcme {
 namespace {

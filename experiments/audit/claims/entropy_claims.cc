@@ -15,7 +15,7 @@ namespace rcme {
 namespace {
 
 const Sample kFirstEight = {0, 1, 2, 3, 4, 5, 6, 7};
-const char* const kLabel = "eq::score-inliers";
+const char* const kEntropyLabel = "eq::score-inliers";
 
 // The same problem with pixels half as large: every coordinate and sigma twice as large.
 MotionProblem InHalfPixels(MotionProblem problem) {
@@ -181,7 +181,7 @@ std::vector<CaseClaim> EntropyCalibration() {
   const auto claim = [](const char* id, const char* reading, const char* measured,
                         const Statistic& unit) -> CaseClaim {
     return {{id,
-             kLabel,
+             kEntropyLabel,
              reading,
              "psi and the quality test do not depend on the unit of length in the image",
              measured,
@@ -207,7 +207,7 @@ std::vector<Claim> EntropyClaims() {
       OnBuiltInScene(units[0], {pair}),
       OnBuiltInScene(units[1], {pair}),
       {"entropy.residual_share",
-       kLabel,
+       kEntropyLabel,
        "as printed",
        "The printed entropy scores the model's uncertainty, not the residuals (their share is 0 within 0.1)",
        "Cov(h, 3 log|e|) / Var(h)",

@@ -9,11 +9,10 @@
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/trial/covariance_score.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Refine = RefinedMotion (*)(const MotionProblem& problem, const RelativePose& start);
 

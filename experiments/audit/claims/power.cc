@@ -10,14 +10,13 @@
 #include <utility>
 
 #include "stats/confidence_sequence.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/equivalence.h"
 #include "stats/score_mean.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The least whole number in [0, n + 1] that is `late`, which is false and then true.
 std::int64_t First(std::int64_t n, const std::function<bool(std::int64_t)>& late) {

@@ -4,11 +4,10 @@
 #include <numeric>
 
 #include "estimator/solvers/solver_table.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The sign of f is arbitrary.
 Vector9d ErrorOfF(const Vector9d& f, const RelativePose& pose_true) {

@@ -5,14 +5,14 @@
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/sample_statistics.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSignificanceLevel = 0.05;
-const char* const kLabel = "eq::sample-p-test";
+const char* const kSampleTestLabel = "eq::sample-p-test";
 
 Outcome JointStatistic(Case& made) {
   const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
@@ -59,7 +59,7 @@ std::vector<Check> PowerChecks(const Statistic& is_rejected) {
 
 std::vector<CaseClaim> SampleTestCalibration() {
   return {{{"sample_test.size.joint",
-            kLabel,
+            kSampleTestLabel,
             "joint, 3 dof",
             "A sample without outliers passes with probability 1 - alpha",
             "T = (N'f)' (N' Sigma_f N)^-1 (N'f), chi2_3",
@@ -75,7 +75,7 @@ std::vector<Claim> SampleTestClaims() {
   const char* kPower = "At least 90 % of the samples with 1 to 8 mismatches are rejected";
   const Settings sample = {{"num_matches", "8"}};
   return {
-      {"sample_test.size.as_printed", kLabel, "per point",
+      {"sample_test.size.as_printed", kSampleTestLabel, "per point",
        "A point of a sample without outliers passes with probability 1 - alpha, alpha = 0.05",
        "delta' Sigma_delta^-1 delta <= chi2_3", "sigma_px",
        ChecksAtNoiseLevels(kNoiseLevelsPx, sample, PassesPerPointStatistic,
@@ -83,10 +83,10 @@ std::vector<Claim> SampleTestClaims() {
                             MeasuredRate("samples of which all eight points pass", 1)},
                            kPerPointLevel.limits)},
       AtNoiseLevels(SampleTestCalibration().front(), kNoiseLevelsPx, sample),
-      {"sample_test.power.as_printed", kLabel, "per point", kPower, "a point exceeds chi2_3 at alpha = 0.05",
-       "num_outliers", PowerChecks(RejectedPerPointStatistic)},
-      {"sample_test.power.joint", kLabel, "joint, 3 dof", kPower, "T exceeds chi2_3 at alpha = 0.05",
-       "num_outliers", PowerChecks(RejectedJointlyStatistic)},
+      {"sample_test.power.as_printed", kSampleTestLabel, "per point", kPower,
+       "a point exceeds chi2_3 at alpha = 0.05", "num_outliers", PowerChecks(RejectedPerPointStatistic)},
+      {"sample_test.power.joint", kSampleTestLabel, "joint, 3 dof", kPower,
+       "T exceeds chi2_3 at alpha = 0.05", "num_outliers", PowerChecks(RejectedJointlyStatistic)},
   };
 }
 

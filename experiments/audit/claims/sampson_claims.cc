@@ -5,11 +5,10 @@
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/sample_statistics.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The motion of the first eight matches, moved to the truth, with its covariance; and a match that fits it
 // exactly.
@@ -41,7 +40,7 @@ Correspondence MovedOff(const ExactFit& fit, double distance_px) {
 }
 
 // Whether the 4x4 covariance at g = 0 can be inverted, and whether its rank is one.
-Outcome RankStatistic(Case& made) {
+Outcome SampsonRankStatistic(Case& made) {
   const std::optional<ExactFit> fit = MakeExactFit(made);
   if (!fit) return {0.0, 0.0};
   const Eigen::Matrix4d covariance = CovarianceOfSampsonVector(
@@ -91,7 +90,7 @@ std::vector<Claim> SampsonClaims() {
        "Sigma_delta of a point that fits its motion exactly has an inverse",
        "eigenvalues above 1e-12 of the largest",
        "",
-       {MakeCheck({{"num_matches", "8"}}, RankStatistic,
+       {MakeCheck({{"num_matches", "8"}}, SampsonRankStatistic,
                   {PlannedRate("share of rank 4", 1.0, kIdentity, 0), MeasuredRate("share of rank 1", 1)},
                   kIdentity.limits)}},
       {"sampson.determinant",

@@ -8,13 +8,13 @@
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/sample_statistics.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const Settings kSample = {{"num_matches", "8"}};
-const char* const kLabel = "Sec. model_instantiate, Sigma_f";
+const Settings kSampleOfF = {{"num_matches", "8"}};
+const char* const kSigmaFLabel = "Sec. model_instantiate, Sigma_f";
 
 // Largest deviation of the printed formula from G D G', over the largest entry.
 Outcome PrintedFormulaStatistic(Case& made) {
@@ -55,7 +55,7 @@ CaseClaim CoverageOf(const std::string& name, MinimalSolver solver) {
   });
   return {
       {"sigma_f." + name,
-       kLabel,
+       kSigmaFLabel,
        fmt::format("{}, {}-point", is_exact ? "exact" : "overdetermined", num_matches),
        is_exact
            ? "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T, in as many coordinates as the solver's models "
@@ -95,31 +95,31 @@ std::vector<Claim> SigmaFClaims() {
   }
   const std::vector<Claim> others = {
       {"sigma_f.formula",
-       kLabel,
+       kSigmaFLabel,
        "overdetermined, 8-point",
        "With dOmega/df the minimum-norm implicit derivative, the printed formula is A (M A)^-1 D (M A)^-T A'",
        "largest relative deviation of an entry, at most 1e-5",
        "",
-       {MakeCheck(kSample, PrintedFormulaStatistic, {IdentityTarget("share within 1e-5", 1e-5)},
+       {MakeCheck(kSampleOfF, PrintedFormulaStatistic, {IdentityTarget("share within 1e-5", 1e-5)},
                   kIdentity.limits)}},
       {"sigma_f.basis_first_axis",
-       kLabel,
+       kSigmaFLabel,
        "reflection onto the first axis",
        "The first 8 columns of the Householder matrix of f are perpendicular to f (the textbook reflection)",
        "largest |A'f|, at most 1e-12",
        "",
-       {MakeCheck(kSample, NormalBasisStatistic(0), {IdentityTarget("share within 1e-12", 1e-12)},
+       {MakeCheck(kSampleOfF, NormalBasisStatistic(0), {IdentityTarget("share within 1e-12", 1e-12)},
                   kIdentity.limits)}},
       {"sigma_f.basis_last_axis",
-       kLabel,
+       kSigmaFLabel,
        "reflection onto the last axis",
        "The first 8 columns of the Householder matrix of f are perpendicular to f (f sent to the last axis)",
        "largest |A'f|, at most 1e-12",
        "",
-       {MakeCheck(kSample, NormalBasisStatistic(8), {IdentityTarget("share within 1e-12", 1e-12)},
+       {MakeCheck(kSampleOfF, NormalBasisStatistic(8), {IdentityTarget("share within 1e-12", 1e-12)},
                   kIdentity.limits)}},
       {"sigma_f.exact_inverse",
-       kLabel,
+       kSigmaFLabel,
        "exact, 5-point, in f as printed",
        "J_Omega' Sigma_X^-1 J_Omega of the exact case, with J_Omega = dOmega/df, has an inverse",
        "eigenvalues of the 9x9 matrix above 1e-12 of the largest",

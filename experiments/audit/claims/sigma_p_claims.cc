@@ -7,11 +7,11 @@
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/sample_statistics.h"
 #include "experiments/trial/covariance_score.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Settings kSample = {{"num_matches", "8"}};
 
 // NEES of the motion with Sigma_p = J_p Sigma_f J_p'. Of the four motions of the essential matrix the one
@@ -32,7 +32,7 @@ Statistic NeesStatistic(Jacobian (*motion_jacobian)(const EssentialProjection&, 
 Jacobian ThetaJacobian(const EssentialProjection&, const RelativePose& pose) { return MotionJacobian(pose); }
 
 // Whether the 7x7 covariance of p = [q; t] has five eigenvalues above rounding, and whether it has seven.
-Outcome RankStatistic(Case& made) {
+Outcome PoseRankStatistic(Case& made) {
   const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
   if (!hypothesis) return {0.0, 0.0};
   const Eigen::Matrix<double, 7, 7> covariance =
@@ -73,7 +73,7 @@ std::vector<Claim> SigmaPClaims() {
        "The 7x7 covariance of p has full rank",
        "eigenvalues above 1e-13 of the largest",
        "",
-       {MakeCheck(kSample, RankStatistic,
+       {MakeCheck(kSample, PoseRankStatistic,
                   {PlannedRate("share of rank 7", 1.0, kIdentity, 1), MeasuredRate("share of rank 5")},
                   kIdentity.limits)}},
   };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <limits>
 
 #include "experiments/data/make_data.h"
 #include "simulator/scene_registry.h"
@@ -11,8 +10,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Shape {
   int num_matches;

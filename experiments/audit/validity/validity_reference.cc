@@ -14,9 +14,9 @@
 namespace rcme {
 namespace {
 
-constexpr double kNominalCoverage = 0.95;
+constexpr double kReferenceCoverage = 0.95;
 constexpr std::uint32_t kFirstCell = 1'000'000;  // streams that no cell of the map uses
-constexpr std::array<const char*, 2> kQuantities = {"f", "pose"};
+constexpr std::array<const char*, 2> kReferenceQuantities = {"f", "pose"};
 constexpr std::array<const char*, 4> kCovariances = {"first_order_at_estimate", "first_order_at_truth",
                                                      "unscented_at_truth", "monte_carlo_at_truth"};
 constexpr int kFDof = 8, kPoseDof = 5;
@@ -81,8 +81,8 @@ std::array<bool, 2> CoveredAtTruth(const Eigen::VectorXd& deviation, const Eigen
   const Vector5d of_pose = deviation.tail<kPoseDof>();
   const Matrix8d f_cov = covariance.topLeftCorner<kFDof, kFDof>();
   const Matrix5d pose_cov = covariance.bottomRightCorner<kPoseDof, kPoseDof>();
-  return {NormalizedErrorSquared(of_f, f_cov) <= ChiSquareQuantile(kFDof, kNominalCoverage),
-          NormalizedErrorSquared(of_pose, pose_cov) <= ChiSquareQuantile(kPoseDof, kNominalCoverage)};
+  return {NormalizedErrorSquared(of_f, f_cov) <= ChiSquareQuantile(kFDof, kReferenceCoverage),
+          NormalizedErrorSquared(of_pose, pose_cov) <= ChiSquareQuantile(kPoseDof, kReferenceCoverage)};
 }
 
 std::array<bool, 2> CoveredAtEstimate(const std::optional<LinearMotion>& estimate,
@@ -90,8 +90,9 @@ std::array<bool, 2> CoveredAtEstimate(const std::optional<LinearMotion>& estimat
   if (!estimate) return {false, false};
   const RelativePose pose = NearestPose(estimate->poses, pose_true);
   const Matrix5d pose_cov = CovarianceOfMotion(pose, estimate->f_cov);
-  return {NormalizedErrorOfF(*estimate, pose_true) <= ChiSquareQuantile(kFDof, kNominalCoverage),
-          NormalizedErrorOfPose(pose, pose_cov, pose_true) <= ChiSquareQuantile(kPoseDof, kNominalCoverage)};
+  return {
+      NormalizedErrorOfF(*estimate, pose_true) <= ChiSquareQuantile(kFDof, kReferenceCoverage),
+      NormalizedErrorOfPose(pose, pose_cov, pose_true) <= ChiSquareQuantile(kPoseDof, kReferenceCoverage)};
 }
 
 CoveredCounts RunSample(const SampleFamily& family, const StreamName& name,
@@ -114,7 +115,7 @@ CoveredCounts RunSample(const SampleFamily& family, const StreamName& name,
     for (size_t c = 0; c < at_truth.size(); ++c) {
       covered[c + 1] = CoveredAtTruth(exact.DeviationOf(estimate), at_truth[c]);
     }
-    for (size_t q = 0; q < kQuantities.size(); ++q) {
+    for (size_t q = 0; q < kReferenceQuantities.size(); ++q) {
       for (size_t c = 0; c < kCovariances.size(); ++c) counts[q][c] += covered[c][q] ? 1 : 0;
     }
   }
@@ -146,10 +147,11 @@ std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const 
   for (const int num_points : options.nums_points) {
     for (const double sigma_px : options.sigmas_px) {
       const CoveredCounts counts = counts_of(cell++);
-      for (size_t q = 0; q < kQuantities.size(); ++q) {
+      for (size_t q = 0; q < kReferenceQuantities.size(); ++q) {
         for (size_t c = 0; c < kCovariances.size(); ++c) {
-          table.rows.push_back({sigma_px, std::int64_t{num_points}, options.baseline_m, kQuantities[q],
-                                kCovariances[c], std::int64_t{options.num_samples}, n, counts[q][c]});
+          table.rows.push_back({sigma_px, std::int64_t{num_points}, options.baseline_m,
+                                kReferenceQuantities[q], kCovariances[c], std::int64_t{options.num_samples},
+                                n, counts[q][c]});
           AddCoverage(counts[q][c], n, &table.rows.back());
         }
       }

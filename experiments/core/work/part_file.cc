@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -182,7 +181,6 @@ Json NumberAsJson(double x) { return std::isfinite(x) ? Json(x) : Json(fmt::form
 
 double NumberFrom(const Json& json) {
   if (json.is_number()) return json.get<double>();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double x : {kInfinity, -kInfinity, kNaN, std::copysign(kNaN, -1.0)}) {
     if (json.get<std::string>() == fmt::format("{}", x)) return x;
   }

@@ -9,8 +9,8 @@
 namespace rcme {
 namespace {
 
-constexpr double kConfidence = 0.95;
-constexpr int kResamples = 1000;
+constexpr double kTestConfidence = 0.95;
+constexpr int kTestResamples = 1000;
 
 using ValueList = std::vector<double> UnitValues::*;
 
@@ -20,7 +20,7 @@ ComparedMedians CompareWithChiSquare(std::span<const TestUnit> units, ValueList 
   const double median = ChiSquareQuantile(degrees_of_freedom, 0.5);
   std::vector<UnitValues> against;
   for (const TestUnit& unit : units) against.push_back({unit.values.*list, {median}});
-  return RatioOfMedians(against, kConfidence, kResamples, rng);
+  return RatioOfMedians(against, kTestConfidence, kTestResamples, rng);
 }
 
 SharedMemberRate MeasureCoverage(std::span<const TestUnit> units, ValueList list, int degrees_of_freedom) {
@@ -30,7 +30,7 @@ SharedMemberRate MeasureCoverage(std::span<const TestUnit> units, ValueList list
     for (const double value : unit.values.*list)
       events.push_back({unit.member1, unit.member2, value <= bound});
   }
-  SharedMemberRate coverage = MeasureSharedMemberRate(events, kConfidence);
+  SharedMemberRate coverage = MeasureSharedMemberRate(events, kTestConfidence);
   if (coverage.num_members < 2) coverage.interval = {0.0, 1.0};  // how much they share cannot be seen
   return coverage;
 }
@@ -110,7 +110,7 @@ TruthFreeTest TestCovariances(std::string name, int degrees_of_freedom, std::spa
   test.twin_coverage = MeasureCoverage(units, &UnitValues::null, degrees_of_freedom);
   test.ratio = CompareWithChiSquare(units, &UnitValues::observed, degrees_of_freedom, rng);
   test.in_simulation = CompareWithChiSquare(units, &UnitValues::null, degrees_of_freedom, rng);
-  test.against_twins = RatioOfMedians(values, kConfidence, kResamples, rng);
+  test.against_twins = RatioOfMedians(values, kTestConfidence, kTestResamples, rng);
   JudgeCovariances(&test);
   return test;
 }

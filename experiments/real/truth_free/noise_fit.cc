@@ -17,10 +17,10 @@
 namespace rcme {
 namespace {
 
-constexpr double kLeastProducts = 100.0;    // of residuals, for a correlation
-constexpr size_t kMostForFit = 20;          // pairs that the noise is fitted to
-constexpr std::uint32_t kFitTrial = 0xf17;  // no trial of a report has this number
-constexpr std::uint32_t kFitDraws = 3;      // for each of these
+constexpr double kLeastFittedProducts = 100.0;  // of residuals, for a correlation
+constexpr size_t kMostForFit = 20;              // pairs that the noise is fitted to
+constexpr std::uint32_t kFitTrial = 0xf17;      // no trial of a report has this number
+constexpr std::uint32_t kFitDraws = 3;          // for each of these
 constexpr double kFarLengthsPx[] = {20.0, 40.0, 80.0, 160.0};
 // From no tails to the longest; 0: normal.
 constexpr double kDegreesOfFreedom[] = {0.0, 20.0, 10.0, 6.0, 4.0, 3.0, 2.5, 2.0, 1.75, 1.5, 1.25, 1.0};
@@ -83,7 +83,7 @@ void FitShares(const ResidualPattern& observed, const ResidualPattern& independe
   const auto excess = [&](size_t k) {
     const double difference = observed.products.Correlation(k) - independent.products.Correlation(k);
     const bool is_known =
-        std::min(observed.products.counts[k], independent.products.counts[k]) >= kLeastProducts;
+        std::min(observed.products.counts[k], independent.products.counts[k]) >= kLeastFittedProducts;
     return is_known ? difference : 0.0;
   };
   double least = std::numeric_limits<double>::infinity();

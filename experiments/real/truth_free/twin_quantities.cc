@@ -49,7 +49,7 @@ const std::array<QuantityText, kNumQuantities> kQuantityTexts = {{
 
 namespace {
 
-constexpr double kLeastProducts = 20.0;  // of residuals, for the correlation of a pair
+constexpr double kLeastProductsOfPair = 20.0;  // of residuals, for the correlation of a pair
 constexpr double kTailSigmas = 2.0;
 
 void AddHalves(const MotionProblem& problem, const MotionEstimate& whole, const MotionEstimator& estimator,
@@ -82,7 +82,7 @@ void AddResiduals(const MotionProblem& problem, const MotionEstimate& estimate, 
   const ResidualProducts products = ProductsOf(problem, estimate);
   for (const auto& [quantity, distance] :
        {std::pair{kNearCorrelation, size_t{0}}, {kFarCorrelation, size_t{2}}}) {
-    if (products.counts[distance] >= kLeastProducts)
+    if (products.counts[distance] >= kLeastProductsOfPair)
       (*values)[quantity].push_back(products.Correlation(distance));
   }
 }

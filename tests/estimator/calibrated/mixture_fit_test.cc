@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-constexpr double kSigmaPx = 0.5;
+constexpr double kMixtureSigmaPx = 0.5;
 constexpr double kOutlierRatio = 0.3;
 constexpr int kNumMatches = 400;
 
@@ -25,7 +25,7 @@ double Decrement(const FittedMode& f) {
 TEST(MixtureFit, ReachesTheOptimumFromAnAssumedSigmaWrongByFour) {
   for (const double factor : {0.25, 1.0, 4.0}) {
     for (std::uint32_t trial = 0; trial < 20; ++trial) {
-      FittedMode f = FitScene(kNumMatches, kSigmaPx, kOutlierRatio, trial, factor);
+      FittedMode f = FitScene(kNumMatches, kMixtureSigmaPx, kOutlierRatio, trial, factor);
       ASSERT_TRUE(f.has_converged) << factor << " " << trial;
       EXPECT_LT(Decrement(f), 1e-2);
       EXPECT_LT((f.mode.hessian * f.mode.inverse_hessian - Matrix5d::Identity()).norm(), 1e-6);
@@ -50,11 +50,11 @@ TEST(MixtureFit, EstimatesTheNoiseLevelFromAnAssumedOneWrongByFour) {
     const double allowed = 0.02 * std::sqrt(2.0 * (1.0 - kOutlierRatio) * kNumMatches);
     double sum_z = 0.0, sum_squares = 0.0;
     for (std::uint32_t trial = 100; trial < 100 + kNumTrials; ++trial) {
-      const FittedMode f = FitScene(kNumMatches, kSigmaPx, kOutlierRatio, trial, factor);
+      const FittedMode f = FitScene(kNumMatches, kMixtureSigmaPx, kOutlierRatio, trial, factor);
       const MixtureParameters& m = f.mode.mixture;
       const double nu = (1.0 - kOutlierRatio) * kNumMatches - 5.0;
       const double sigma = f.problem.sigma_px * m.scale / m.noise.scale_of_gaussian;
-      const double expected = kSigmaPx * std::sqrt((nu + 2.0 * factor * factor) / (nu + 2.0));
+      const double expected = kMixtureSigmaPx * std::sqrt((nu + 2.0 * factor * factor) / (nu + 2.0));
       const double z = std::log(sigma / expected) * std::sqrt(2.0 * nu);
       sum_z += z;
       sum_squares += z * z;
@@ -67,14 +67,14 @@ TEST(MixtureFit, EstimatesTheNoiseLevelFromAnAssumedOneWrongByFour) {
 
 TEST(MixtureFit, EstimatesTheShareOfRightMatches) {
   for (const double outlier_ratio : {0.0, 0.3, 0.6}) {
-    const FittedMode f = FitScene(kNumMatches, kSigmaPx, outlier_ratio, 1);
+    const FittedMode f = FitScene(kNumMatches, kMixtureSigmaPx, outlier_ratio, 1);
     // Wrong matches that lie near their epipolar line by chance count as right ones.
     EXPECT_NEAR(f.mode.mixture.inlier_ratio, 1.0 - outlier_ratio, 0.05);
   }
 }
 
 TEST(MixtureFit, KeepsTheMixtureWhereItIsToldTo) {
-  const FittedMode f = FitScene(100, kSigmaPx, 0.2, 3);
+  const FittedMode f = FitScene(100, kMixtureSigmaPx, 0.2, 3);
   Mode fixed = StartMode(f.matches, f.prior, f.pose_true, 1.7);
   ASSERT_TRUE(FitMode(f.matches, f.prior, 50, &fixed, MixtureUpdate::kNone));
   EXPECT_EQ(fixed.mixture.scale, 1.7);
@@ -86,7 +86,7 @@ TEST(MixtureFit, KeepsTheMixtureWhereItIsToldTo) {
 }
 
 TEST(MixtureFit, DoesNotConvergeWhereNothingDeterminesTheMotion) {
-  const FittedMode f = FitScene(20, kSigmaPx, 0.0, 2);
+  const FittedMode f = FitScene(20, kMixtureSigmaPx, 0.0, 2);
   Mode of_four = StartMode(f.matches, f.prior, f.pose_true);
   of_four.used = f.matches.Empty();
   of_four.used[0] = 0b1111;
@@ -102,7 +102,7 @@ TEST(MixtureFit, DoesNotConvergeWhereNothingDeterminesTheMotion) {
 // the prior. Few matches, so that each of these is seen.
 TEST(MixtureFit, IsWhereExpectationMaximisationStaysPut) {
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
-    FittedMode f = FitScene(40, kSigmaPx, kOutlierRatio, trial);
+    FittedMode f = FitScene(40, kMixtureSigmaPx, kOutlierRatio, trial);
     ASSERT_TRUE(f.has_converged);
     for (int step = 0; step < 40; ++step)
       FitMode(f.matches, f.prior, 1, &f.mode);  // beyond a negligible step
@@ -121,7 +121,7 @@ TEST(MixtureFit, IsWhereExpectationMaximisationStaysPut) {
 
 // Five steps of the share and the density from one half, over all matches whichever are used.
 TEST(FitShares, IsFiveStepsByHand) {
-  FittedMode f = FitScene(60, kSigmaPx, kOutlierRatio, 1);
+  FittedMode f = FitScene(60, kMixtureSigmaPx, kOutlierRatio, 1);
   double share = 0.5, density = f.mode.mixture.outlier_density;
   for (int step = 0; step < 5; ++step) {
     MixtureParameters m = f.mode.mixture;
@@ -141,7 +141,7 @@ TEST(FitShares, IsFiveStepsByHand) {
 
 // One step from ten standard deviations away is a long one: not yet an optimum.
 TEST(MixtureFit, IsNoOptimumAfterALongStep) {
-  const FittedMode f = FitScene(kNumMatches, kSigmaPx, 0.0, 1);
+  const FittedMode f = FitScene(kNumMatches, kMixtureSigmaPx, 0.0, 1);
   const Matrix5d root = f.mode.inverse_hessian.llt().matrixL();
   for (const double away : {10.0, 1e-3}) {
     Mode mode = f.mode;

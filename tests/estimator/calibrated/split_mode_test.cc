@@ -12,11 +12,11 @@ namespace {
 
 // 150 matches of one body and 80 of another that moves a little differently, and a mode that explains both at
 // a noise level of its own.
-struct TwoBodies {
+struct SplitBodies {
   RelativePose first, second;
   FittedMode merged;
 };
-TwoBodies FitTwoBodies(std::uint32_t trial) {
+SplitBodies FitTwoBodies(std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2792});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 230});
   const RelativePose first = random.pose_true;
@@ -27,7 +27,7 @@ TwoBodies FitTwoBodies(std::uint32_t trial) {
         ProjectToBoth(random.points_in_cam1[i], second, random.problem.camera1, random.problem.camera2);
   }
   AddNoise(0.5, rng, &random.problem);
-  TwoBodies two{first, second, FitFromTruth(random.problem, first)};
+  SplitBodies two{first, second, FitFromTruth(random.problem, first)};
   // Begun wide, as a mode that samples of both bodies lead to.
   two.merged.mode.mixture.scale = 10.0;
   FitMode(two.merged.matches, two.merged.prior, 30, &two.merged.mode);
@@ -37,7 +37,7 @@ TwoBodies FitTwoBodies(std::uint32_t trial) {
 TEST(SplitMode, FindsBothMotionsOfACompromise) {
   int num_wide = 0, num_split = 0, num_right = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const TwoBodies two = FitTwoBodies(trial);
+    const SplitBodies two = FitTwoBodies(trial);
     if (two.merged.mode.mixture.scale < 1.5) continue;
     ++num_wide;
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 2793});
@@ -71,7 +71,7 @@ TEST(SplitMode, LeavesAModeOfGreaterNoiseAlone) {
 TEST(SplitCompromise, PutsBothMotionsInPlaceOfTheCompromise) {
   int num_split = 0;
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
-    const TwoBodies two = FitTwoBodies(trial);
+    const SplitBodies two = FitTwoBodies(trial);
     if (two.merged.mode.mixture.scale < 1.5) continue;
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 2795});
     Mode narrow = two.merged.mode;

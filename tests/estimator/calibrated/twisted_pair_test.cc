@@ -13,14 +13,14 @@
 namespace rcme {
 namespace {
 
-constexpr double kSigmaPx = 0.5;
+constexpr double kTwistedSigmaPx = 0.5;
 
 // Matches of points within `thickness` (share of the depth) of a plane that is seen obliquely.
 struct PlaneCase {
   RandomProblem random;
   Eigen::Vector3d plane;  // n'X = 1, baselines^-1
 };
-PlaneCase MakePlane(std::uint32_t trial, double thickness, double sigma_px = kSigmaPx) {
+PlaneCase MakePlane(std::uint32_t trial, double thickness, double sigma_px = kTwistedSigmaPx) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2730});
   PlaneCase c;
   c.random = MakeRandomProblem(rng, {.num_matches = 120});
@@ -32,7 +32,7 @@ PlaneCase MakePlane(std::uint32_t trial, double thickness, double sigma_px = kSi
     problem.matches[i] = ProjectToBoth(depth * ray, c.random.pose_true, problem.camera1, problem.camera2);
   }
   AddNoise(sigma_px, rng, &problem);
-  problem.sigma_px = kSigmaPx;
+  problem.sigma_px = kTwistedSigmaPx;
   return c;
 }
 
@@ -137,11 +137,12 @@ TEST(FindPlane, WeighsMatchesByTheirNoise) {
 // + y^2).
 MotionProblem WideImageOfPlane(double off_sds, const RelativePose& pose) {
   const Camera camera{200.0, 200.0, 399.5, 299.5, 800, 600};
-  MotionProblem problem{{}, camera, camera, kSigmaPx};
+  MotionProblem problem{{}, camera, camera, kTwistedSigmaPx};
   for (int i = 0; i < 120; ++i) {
     const bool is_wide = i >= 80;
     const double x = is_wide ? (i % 2 == 0 ? 1.7 : -1.7) : 0.1 * (i % 9 - 4), y = 0.1 * (i / 4 % 9 - 4);
-    const double sd = std::sqrt(2.0) * kSigmaPx / 200.0 * (1.0 + x * x + y * y) / std::sqrt(1.0 + y * y);
+    const double sd =
+        std::sqrt(2.0) * kTwistedSigmaPx / 200.0 * (1.0 + x * x + y * y) / std::sqrt(1.0 + y * y);
     const double inverse_depth = 0.2 + (is_wide ? (i / 2 % 2 == 0 ? off_sds : -off_sds) * sd : 0.0);
     problem.matches.push_back(
         ProjectToBoth(Eigen::Vector3d(x, y, 1.0) / inverse_depth, pose, camera, camera));

@@ -10,8 +10,8 @@
 namespace rcme {
 namespace {
 
-constexpr double kDensity = 1e-2;               // of a wrong match
-constexpr MotionBounds kBounds = {0.05, 0.25};  // rad
+constexpr double kDensity = 1e-2;                   // of a wrong match
+constexpr MotionBounds kModeBounds = {0.05, 0.25};  // rad
 const MixturePrior kPrior = {kDensity, true};
 
 // A motion that turns by so much, with the information exp(log_det / 5) along every direction in units of its
@@ -31,7 +31,7 @@ ExplainedMode ModeAt(double turn_rad, double log_det = 0.0, int num_explained = 
 const double kNone = std::exp(-(10.0 * std::log(10.0) - kSearchNats));  // odds of no motion against that
 
 TEST(WeighModes, OneModeIsWeighedAgainstNone) {
-  const ModeWeights weights = WeighModes({ModeAt(0.0)}, kBounds, kPrior, {});
+  const ModeWeights weights = WeighModes({ModeAt(0.0)}, kModeBounds, kPrior, {});
   EXPECT_EQ(weights.answer, 0u);
   EXPECT_NEAR(weights.of_no_motion, kNone / (1.0 + kNone), 1e-12);
   EXPECT_NEAR(weights.of_modes[0], 1.0 / (1.0 + kNone), 1e-12);
@@ -41,22 +41,22 @@ TEST(WeighModes, OneModeIsWeighedAgainstNone) {
 
 TEST(WeighModes, TheGreaterOfTwoDensitiesOfWrongMatchesCounts) {
   ExplainedMode mode = ModeAt(0.0);
-  EXPECT_NEAR(WeighModes({mode}, kBounds, {1e-4, true}, {}).of_no_motion, kNone / (1.0 + kNone), 1e-12);
+  EXPECT_NEAR(WeighModes({mode}, kModeBounds, {1e-4, true}, {}).of_no_motion, kNone / (1.0 + kNone), 1e-12);
   mode.mode.mixture.outlier_density = 1e-4;
-  EXPECT_NEAR(WeighModes({mode}, kBounds, kPrior, {}).of_no_motion, kNone / (1.0 + kNone), 1e-12);
+  EXPECT_NEAR(WeighModes({mode}, kModeBounds, kPrior, {}).of_no_motion, kNone / (1.0 + kNone), 1e-12);
 }
 
 // Evidence against any motion, of 22 nats, counts as two.
 TEST(WeighModes, NoMotionIsNeverMoreThanSevenTimesAsLikely) {
   ExplainedMode mode = ModeAt(0.0);
   mode.explanation.left_out_density.assign(10, kDensity);
-  const ModeWeights weights = WeighModes({mode}, kBounds, kPrior, {});
+  const ModeWeights weights = WeighModes({mode}, kModeBounds, kPrior, {});
   EXPECT_NEAR(weights.of_no_motion / weights.of_modes[0], std::exp(2.0), 1e-9);
 }
 
 // The same motion found three times weighs as much as found once.
 TEST(WeighModes, ModesWithinTheBoundsAreOne) {
-  const ModeWeights weights = WeighModes({ModeAt(0.0), ModeAt(0.01), ModeAt(0.04)}, kBounds, kPrior, {});
+  const ModeWeights weights = WeighModes({ModeAt(0.0), ModeAt(0.01), ModeAt(0.04)}, kModeBounds, kPrior, {});
   EXPECT_NEAR(weights.of_no_motion, kNone / (1.0 + kNone), 1e-12);
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_FALSE(weights.is_rival[i]);
@@ -69,7 +69,7 @@ TEST(WeighModes, ModesWithinTheBoundsAreOne) {
 TEST(WeighModes, RivalsAddUpToTheirNorm) {
   const std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2, 1.0, 60, 2.0),
                                             ModeAt(0.4, 2.0, 40, 0.5)};
-  const ModeWeights weights = WeighModes(modes, kBounds, kPrior, {});
+  const ModeWeights weights = WeighModes(modes, kModeBounds, kPrior, {});
   EXPECT_EQ(weights.answer, 0u);
   const double first = std::exp(-0.75 * 1.0 * 80.0 / 130.0), second = std::exp(-0.75 * 2.0 * 70.0 / 120.0);
   const double norm = std::pow(std::pow(first, 2.5) + std::pow(second, 2.5), 0.4);
@@ -83,7 +83,7 @@ TEST(WeighModes, RivalsAddUpToTheirNorm) {
 
 TEST(WeighModes, TheAnswerIsTheModeThatNoOtherBeats) {
   const ModeWeights weights = WeighModes(
-      {ModeAt(0.0, 3.0), ModeAt(0.2, 2.0), ModeAt(0.4, 0.0), ModeAt(0.6, 1.0)}, kBounds, kPrior, {});
+      {ModeAt(0.0, 3.0), ModeAt(0.2, 2.0), ModeAt(0.4, 0.0), ModeAt(0.6, 1.0)}, kModeBounds, kPrior, {});
   EXPECT_EQ(weights.answer, 2u);
   EXPECT_GT(weights.of_modes[2], weights.of_modes[3]);
   EXPECT_GT(weights.of_modes[3], weights.of_modes[1]);
@@ -106,8 +106,8 @@ TEST(WeighModes, ASecondMotionHasThePriorOfTheOptions) {
     CalibratedOptions options;
     options.second_motion_odds = odds;
     for (const bool is_turned : {false, true}) {
-      const ModeWeights weights = is_turned ? WeighModes({second, first}, kBounds, kPrior, options)
-                                            : WeighModes({first, second}, kBounds, kPrior, options);
+      const ModeWeights weights = is_turned ? WeighModes({second, first}, kModeBounds, kPrior, options)
+                                            : WeighModes({first, second}, kModeBounds, kPrior, options);
       const size_t other = 1 - weights.answer;
       EXPECT_EQ(weights.answer, is_turned ? 1u : 0u);
       EXPECT_TRUE(weights.is_second_motion[other]);

@@ -21,17 +21,17 @@ class AgreementTest : public OnEveryTarget {};
 
 // Matches with noise, points at infinity among them, one in four wrong; a motion fitted to some of the
 // others.
-struct Case {
+struct FittedProblem {
   MotionProblem problem;
   RelativePose pose_true;
   RefinedMotion motion;
   std::vector<int> fitted;
 };
 
-Case MakeCase(int num_matches, std::uint32_t trial) {
+FittedProblem MakeFittedProblem(int num_matches, std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2640});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = num_matches});
-  Case c;
+  FittedProblem c;
   for (size_t i = 0; i < random.problem.matches.size(); ++i) {
     if (i % 5 == 1) {  // so far away that noise puts half of them behind the cameras
       random.problem.matches[i] = ProjectToBoth(1e5 * random.points_in_cam1[i], random.pose_true,
@@ -56,13 +56,13 @@ Case MakeCase(int num_matches, std::uint32_t trial) {
   return c;
 }
 
-constexpr int kSizes[] = {12, 15, 16, 17, 40, 41, 200};
+constexpr int kNumMatches[] = {12, 15, 16, 17, 40, 41, 200};
 
 TEST_F(AgreementTest, FindsTheMatchesThatTheFitSetFinds) {
   int num_converged = 0, num_agreeing = 0, num_not = 0;
-  for (const int n : kSizes) {
+  for (const int n : kNumMatches) {
     for (std::uint32_t trial = 0; trial < 10; ++trial) {
-      const Case c = MakeCase(n, trial);
+      const FittedProblem c = MakeFittedProblem(n, trial);
       // A fit to five matches has none to spare: every residual and its variance are zero, and rounding
       // decides.
       if (!c.motion.converged || c.fitted.size() <= 5) continue;
@@ -91,7 +91,7 @@ TEST_F(AgreementTest, TheFitSetKnowsLeverageAndWhatWasFitted) {
   // Cases in which these two matter; the test above would else not see them.
   int num_by_leverage = 0, num_by_being_fitted = 0, num_behind = 0;
   for (std::uint32_t trial = 0; trial < 40; ++trial) {
-    const Case c = MakeCase(40, trial);
+    const FittedProblem c = MakeFittedProblem(40, trial);
     const std::vector<int> agreeing = FindAgreeing(c.problem, c.motion, c.fitted, kAlpha);
     num_by_leverage += FindAgreeing(c.problem, c.motion, c.fitted, kFitSignificance) !=
                        SelectFitSet(c.problem, c.motion, c.fitted);
@@ -114,7 +114,7 @@ TEST_F(AgreementTest, TheFitSetKnowsLeverageAndWhatWasFitted) {
 }
 
 TEST_F(AgreementTest, AnInvalidCovarianceAgreesWithNothing) {
-  Case c = MakeCase(16, 0);
+  FittedProblem c = MakeFittedProblem(16, 0);
   c.motion.pose_cov(0, 0) = std::nan("");
   const MatchBlocks matches(c.problem);
   const BlockMatches block(c.problem, matches, RefinementError::kSampson);
@@ -122,7 +122,7 @@ TEST_F(AgreementTest, AnInvalidCovarianceAgreesWithNothing) {
   EXPECT_TRUE(FindAgreeing(c.problem, c.motion, {}, 0.05).empty());
 }
 
-int CountFrontOneByOne(const Case& c, const RelativePose& pose) {
+int CountFrontOneByOne(const FittedProblem& c, const RelativePose& pose) {
   return static_cast<int>(std::ranges::count_if(c.fitted, [&](int i) {
     const Correspondence& match = c.problem.matches[static_cast<size_t>(i)];
     return IsInFrontOfBothCameras(pose, c.problem.camera1.Ray(match.x1_px),
@@ -131,9 +131,9 @@ int CountFrontOneByOne(const Case& c, const RelativePose& pose) {
 }
 
 TEST_F(AgreementTest, CountsAsManyInFrontAsTheTriangulation) {
-  for (const int n : kSizes) {
+  for (const int n : kNumMatches) {
     for (std::uint32_t trial = 0; trial < 10; ++trial) {
-      const Case c = MakeCase(n, trial);
+      const FittedProblem c = MakeFittedProblem(n, trial);
       RandomStream rng({.seed = 1, .trial = trial, .purpose = 2641});
       for (const RelativePose& pose : {c.pose_true, RandomPose(rng, 180.0), RandomPose(rng, 180.0)}) {
         const RelativePose opposite{pose.R, -pose.t};
@@ -153,7 +153,7 @@ TEST_F(AgreementTest, CountsAsManyInFrontAsTheTriangulation) {
 TEST_F(AgreementTest, SelectsTheSamePoseOfTheFour) {
   std::array<int, 4> num_selected{};
   for (std::uint32_t trial = 0; trial < 60; ++trial) {
-    const Case c = MakeCase(trial % 3 == 0 ? 12 : 40, trial);
+    const FittedProblem c = MakeFittedProblem(trial % 3 == 0 ? 12 : 40, trial);
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 2642});
     // The true motion, seen through one of its four; or any, where counts are small and ties happen.
     const RelativePose pose = trial % 2 == 0 ? c.pose_true : RandomPose(rng, 180.0);
@@ -174,8 +174,8 @@ TEST_F(AgreementTest, SelectsTheSamePoseOfTheFour) {
 }
 
 TEST_F(AgreementTest, CountsTheConsistentMatchesOfTheReference) {
-  for (const int n : kSizes) {
-    const Case c = MakeCase(n, 70);
+  for (const int n : kNumMatches) {
+    const FittedProblem c = MakeFittedProblem(n, 70);
     const int expected =
         ReferenceMatches(c.problem, RefinementError::kSampson).CountConsistent(c.fitted, c.pose_true, 0.2);
     EXPECT_GT(expected, 0);

@@ -21,21 +21,21 @@ namespace {
 class EquationsAgreement : public OnEveryTarget {};
 
 constexpr Loss kLosses[] = {Loss::kSquared, Loss::kCauchy};
-constexpr int kSizes[] = {5, 6, 8, 9, 17, 64, 200};
+constexpr int kEquationCounts[] = {5, 6, 8, 9, 17, 64, 200};
 
 // Noisy matches of two different cameras, one in six wrong, four in five of them used.
-struct Case {
+struct StartProblem {
   MotionProblem problem;
   RelativePose start;  // a little beside the truth
   std::vector<int> used;
 };
-Case MakeCase(int num_matches, std::uint32_t trial) {
+StartProblem MakeStartProblem(int num_matches, std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2650});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = num_matches});
   AddNoise(0.5, rng, &random.problem);
   Vector5d off;
   for (double& x : off) x = 0.01 * rng.Normal();
-  Case c{random.problem, Retract(random.pose_true, off), {}};
+  StartProblem c{random.problem, Retract(random.pose_true, off), {}};
   for (int i = 0; i < num_matches; ++i) {
     if (i % 6 == 4) c.problem.matches[static_cast<size_t>(i)].x2_px.y() += 20.0 * rng.Normal();
     if (num_matches < 8 || rng.Uniform() < 0.8) c.used.push_back(i);
@@ -44,11 +44,11 @@ Case MakeCase(int num_matches, std::uint32_t trial) {
 }
 
 // Far from every camera, so that a rotation explains the matches.
-Case MakeRotationCase(std::uint32_t trial) {
+StartProblem MakeRotationProblem(std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2651});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 61, .min_depth = 1e9, .max_depth = 2e9});
   AddNoise(0.5, rng, &random.problem);
-  Case c{random.problem, random.pose_true, {}};
+  StartProblem c{random.problem, random.pose_true, {}};
   for (int i = 0; i < 61; ++i) {
     Correspondence& match = c.problem.matches[static_cast<size_t>(i)];
     if (i % 7 == 0) match.x2_px << rng.Uniform(0.0, 799.0), rng.Uniform(0.0, 599.0);
@@ -74,7 +74,7 @@ void ExpectSameSums(double cost, const Vector& gradient, const Matrix& hessian, 
   }
 }
 
-void CompareSampson(const Case& c, const RelativePose& pose) {
+void CompareSampson(const StartProblem& c, const RelativePose& pose) {
   for (const Loss loss : kLosses) {
     const NormalEquations expected = LinearizeSampson(c.problem, c.used, pose, loss);
     const Matrix5d information = SampsonInformation(c.problem, c.used, pose);
@@ -91,9 +91,9 @@ void CompareSampson(const Case& c, const RelativePose& pose) {
 }
 
 TEST_F(EquationsAgreement, SampsonSumsAreTheSame) {
-  for (const int n : kSizes) {
+  for (const int n : kEquationCounts) {
     for (std::uint32_t trial = 0; trial < 5; ++trial) {
-      const Case c = MakeCase(n, trial);
+      const StartProblem c = MakeStartProblem(n, trial);
       CompareSampson(c, c.start);
       CompareSampson(c, Retract(c.start, Vector5d::Constant(0.5)));  // residuals of hundreds of sigma
     }
@@ -104,7 +104,7 @@ TEST_F(EquationsAgreement, TheSearchEndsAtTheSameMotion) {
   int num_converged = 0;
   for (const int n : {9, 17, 64, 200}) {
     for (std::uint32_t trial = 0; trial < 20; ++trial) {
-      const Case c = MakeCase(n, trial);
+      const StartProblem c = MakeStartProblem(n, trial);
       for (const Loss loss : kLosses) {
         const RefinedMotion expected = RefineBySampson(c.problem, c.used, c.start, loss);
         num_converged += expected.converged;
@@ -125,7 +125,7 @@ TEST_F(EquationsAgreement, TheSearchEndsAtTheSameMotion) {
 
 // Six matches that are four different ones: the sums are of rank four in both.
 TEST_F(EquationsAgreement, RankDeficientSumsAreTheSame) {
-  Case c = MakeCase(6, 1);
+  StartProblem c = MakeStartProblem(6, 1);
   c.problem.matches[4] = c.problem.matches[0];
   c.problem.matches[5] = c.problem.matches[1];
   CompareSampson(c, c.start);
@@ -143,7 +143,7 @@ TEST_F(EquationsAgreement, RankDeficientSumsAreTheSame) {
 }
 
 TEST_F(EquationsAgreement, FewerThanFiveMatchesConvergeInNeither) {
-  const Case c = MakeCase(6, 1);
+  const StartProblem c = MakeStartProblem(6, 1);
   const std::vector<int> four = {0, 1, 2, 5};
   const RefinedMotion reference = RefineBySampson(c.problem, four, c.start, Loss::kCauchy);
   const MatchBlocks matches(c.problem);
@@ -158,7 +158,7 @@ TEST_F(EquationsAgreement, FewerThanFiveMatchesConvergeInNeither) {
 TEST_F(EquationsAgreement, RotationSumsAreTheSameWithMatchesBehindTheCamera) {
   int num_some_behind = 0, num_all_behind = 0;
   for (std::uint32_t trial = 0; trial < 6; ++trial) {
-    const Case c = MakeRotationCase(trial);
+    const StartProblem c = MakeRotationProblem(trial);
     for (const double angle : {0.0, 0.01, 1.4, 3.1}) {
       const Eigen::Matrix3d R = RotationFromVector(angle * Eigen::Vector3d::UnitY()) * c.start.R;
       const auto num_in_front = FindRotated(c.problem, R, 1e300).size();
@@ -186,7 +186,7 @@ TEST_F(EquationsAgreement, RotationSumsAreTheSameWithMatchesBehindTheCamera) {
 TEST_F(EquationsAgreement, TheTestOfARotationAloneDecidesTheSame) {
   int num_explained = 0, num_not = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const Case c = trial % 2 == 0 ? MakeRotationCase(trial) : MakeCase(61, trial);
+    const StartProblem c = trial % 2 == 0 ? MakeRotationProblem(trial) : MakeStartProblem(61, trial);
     const ReferenceMatches reference(c.problem, RefinementError::kSampson);
     const RotationTest expected = TestRotationAlone(reference, c.start, 0.001);
     ++(expected.explains_matches ? num_explained : num_not);

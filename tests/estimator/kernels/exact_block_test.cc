@@ -29,7 +29,7 @@ Correspondence Whitened(const MatchBlocks& matches, int match) {
   return {{at.x1[l], at.y1[l]}, {at.x2[l], at.y2[l]}};
 }
 
-double VarianceOfG(const HypothesisBlock& block, int lane, const Correspondence& whitened) {
+double ExactVarianceOfG(const HypothesisBlock& block, int lane, const Correspondence& whitened) {
   double variance = 0.0;
   for (const auto& dF : block.dF) {
     Eigen::Matrix3d matrix;
@@ -38,7 +38,7 @@ double VarianceOfG(const HypothesisBlock& block, int lane, const Correspondence&
   }
   return variance;
 }
-double VarianceOfG(const UncertainFundamental& model, const Correspondence& match) {
+double ExactVarianceOfG(const UncertainFundamental& model, const Correspondence& match) {
   double variance = 0.0;
   for (const Eigen::Matrix3d& dF : model.dF_whitened) {
     variance += std::pow(EvaluateConstraint(dF, match).g, 2);
@@ -74,9 +74,9 @@ TEST_F(ExactBlockTest, IsTheScalarHypothesis) {
           EXPECT_LT(std::min((F - expected).norm(), (F + expected).norm()), tolerance * expected.norm());
           const UncertainFundamental model = ComputeUncertainFundamental(problem, scalar).value();
           for (int i = 0; i < 60; i += 7) {
-            const double variance = VarianceOfG(model, problem.matches[static_cast<size_t>(i)]);
+            const double variance = ExactVarianceOfG(model, problem.matches[static_cast<size_t>(i)]);
             EXPECT_GT(variance, 0.0);
-            EXPECT_NEAR(VarianceOfG(block, lane, Whitened(matches, i)), variance, tolerance * variance);
+            EXPECT_NEAR(ExactVarianceOfG(block, lane, Whitened(matches, i)), variance, tolerance * variance);
           }
         }
       }

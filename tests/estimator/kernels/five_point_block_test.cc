@@ -67,12 +67,12 @@ Rays DrawRays(const Family& family, const RelativePose& pose, double sigma, Rand
 }
 
 // Eight samples of one family, each of a motion of its own.
-struct Case {
+struct EightSamples {
   Eight samples;
   std::array<Eigen::Matrix3d, kBlockSize> E_true;
 };
-Case DrawCase(const Family& family, double sigma, RandomStream& rng) {
-  Case c;
+EightSamples DrawSamples(const Family& family, double sigma, RandomStream& rng) {
+  EightSamples c;
   for (size_t s = 0; s < kBlockSize; ++s) {
     const RelativePose pose = DrawPose(family, rng);
     c.samples[s] = DrawRays(family, pose, sigma, rng);
@@ -80,9 +80,9 @@ Case DrawCase(const Family& family, double sigma, RandomStream& rng) {
   }
   return c;
 }
-Case DrawCase(std::uint32_t trial) {
+EightSamples DrawSamples(std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2630});
-  return DrawCase(Families()[trial % Families().size()], 1e-3, rng);
+  return DrawSamples(Families()[trial % Families().size()], 1e-3, rng);
 }
 
 FivePointModels Solve(const Eight& samples) {
@@ -140,7 +140,7 @@ TEST_F(FivePointBlockTest, EveryModelMeetsTheConstraints) {
     int num_models = 0;
     double greatest = 0.0;
     for (std::uint32_t trial = 0; trial < 100; ++trial) {
-      const Case c = DrawCase(trial);
+      const EightSamples c = DrawSamples(trial);
       const FivePointModels models = Solve(c.samples);
       ASSERT_EQ(models.begin[0], 0);
       for (size_t s = 0; s < kBlockSize; ++s) {
@@ -162,7 +162,7 @@ TEST_F(FivePointBlockTest, HasTheTruthMoreOftenThanOthers) {
     RandomStream rng({.seed = 1, .purpose = 2631});
     CoverageCount has_truth;
     for (int block = 0; block < 500; ++block) {
-      const Case c = DrawCase(family, 0.0, rng);
+      const EightSamples c = DrawSamples(family, 0.0, rng);
       const FivePointModels models = Solve(c.samples);
       for (size_t s = 0; s < kBlockSize; ++s) {
         has_truth.Add(DistanceToNearest(c.E_true[s], ModelsOf(models, s)) < 1e-4);
@@ -180,7 +180,7 @@ TEST_F(FivePointBlockTest, HasTheSolutionsOfTheScalarSolver) {
     RandomStream rng({.seed = 1, .purpose = 2632});
     CoverageCount is_found, is_solution;
     for (int block = 0; block < 100; ++block) {
-      const Case c = DrawCase(family, 1e-3, rng);
+      const EightSamples c = DrawSamples(family, 1e-3, rng);
       const FivePointModels models = Solve(c.samples);
       for (size_t s = 0; s < kBlockSize; ++s) {
         const Matrices ours = ModelsOf(models, s), reference = ReferenceOf(c.samples[s]);
@@ -195,10 +195,9 @@ TEST_F(FivePointBlockTest, HasTheSolutionsOfTheScalarSolver) {
   }
 }
 
-using Spoil = std::function<void(Rays*)>;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-const std::vector<std::pair<std::string, Spoil>>& DegenerateSamples() {
-  static const std::vector<std::pair<std::string, Spoil>> all = {
+using SpoilRays = std::function<void(Rays*)>;
+const std::vector<std::pair<std::string, SpoilRays>>& DegenerateRays() {
+  static const std::vector<std::pair<std::string, SpoilRays>> all = {
       {"a match twice", [](Rays* r) { r->first[3] = r->first[1], r->second[3] = r->second[1]; }},
       {"one match only", [](Rays* r) { r->first.fill(r->first[0]), r->second.fill(r->second[0]); }},
       {"points on a line of space",
@@ -231,9 +230,9 @@ const std::vector<std::pair<std::string, Spoil>>& DegenerateSamples() {
 
 TEST_F(FivePointBlockTest, DegenerateSamplesHaveNoModels) {
   Run([] {
-    for (const auto& [name, spoil] : DegenerateSamples()) {
+    for (const auto& [name, spoil] : DegenerateRays()) {
       for (std::uint32_t trial = 0; trial < 24; ++trial) {
-        Case c = DrawCase(trial);
+        EightSamples c = DrawSamples(trial);
         const size_t spoilt = trial % kBlockSize;
         spoil(&c.samples[spoilt]);
         EXPECT_TRUE(ModelsOf(Solve(c.samples), spoilt).empty()) << name << ", trial " << trial;
@@ -244,9 +243,9 @@ TEST_F(FivePointBlockTest, DegenerateSamplesHaveNoModels) {
 
 TEST_F(FivePointBlockTest, ASampleDoesNotTouchTheOthers) {
   Run([] {
-    for (const auto& [name, spoil] : DegenerateSamples()) {
+    for (const auto& [name, spoil] : DegenerateRays()) {
       for (size_t spoilt = 0; spoilt < kBlockSize; ++spoilt) {
-        Case c = DrawCase(100 + static_cast<std::uint32_t>(spoilt));
+        EightSamples c = DrawSamples(100 + static_cast<std::uint32_t>(spoilt));
         const FivePointModels without = Solve(c.samples);
         spoil(&c.samples[spoilt]);
         const FivePointModels with = Solve(c.samples);
@@ -261,7 +260,7 @@ TEST_F(FivePointBlockTest, ASampleDoesNotTouchTheOthers) {
 
 TEST_F(FivePointBlockTest, EveryLaneGivesTheSameBits) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    Case c = DrawCase(200 + trial);
+    EightSamples c = DrawSamples(200 + trial);
     c.samples.fill(c.samples[trial % kBlockSize]);
     Run([&] {
       const FivePointModels models = Solve(c.samples);
@@ -272,8 +271,8 @@ TEST_F(FivePointBlockTest, EveryLaneGivesTheSameBits) {
 
 TEST_F(FivePointBlockTest, EveryInstructionSetGivesTheSameBits) {
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
-    Case c = DrawCase(300 + trial);
-    const auto& spoil = DegenerateSamples()[trial % DegenerateSamples().size()].second;
+    EightSamples c = DrawSamples(300 + trial);
+    const auto& spoil = DegenerateRays()[trial % DegenerateRays().size()].second;
     if (trial % 2 == 0) spoil(&c.samples[trial % kBlockSize]);
     const FivePointModels best = Solve(c.samples);
     Run([&] {

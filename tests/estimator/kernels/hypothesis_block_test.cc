@@ -27,13 +27,13 @@ class HypothesisBlockTest : public OnEveryTarget {};
 using Samples = std::array<Sample, kBlockSize>;
 
 // Sixty matches with noise, every tenth wrong, and eight samples of them.
-struct Case {
+struct SampledProblem {
   MotionProblem problem;
   Samples samples{};
 };
-Case MakeCase(std::uint32_t trial, double sigma_px = 0.5) {
+SampledProblem MakeSampledProblem(std::uint32_t trial, double sigma_px = 0.5) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2620});
-  Case c{MakeRandomProblem(rng, {.num_matches = 60}).problem};
+  SampledProblem c{MakeRandomProblem(rng, {.num_matches = 60}).problem};
   AddNoise(sigma_px, rng, &c.problem);
   for (size_t i = 0; i < 60; i += 10) {
     c.problem.matches[i].x2_px << rng.Uniform(0.0, 799.0), rng.Uniform(0.0, 599.0);
@@ -42,7 +42,7 @@ Case MakeCase(std::uint32_t trial, double sigma_px = 0.5) {
   return c;
 }
 
-HypothesisBlock Instantiate(const Case& c, RequestedOutputs outputs) {
+HypothesisBlock Instantiate(const SampledProblem& c, RequestedOutputs outputs) {
   HypothesisBlock block;
   InstantiateModels(MatchBlocks(c.problem), c.samples, outputs, &block);
   return block;
@@ -101,7 +101,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesis) {
   Run([] {
     Errors of_F, of_statistic, of_variance;
     for (std::uint32_t trial = 0; trial < 60; ++trial) {
-      const Case c = MakeCase(trial);
+      const SampledProblem c = MakeSampledProblem(trial);
       const MatchBlocks matches(c.problem);
       const HypothesisBlock block = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
       ASSERT_EQ(block.is_model, 0xff);
@@ -129,9 +129,9 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesis) {
 
 // Matches that a linear model with singular values 1, 1/2 + gap, 1/2 fits exactly, as those of wrong matches
 // may be.
-Case MakeCaseOfCloseSingularValues(std::uint32_t trial, double gap) {
+SampledProblem MakeProblemOfCloseSingularValues(std::uint32_t trial, double gap) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2622});
-  Case c{MakeRandomProblem(rng, {.num_matches = 64}).problem};
+  SampledProblem c{MakeRandomProblem(rng, {.num_matches = 64}).problem};
   const Eigen::Matrix3d M =
       RandomPose(rng, 180.0).R * Eigen::Vector3d(1.0, 0.5 + gap, 0.5).asDiagonal() * RandomPose(rng, 180.0).R;
   for (Correspondence& match : c.problem.matches) {  // any point of the epipolar line
@@ -153,7 +153,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesisWhereSingularValuesAreClose) {
   Run([] {
     Errors of_F;
     for (std::uint32_t trial = 0; trial < 60; ++trial) {
-      const Case c = MakeCaseOfCloseSingularValues(trial, trial % 2 == 0 ? 1e-4 : 1e-5);
+      const SampledProblem c = MakeProblemOfCloseSingularValues(trial, trial % 2 == 0 ? 1e-4 : 1e-5);
       const MatchBlocks matches(c.problem);
       const HypothesisBlock block = Instantiate(c, RequestedOutputs::kNone);
       for (int lane = 0; lane < kBlockSize; ++lane) {
@@ -170,7 +170,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesisWhereSingularValuesAreClose) {
 }
 
 TEST_F(HypothesisBlockTest, LessToKnowDoesNotChangeTheRest) {
-  const Case c = MakeCase(1000);
+  const SampledProblem c = MakeSampledProblem(1000);
   Run([&] {
     const HypothesisBlock all = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
     const HypothesisBlock some = Instantiate(c, RequestedOutputs::kCovariance),
@@ -218,12 +218,12 @@ const std::vector<std::pair<std::string, Spoil>>& DegenerateSamples() {
 }
 
 // Twenty exact matches, the first eight spoilt; lane `spoilt` has them, the others draw from the rest.
-Case MakeSpoilt(const Spoil& spoil, size_t spoilt, std::uint32_t trial) {
+SampledProblem MakeSpoilt(const Spoil& spoil, size_t spoilt, std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2621});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 30});
   for (size_t i = 8; i < 30; ++i) AddNoise(0.5, rng, &random.problem.matches[i]);
   spoil(&random);
-  Case c{random.problem};
+  SampledProblem c{random.problem};
   for (size_t lane = 0; lane < c.samples.size(); ++lane) {
     c.samples[lane] = lane == spoilt ? Sample{0, 1, 2, 3, 4, 5, 6, 7} : DrawSample(8, 22, rng);
     if (lane == spoilt) continue;
@@ -237,7 +237,7 @@ TEST_F(HypothesisBlockTest, RefusesWhatTheScalarSolverRefuses) {
     for (const auto& [name, spoil] : DegenerateSamples()) {
       for (std::uint32_t trial = 0; trial < 24; ++trial) {
         const size_t lane = trial % 8;
-        const Case c = MakeSpoilt(spoil, lane, trial);
+        const SampledProblem c = MakeSpoilt(spoil, lane, trial);
         EXPECT_FALSE(InstantiateModel<EightPoint>(c.problem, {c.samples[lane]})) << name;
         for (const RequestedOutputs outputs : {RequestedOutputs::kNone, RequestedOutputs::kCovariance,
                                                RequestedOutputs::kCovarianceAndMisfit}) {
@@ -252,7 +252,7 @@ TEST_F(HypothesisBlockTest, ALaneDoesNotTouchTheOthers) {
   Run([] {
     for (const auto& [name, spoil] : DegenerateSamples()) {
       for (int spoilt = 0; spoilt < kBlockSize; ++spoilt) {
-        Case c = MakeSpoilt(spoil, static_cast<size_t>(spoilt), 100);
+        SampledProblem c = MakeSpoilt(spoil, static_cast<size_t>(spoilt), 100);
         const HypothesisBlock with = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
         c.samples[static_cast<size_t>(spoilt)] = {8, 9, 10, 11, 12, 13, 14, 15};
         const HypothesisBlock without = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
@@ -270,7 +270,7 @@ TEST_F(HypothesisBlockTest, ALaneDoesNotTouchTheOthers) {
 
 TEST_F(HypothesisBlockTest, EveryLaneGivesTheSameBits) {
   // A sample's hypothesis may not depend on the lane it is in.
-  Case c = MakeCase(2000);
+  SampledProblem c = MakeSampledProblem(2000);
   c.samples.fill(c.samples[3]);
   Run([&] {
     const HypothesisBlock block = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);

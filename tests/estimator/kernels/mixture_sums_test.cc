@@ -17,10 +17,10 @@ namespace {
 
 class MixtureSumsOf : public OnEveryTarget {};
 
-constexpr int kSizes[] = {1, 5, 7, 8, 9, 15, 16, 17, 63, 65, 200};
+constexpr int kMixtureSizes[] = {1, 5, 7, 8, 9, 15, 16, 17, 63, 65, 200};
 
 // Noise, wrong matches, some of them left out, and a motion a little beside the truth.
-struct Case {
+struct MixtureProblem {
   MotionProblem problem;
   RelativePose pose;
   MixtureParameters parameters;
@@ -34,13 +34,13 @@ struct Case {
 // Matches that are all alike, or up to three times as noisy as others.
 constexpr bool kNoises[] = {false, true};
 
-Case MakeCase(int num_matches, bool is_scaled = false, double off_rad = 0.002) {
+MixtureProblem MakeMixtureProblem(int num_matches, bool is_scaled = false, double off_rad = 0.002) {
   RandomStream rng({.seed = 1, .trial = static_cast<std::uint32_t>(num_matches), .purpose = 2710});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = num_matches});
   AddNoise(0.5, rng, &random.problem);
   Vector5d off;
   for (double& x : off) x = off_rad * rng.Normal();
-  Case c{random.problem, Retract(random.pose_true, off), {}, {}};
+  MixtureProblem c{random.problem, Retract(random.pose_true, off), {}, {}};
   c.parameters.scale = 1.2;
   c.parameters.inlier_ratio = 0.65;
   c.parameters.outlier_density = 3e-3;
@@ -53,11 +53,11 @@ Case MakeCase(int num_matches, bool is_scaled = false, double off_rad = 0.002) {
   return c;
 }
 
-MatchTerms TermsOf(const Case& c, size_t i) {
+MatchTerms TermsOf(const MixtureProblem& c, size_t i) {
   return EvaluateMatch(c.problem, c.pose, c.problem.matches[i], NoiseScaleAt(c.problem, i));
 }
 
-MixtureSums ScalarSums(const Case& c) {
+MixtureSums ScalarSums(const MixtureProblem& c) {
   MixtureSums sums;
   const double s2 = c.parameters.scale * c.parameters.scale;
   for (const int i : c.used) {
@@ -77,8 +77,8 @@ MixtureSums ScalarSums(const Case& c) {
 
 TEST_F(MixtureSumsOf, EqualTheScalarTwin) {
   for (const bool is_scaled : kNoises)
-    for (const int n : kSizes) {
-      const Case c = MakeCase(n, is_scaled);
+    for (const int n : kMixtureSizes) {
+      const MixtureProblem c = MakeMixtureProblem(n, is_scaled);
       const MixtureSums expected = ScalarSums(c);
       ASSERT_GT(expected.gradient.norm(), 0.0);
       Run([&] {
@@ -95,8 +95,8 @@ TEST_F(MixtureSumsOf, EqualTheScalarTwin) {
 
 TEST_F(MixtureSumsOf, AreTheSameBitsOnEveryInstructionSet) {
   for (const bool is_scaled : kNoises)
-    for (const int n : kSizes) {
-      const Case c = MakeCase(n, is_scaled);
+    for (const int n : kMixtureSizes) {
+      const MixtureProblem c = MakeMixtureProblem(n, is_scaled);
       const MatchBlocks matches(c.problem);
       std::optional<MixtureSums> first;
       std::optional<MatchTermLists> first_terms;
@@ -129,8 +129,8 @@ TEST_F(MixtureSumsOf, AreTheSameBitsOnEveryInstructionSet) {
 
 TEST_F(MixtureSumsOf, ListsHoldTheTermsOfEveryMatch) {
   for (const bool is_scaled : kNoises)
-    for (const int n : kSizes) {
-      const Case c = MakeCase(n, is_scaled);
+    for (const int n : kMixtureSizes) {
+      const MixtureProblem c = MakeMixtureProblem(n, is_scaled);
       Run([&] {
         MatchTermLists lists;
         EvaluateTerms(MatchBlocks(c.problem), c.pose, &lists);
@@ -162,8 +162,8 @@ TEST_F(MixtureSumsOf, AreOfTheDensityOfResidualsThatAreScaled) {
     EXPECT_NEAR(sum, m.inlier_ratio + wrong, 1e-3) << w;
   }
   // All noises doubled is all of them twice the assumed one: s is halved.
-  Case c = MakeCase(65);
-  Case doubled = c;
+  MixtureProblem c = MakeMixtureProblem(65);
+  MixtureProblem doubled = c;
   doubled.problem.noise_scale.assign(65, 2.0);
   doubled.parameters.scale *= 0.5;
   Run([&] {
@@ -180,8 +180,8 @@ TEST_F(MixtureSumsOf, AreOfTheDensityOfResidualsThatAreScaled) {
 
 // Ones give the bytes that no scales give.
 TEST_F(MixtureSumsOf, ScalesOfOneChangeNothing) {
-  const Case c = MakeCase(65);
-  Case ones = c;
+  const MixtureProblem c = MakeMixtureProblem(65);
+  MixtureProblem ones = c;
   ones.problem.noise_scale.assign(65, 1.0);
   Run([&] {
     const MixtureSums none = c.Sum(c.pose), one = ones.Sum(c.pose);
@@ -193,9 +193,9 @@ TEST_F(MixtureSumsOf, ScalesOfOneChangeNothing) {
 }
 
 TEST_F(MixtureSumsOf, MatchesOutsideTheMaskAddNothing) {
-  Case c = MakeCase(41);
+  MixtureProblem c = MakeMixtureProblem(41);
   std::erase_if(c.used, [](int i) { return i % 8 == 3 || i >= 37; });
-  Case other = c;
+  MixtureProblem other = c;
   for (size_t i = 0; i < 41; ++i) {
     if (i % 8 == 3 || i >= 37) other.problem.matches[i].x2_px.array() += 1e5;
   }
@@ -210,7 +210,7 @@ TEST_F(MixtureSumsOf, MatchesOutsideTheMaskAddNothing) {
 // The logarithm is taken of products of densities, which must not run on where blocks of eight are empty:
 // here every eighth one is, and each density is some 1e-3.
 TEST_F(MixtureSumsOf, EmptyBlocksDoNotLetProductsVanish) {
-  Case c = MakeCase(2000);
+  MixtureProblem c = MakeMixtureProblem(2000);
   std::erase_if(c.used, [](int i) { return i / 8 % 8 == 7; });
   c.parameters.inlier_ratio = 0.01;
   const double expected = ScalarSums(c).log_likelihood;
@@ -220,7 +220,7 @@ TEST_F(MixtureSumsOf, EmptyBlocksDoNotLetProductsVanish) {
 // c(z) is held fixed by the gradient: here it is one for every match, at every pose near by.
 TEST_F(MixtureSumsOf, TheGradientIsThatOfTheLogLikelihood) {
   for (const bool is_scaled : kNoises) {
-    Case c = MakeCase(65, is_scaled);
+    MixtureProblem c = MakeMixtureProblem(65, is_scaled);
     std::erase_if(c.used, [&](int i) { return TermsOf(c, static_cast<size_t>(i)).depth < 1.0; });
     ASSERT_GT(c.used.size(), 30U);
     const Eigen::MatrixXd numeric = NumericJacobian(
@@ -236,7 +236,7 @@ TEST_F(MixtureSumsOf, TheGradientIsThatOfTheLogLikelihood) {
 TEST_F(MixtureSumsOf, TheHessianIsThatOfTheLogLikelihoodWhereResidualsAreSmall) {
   RandomStream rng({.seed = 1, .purpose = 2711});
   const RandomProblem random = MakeRandomProblem(rng, {.num_matches = 50});
-  Case c{random.problem, random.pose_true, {}, {}};
+  MixtureProblem c{random.problem, random.pose_true, {}, {}};
   for (int i = 0; i < 50; ++i) c.used.push_back(i);
   const auto cost = [&](const Eigen::VectorXd& tangent) {
     return Eigen::VectorXd::Constant(1, -c.Sum(Retract(c.pose, tangent)).log_likelihood);
@@ -251,8 +251,8 @@ TEST_F(MixtureSumsOf, TheHessianIsThatOfTheLogLikelihoodWhereResidualsAreSmall) 
 
 TEST_F(MixtureSumsOf, CheiralityTurnsOverWithTheDirection) {
   for (const bool is_scaled : kNoises)
-    for (const int n : kSizes) {
-      const Case c = MakeCase(n, is_scaled);
+    for (const int n : kMixtureSizes) {
+      const MixtureProblem c = MakeMixtureProblem(n, is_scaled);
       const MatchBlocks matches(c.problem);
       double expected = 0.0;
       const int num_blocks = std::max(matches.num_blocks() - 1, 1);

@@ -20,19 +20,19 @@ namespace {
 class SampsonEquations : public OnEveryTarget {};
 
 // Noise, a few wrong matches, and a motion a little beside the truth.
-struct Case {
+struct MotionBesideTruth {
   MotionProblem problem;
   RelativePose pose;
   std::vector<int> used;
 };
 
-Case MakeCase(int num_matches, std::uint32_t trial) {
+MotionBesideTruth MakeMotionBesideTruth(int num_matches, std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2610});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = num_matches});
   AddNoise(0.5, rng, &random.problem);
   Vector5d off;
   for (double& x : off) x = 0.002 * rng.Normal();
-  Case c{random.problem, Retract(random.pose_true, off), {}};
+  MotionBesideTruth c{random.problem, Retract(random.pose_true, off), {}};
   for (int i = 0; i < num_matches; ++i) {
     if (rng.Uniform() < 0.1) c.problem.matches[static_cast<size_t>(i)].x2_px.y() += 30.0 * rng.Normal();
     if (rng.Uniform() < 0.8) c.used.push_back(i);
@@ -44,7 +44,7 @@ Case MakeCase(int num_matches, std::uint32_t trial) {
 }
 
 // Signed residuals r = g / |J| of the used matches in units of sigma.
-Eigen::VectorXd Residuals(const Case& c, const RelativePose& pose) {
+Eigen::VectorXd Residuals(const MotionBesideTruth& c, const RelativePose& pose) {
   const Eigen::Matrix3d F =
       FundamentalFromEssential(EssentialFromPose(pose), c.problem.camera1, c.problem.camera2);
   Eigen::VectorXd residuals(c.used.size());
@@ -62,7 +62,7 @@ double Rho(double r, Loss loss) {
   const double c2 = kCauchyScale * kCauchyScale;
   return loss == Loss::kCauchy ? c2 * std::log1p(r * r / c2) : r * r;
 }
-double Cost(const Case& c, const RelativePose& pose, Loss loss) {
+double Cost(const MotionBesideTruth& c, const RelativePose& pose, Loss loss) {
   double sum = 0.0;
   for (const double r : Residuals(c, pose)) sum += 0.5 * Rho(r, loss);
   return sum;
@@ -76,17 +76,17 @@ double Curvature(double r, Loss loss) {
   return std::max(second, std::abs(r) > 1e-6 ? 0.7 * first / r : 0.7);
 }
 
-NormalEquations Linearize(const Case& c, Loss loss) {
+NormalEquations Linearize(const MotionBesideTruth& c, Loss loss) {
   const MatchBlocks matches(c.problem);
   return LinearizeSampson(matches, MaskOf(c.used, matches), c.pose, loss);
 }
 
-constexpr int kSizes[] = {5, 7, 8, 9, 16, 17, 63, 200};
+constexpr int kSampsonCounts[] = {5, 7, 8, 9, 16, 17, 63, 200};
 
 TEST_F(SampsonEquations, CostAndGradientAreThoseOfTheScalarDistance) {
   for (const Loss loss : {Loss::kSquared, Loss::kCauchy}) {
-    for (const int n : kSizes) {
-      const Case c = MakeCase(n, static_cast<std::uint32_t>(n));
+    for (const int n : kSampsonCounts) {
+      const MotionBesideTruth c = MakeMotionBesideTruth(n, static_cast<std::uint32_t>(n));
       const double cost = Cost(c, c.pose, loss);
       ASSERT_GT(cost, 0.0);
       const Eigen::MatrixXd numeric = NumericJacobian(
@@ -105,8 +105,8 @@ TEST_F(SampsonEquations, CostAndGradientAreThoseOfTheScalarDistance) {
 
 TEST_F(SampsonEquations, HessianSumsTheProductsOfTheDerivatives) {
   for (const Loss loss : {Loss::kSquared, Loss::kCauchy}) {
-    for (const int n : kSizes) {
-      const Case c = MakeCase(n, static_cast<std::uint32_t>(n));
+    for (const int n : kSampsonCounts) {
+      const MotionBesideTruth c = MakeMotionBesideTruth(n, static_cast<std::uint32_t>(n));
       const Eigen::VectorXd residuals = Residuals(c, c.pose);
       const Eigen::MatrixXd r_p = NumericJacobian(
           [&](const Eigen::VectorXd& tangent) { return Residuals(c, Retract(c.pose, tangent)); },
@@ -122,7 +122,7 @@ TEST_F(SampsonEquations, HessianSumsTheProductsOfTheDerivatives) {
 
 TEST_F(SampsonEquations, InformationIsTheInverseOfTheFirstOrderCovariance) {
   for (const int n : {8, 17, 200}) {
-    Case c = MakeCase(n, static_cast<std::uint32_t>(n));
+    MotionBesideTruth c = MakeMotionBesideTruth(n, static_cast<std::uint32_t>(n));
     c.problem.noise_scale.clear();
     std::vector<Correspondence> used;
     for (const int i : c.used) used.push_back(c.problem.matches[static_cast<size_t>(i)]);
@@ -141,7 +141,7 @@ TEST_F(SampsonEquations, InformationIsTheInverseOfTheFirstOrderCovariance) {
 // And of the reference, which shares no formula with them.
 TEST_F(SampsonEquations, AreThoseOfTheReferenceWhereMatchesAreNotAlike) {
   for (const int n : {7, 17, 63}) {
-    const Case c = MakeCase(n, static_cast<std::uint32_t>(n));
+    const MotionBesideTruth c = MakeMotionBesideTruth(n, static_cast<std::uint32_t>(n));
     ASSERT_EQ(c.problem.noise_scale.size(), static_cast<size_t>(n));
     for (const Loss loss : {Loss::kSquared, Loss::kCauchy}) {
       const NormalEquations expected = LinearizeSampson(c.problem, c.used, c.pose, loss);
@@ -163,7 +163,7 @@ TEST_F(SampsonEquations, CauchysCostStaysFiniteFarFromTheOptimum) {
   RandomStream rng({.seed = 1, .purpose = 2611});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 800});
   random.problem.sigma_px = 0.01;
-  Case c{random.problem, Retract(random.pose_true, Vector5d::Constant(0.2)), {}};
+  MotionBesideTruth c{random.problem, Retract(random.pose_true, Vector5d::Constant(0.2)), {}};
   for (int i = 0; i < 800; ++i) c.used.push_back(i);
   const double cost = Cost(c, c.pose, Loss::kCauchy);
   ASSERT_GT(Residuals(c, c.pose).cwiseAbs().mean(), 2000.0);
@@ -171,12 +171,12 @@ TEST_F(SampsonEquations, CauchysCostStaysFiniteFarFromTheOptimum) {
 }
 
 TEST_F(SampsonEquations, MatchesOutsideTheMaskAddNothing) {
-  Case c = MakeCase(40, 1);
+  MotionBesideTruth c = MakeMotionBesideTruth(40, 1);
   std::erase_if(c.used, [](int i) { return i % 8 == 3 || i >= 37; });
   for (const Loss loss : {Loss::kSquared, Loss::kCauchy}) {
     Run([&] {
       const NormalEquations before = Linearize(c, loss);
-      Case other = c;
+      MotionBesideTruth other = c;
       for (int i = 0; i < 40; ++i) {
         if (i % 8 == 3 || i >= 37) other.problem.matches[static_cast<size_t>(i)].x2_px.array() += 1e6;
       }

@@ -24,19 +24,19 @@
 #include "estimator/reference_search.h"
 #include "estimator/sample_consistency.h"
 #include "estimator/solvers/eight_point.h"
+#include "stats/constants.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 class ScoreTest : public OnEveryTarget {};
 
 // Matches with noise, a third of them wrong, and a motion with a covariance like that of thirty matches.
-struct Case {
+struct ScoredProblem {
   MotionProblem problem;
   RelativePose pose;
   Matrix5d pose_cov;
@@ -46,7 +46,7 @@ struct Case {
   }
 };
 
-Case MakeCase(int num_matches, std::uint32_t trial, double spread_rad = 0.01) {
+ScoredProblem MakeScoredProblem(int num_matches, std::uint32_t trial, double spread_rad = 0.01) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2630});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = num_matches});
   AddNoise(0.5, rng, &random.problem);
@@ -175,7 +175,7 @@ void ExpectScan(const MatchBlocks& matches, const ScanOnce& scan_once,
 }
 
 template <typename PointTest>
-std::vector<Expected> ExpectedOf(const Case& c, const PointTest& test) {
+std::vector<Expected> ExpectedOf(const ScoredProblem& c, const PointTest& test) {
   const UncertainFundamental model = c.Scalar();
   std::vector<Expected> expected;
   for (const Correspondence& match : c.problem.matches) {
@@ -190,7 +190,7 @@ std::vector<Expected> ExpectedOf(const Case& c, const PointTest& test) {
 }
 
 // By definition; and away from the singular set the scalar test says the same.
-std::vector<Expected> ExpectedAsPrinted(const Case& c) {
+std::vector<Expected> ExpectedAsPrinted(const ScoredProblem& c) {
   const MatchBlocks matches(c.problem);
   const WhitenedModel model = WhitenedModel::From(matches, c.pose, c.pose_cov).value();
   const AsPrintedTest test(c.Scalar(), c.problem.sigma_px);
@@ -208,7 +208,7 @@ std::vector<Expected> ExpectedAsPrinted(const Case& c) {
   return expected;
 }
 
-void ExpectKnownPose(const Case& c) {
+void ExpectKnownPose(const ScoredProblem& c) {
   const MatchBlocks matches(c.problem);
   double F[9];
   WriteRowMajor(matches.FundamentalFromEssential(EssentialFromPose(c.pose)), F);
@@ -216,14 +216,14 @@ void ExpectKnownPose(const Case& c) {
       matches, [&](double threshold, InlierScan* scan) { ScanKnownPose(matches, F, threshold, scan); },
       ExpectedOf(c, KnownPoseTest(c.Scalar().F, c.problem.sigma_px)));
 }
-void ExpectAsPrinted(const Case& c) {
+void ExpectAsPrinted(const ScoredProblem& c) {
   const MatchBlocks matches(c.problem);
   const WhitenedModel model = WhitenedModel::From(matches, c.pose, c.pose_cov).value();
   ExpectScan(
       matches, [&](double threshold, InlierScan* scan) { ScanAsPrinted(matches, model, threshold, scan); },
       ExpectedAsPrinted(c));
 }
-void ExpectRankAware(const Case& c) {
+void ExpectRankAware(const ScoredProblem& c) {
   const MatchBlocks matches(c.problem);
   const WhitenedModel model = WhitenedModel::From(matches, c.pose, c.pose_cov).value();
   const VariancePolynomial variance(model.dF);
@@ -237,7 +237,7 @@ TEST_F(ScoreTest, ScansAreTheScalarTestsForAnyNumberOfMatches) {
   Run([] {
     for (int n = 1; n <= 17; ++n) {
       SCOPED_TRACE(n);
-      const Case c = MakeCase(n, static_cast<std::uint32_t>(n));
+      const ScoredProblem c = MakeScoredProblem(n, static_cast<std::uint32_t>(n));
       ExpectKnownPose(c);
       ExpectAsPrinted(c);
       ExpectRankAware(c);
@@ -249,7 +249,7 @@ TEST_F(ScoreTest, TolerancesAreBelow1e9AwayFromTheSingularSet) {
   // Else the tests above would test little: nearly all matches are held to 1e-9.
   int num_sharp = 0, num = 0;
   for (std::uint32_t trial = 1; trial <= 17; ++trial) {
-    const Case c = MakeCase(17, trial);
+    const ScoredProblem c = MakeScoredProblem(17, trial);
     for (const Expected& e : ExpectedAsPrinted(c)) {
       num_sharp += e.tolerance < 1e-9 ? 1 : 0;
       ++num;
@@ -260,7 +260,7 @@ TEST_F(ScoreTest, TolerancesAreBelow1e9AwayFromTheSingularSet) {
 
 TEST_F(ScoreTest, ScansTakeHugeCoordinates) {
   Run([] {
-    Case c = MakeCase(12, 100);
+    ScoredProblem c = MakeScoredProblem(12, 100);
     RandomStream rng({.seed = 1, .purpose = 2631});
     for (size_t i = 0; i < 12; i += 2) {
       c.problem.matches[i].x1_px *= 1e6 / 300.0 * rng.Uniform();
@@ -274,7 +274,7 @@ TEST_F(ScoreTest, ScansTakeHugeCoordinates) {
 
 TEST_F(ScoreTest, ACovarianceOfZeroLeavesTheKnownPose) {
   Run([] {
-    const Case c = MakeCase(13, 101, 0.0);
+    const ScoredProblem c = MakeScoredProblem(13, 101, 0.0);
     ExpectRankAware(c);
     // Q is regular only by the point's own noise; H has rank 4 where F's upper left 2x2 is regular.
     ExpectAsPrinted(c);
@@ -291,7 +291,7 @@ TEST_F(ScoreTest, ACovarianceOfZeroLeavesTheKnownPose) {
 }
 
 TEST_F(ScoreTest, AnInvalidCovarianceGivesNoModel) {
-  const Case c = MakeCase(8, 102);
+  const ScoredProblem c = MakeScoredProblem(8, 102);
   const MatchBlocks matches(c.problem);
   Matrix5d bad = c.pose_cov;
   bad(2, 2) = std::nan("");
@@ -301,7 +301,7 @@ TEST_F(ScoreTest, AnInvalidCovarianceGivesNoModel) {
 
 TEST_F(ScoreTest, EntropiesAreSummarisedAsOneByOne) {
   RandomStream rng({.seed = 1, .purpose = 2632});
-  const Case c = MakeCase(8, 103);
+  const ScoredProblem c = MakeScoredProblem(8, 103);
   for (const int count : {0, 1, 2, 3, 7, 8, 9, 511, 512, 513, 519, 520, 521, 2000}) {
     std::vector<double> spreads(static_cast<size_t>(count + 8),
                                 std::nan(""));  // what lies beyond is not read
@@ -327,7 +327,7 @@ TEST_F(ScoreTest, EntropiesAreSummarisedAsOneByOne) {
 
 TEST_F(ScoreTest, NegativeLogLikelihoodIsTheScalarSum) {
   for (const int n : {1, 2, 7, 8, 9, 17, 100}) {
-    const Case c = MakeCase(n, 200 + static_cast<std::uint32_t>(n));
+    const ScoredProblem c = MakeScoredProblem(n, 200 + static_cast<std::uint32_t>(n));
     const RankAwareTest test(c.Scalar(), c.problem.sigma_px);
     for (const double outlier_cost : {1.5, 7.0, 1e4}) {  // below log(2 pi) / 2 + ..., in between, never
       Thresholds thresholds;
@@ -368,7 +368,7 @@ TEST_F(ScoreTest, SamplesAreConsistentWhereEveryPointFits) {
     RandomStream rng({.seed = 1, .purpose = 2633});
     int num_consistent = 0, num_inconsistent = 0, num_ties = 0;
     for (std::uint32_t trial = 0; trial < 40; ++trial) {
-      const Case c = MakeCase(40, 300 + trial);
+      const ScoredProblem c = MakeScoredProblem(40, 300 + trial);
       std::array<Sample, kBlockSize> samples{};
       for (Sample& sample : samples) {
         sample = DrawSample(8, 26, rng);  // of the matches that are right

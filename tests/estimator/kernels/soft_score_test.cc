@@ -15,19 +15,19 @@ namespace {
 class SoftScoreOf : public OnEveryTarget {};
 
 constexpr double kScale = 2.5;
-constexpr int kSizes[] = {1, 7, 8, 9, 15, 16, 17, 31, 33, 200};
+constexpr int kSoftSizes[] = {1, 7, 8, 9, 15, 16, 17, 31, 33, 200};
 
-struct Case {
+struct SoftProblem {
   MotionProblem problem;
   RelativePose pose;
 };
-Case MakeCase(int num_matches) {
-  Case c;
+SoftProblem MakeSoftProblem(int num_matches) {
+  SoftProblem c;
   c.problem = TwoCameraProblem(num_matches, 0.5, 0.3, static_cast<std::uint32_t>(num_matches), &c.pose);
   return c;
 }
 
-double ScalarSum(const Case& c, int first, int end) {
+double ScalarSum(const SoftProblem& c, int first, int end) {
   double sum = 0.0;
   for (int i = first; i < end; ++i) {
     const Correspondence& match = c.problem.matches[static_cast<size_t>(i)];
@@ -36,7 +36,7 @@ double ScalarSum(const Case& c, int first, int end) {
   return sum;
 }
 
-double Sum(const Case& c, int first, int end, double length = 1.0) {
+double Sum(const SoftProblem& c, int first, int end, double length = 1.0) {
   const MatchBlocks matches(c.problem);
   double F[9];
   WriteRowMajor(length * matches.FundamentalFromEssential(EssentialFromPose(c.pose)), F);
@@ -45,8 +45,8 @@ double Sum(const Case& c, int first, int end, double length = 1.0) {
 
 // Single precision: coordinates of up to 1e3 sigma, so that residuals are good to some 1e-3 sigma.
 TEST_F(SoftScoreOf, EqualsTheSumInDoublePrecision) {
-  for (const int n : kSizes) {
-    const Case c = MakeCase(n);
+  for (const int n : kSoftSizes) {
+    const SoftProblem c = MakeSoftProblem(n);
     const double expected = ScalarSum(c, 0, n);
     ASSERT_GT(expected, 0.3 * n);
     Run([&] { EXPECT_NEAR(Sum(c, 0, n), expected, 2e-3 * n) << n; });
@@ -54,7 +54,7 @@ TEST_F(SoftScoreOf, EqualsTheSumInDoublePrecision) {
 }
 
 TEST_F(SoftScoreOf, TheLengthOfFMeansNothing) {
-  const Case c = MakeCase(33);
+  const SoftProblem c = MakeSoftProblem(33);
   const double expected = ScalarSum(c, 0, 33);
   Run([&] {
     for (const double length : {1e-12, -1.0, 1e12}) EXPECT_NEAR(Sum(c, 0, 33, length), expected, 0.05);
@@ -62,7 +62,7 @@ TEST_F(SoftScoreOf, TheLengthOfFMeansNothing) {
 }
 
 TEST_F(SoftScoreOf, PartsAddUpToTheWhole) {
-  const Case c = MakeCase(200);
+  const SoftProblem c = MakeSoftProblem(200);
   Run([&] {
     const double whole = Sum(c, 0, 200);
     for (const int at : {16, 64, 192}) EXPECT_NEAR(Sum(c, 0, at) + Sum(c, at, 200), whole, 1e-4);
@@ -72,8 +72,8 @@ TEST_F(SoftScoreOf, PartsAddUpToTheWhole) {
 }
 
 TEST_F(SoftScoreOf, IsTheSameBitsOnEveryInstructionSet) {
-  for (const int n : kSizes) {
-    const Case c = MakeCase(n);
+  for (const int n : kSoftSizes) {
+    const SoftProblem c = MakeSoftProblem(n);
     std::optional<double> first;
     Run([&] {
       const double sum = Sum(c, 0, n);
@@ -84,7 +84,7 @@ TEST_F(SoftScoreOf, IsTheSameBitsOnEveryInstructionSet) {
 }
 
 TEST_F(SoftScoreOf, OfNoModelIsZero) {
-  const Case c = MakeCase(20);
+  const SoftProblem c = MakeSoftProblem(20);
   Run([&] { EXPECT_EQ(Sum(c, 0, 20, 0.0), 0.0); });
 }
 

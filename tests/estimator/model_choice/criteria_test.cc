@@ -3,15 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "stats/constants.h"
 #include "stats/random.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // By hand, n = 4: rho sums to 0.5 + 1 + 3 + 4 = 8.5 where its bound is 4, and to 0.5 + 1 + 2 + 2 = 5.5 where
 // it is 2. ln 4 = 1.386294361, ln 16 = 2.772588722.

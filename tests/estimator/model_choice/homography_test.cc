@@ -10,6 +10,7 @@
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/refinement/rotation_equations.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "tests/test_support/family_problem.h"
 #include "tests/test_support/random_problem.h"
@@ -17,7 +18,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kThreshold = 13.8;
 
 // Matches of a plane across the view, n.X = 6 baselines, without noise.

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "stats/constants.h"
 #include "stats/moments.h"
 #include "tests/test_support/family_problem.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TwoViewFits FitTrial(const ProblemFamily& family, std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 98});

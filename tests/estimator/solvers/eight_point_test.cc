@@ -14,12 +14,12 @@
 namespace rcme {
 namespace {
 
-struct RayPair {
+struct EightRays {
   EightPoint::Rays first, second;
 };
 
-RayPair RaysOf(const MotionProblem& problem) {
-  RayPair rays;
+EightRays ComputeEightRays(const MotionProblem& problem) {
+  EightRays rays;
   for (size_t k = 0; k < 8; ++k) {
     rays.first[k] = problem.camera1.Ray(problem.matches[k].x1_px);
     rays.second[k] = problem.camera2.Ray(problem.matches[k].x2_px);
@@ -28,17 +28,17 @@ RayPair RaysOf(const MotionProblem& problem) {
 }
 
 std::optional<LinearModel> Solve(const MotionProblem& problem) {
-  const RayPair rays = RaysOf(problem);
+  const EightRays rays = ComputeEightRays(problem);
   return EightPoint::Solve(rays.first, rays.second);
 }
 
 // How far the two lines through a and b are apart (unit vectors, either sign).
-double DistanceOfLines(const Vector9d& a, const Vector9d& b) {
+double DistanceOfNullVectors(const Vector9d& a, const Vector9d& b) {
   return std::min((a - b).norm(), (a + b).norm());
 }
 
 // Smallest over largest singular value of M: the sample's conditioning.
-double ReciprocalCondition(const RayPair& rays) {
+double ReciprocalCondition(const EightRays& rays) {
   Eigen::Matrix<double, 8, 9> M;
   for (int k = 0; k < 8; ++k) {
     M.row(k) =
@@ -50,7 +50,7 @@ double ReciprocalCondition(const RayPair& rays) {
 
 // Hartley's way (Hartley & Zisserman, algorithm 11.1 up to rank 2): centroid to zero, mean distance sqrt(2),
 // SVD.
-Vector9d NullVectorInHartleyCoordinates(const RayPair& rays) {
+Vector9d NullVectorInHartleyCoordinates(const EightRays& rays) {
   const auto normalization = [](const EightPoint::Rays& points) {
     Eigen::Vector2d centroid = Eigen::Vector2d::Zero();
     for (const Eigen::Vector3d& point : points) centroid += point.head<2>() / 8.0;
@@ -86,7 +86,8 @@ TEST(EightPoint, RecoversTheEssentialMatrixFromExactMatches) {
     ASSERT_TRUE(model);
     EXPECT_NEAR(model->f.norm(), 1.0, 1e-14);
     const Vector9d truth = Vectorize(EssentialFromPose(random.pose_true)) / std::sqrt(2.0);
-    EXPECT_LT(DistanceOfLines(model->f, truth), 1e-14 / ReciprocalCondition(RaysOf(random.problem)));
+    EXPECT_LT(DistanceOfNullVectors(model->f, truth),
+              1e-14 / ReciprocalCondition(ComputeEightRays(random.problem)));
   }
 }
 
@@ -96,10 +97,10 @@ TEST(EightPoint, NullVectorIsHartleys) {
   for (int i = 0; i < 200; ++i) {
     RandomProblem random = MakeRandomProblem(rng, {.max_rotation_deg = 40.0});
     AddNoise(1.0, rng, &random.problem);
-    const RayPair rays = RaysOf(random.problem);
+    const EightRays rays = ComputeEightRays(random.problem);
     const std::optional<LinearModel> model = EightPoint::Solve(rays.first, rays.second);
     ASSERT_TRUE(model);
-    EXPECT_LT(DistanceOfLines(model->f, NullVectorInHartleyCoordinates(rays)),
+    EXPECT_LT(DistanceOfNullVectors(model->f, NullVectorInHartleyCoordinates(rays)),
               1e-13 / ReciprocalCondition(rays));
   }
 }
@@ -123,7 +124,7 @@ TEST(EightPoint, GInvertsTheConstraintsOnTheComplement) {
   for (int i = 0; i < 200; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(1.0, rng, &random.problem);
-    const RayPair rays = RaysOf(random.problem);
+    const EightRays rays = ComputeEightRays(random.problem);
     const std::optional<LinearModel> model = EightPoint::Solve(rays.first, rays.second);
     ASSERT_TRUE(model);
     Eigen::Matrix<double, 8, 9> M;
@@ -145,7 +146,7 @@ TEST(EightPoint, GHasANumericTwin) {
   for (int i = 0; i < 100; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(1.0, rng, &random.problem);
-    const double condition = ReciprocalCondition(RaysOf(random.problem));
+    const double condition = ReciprocalCondition(ComputeEightRays(random.problem));
     if (condition < 3e-4) continue;  // there the step would have to be too small for double precision
     const std::optional<LinearModel> model = Solve(random.problem);
     ASSERT_TRUE(model);

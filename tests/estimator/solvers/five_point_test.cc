@@ -19,12 +19,12 @@ namespace {
 
 constexpr RandomProblemOptions kFiveMatches = {.num_matches = 5, .max_rotation_deg = 40.0};
 
-struct RayPair {
+struct FiveRays {
   FivePoint::Rays first, second;
 };
 
-RayPair RaysOf(const MotionProblem& problem) {
-  RayPair rays;
+FiveRays ComputeFiveRays(const MotionProblem& problem) {
+  FiveRays rays;
   for (size_t k = 0; k < 5; ++k) {
     rays.first[k] = problem.camera1.Ray(problem.matches[k].x1_px);
     rays.second[k] = problem.camera2.Ray(problem.matches[k].x2_px);
@@ -32,14 +32,14 @@ RayPair RaysOf(const MotionProblem& problem) {
   return rays;
 }
 
-std::vector<Eigen::Matrix3d> Solve(const RayPair& rays) {
+std::vector<Eigen::Matrix3d> SolveFive(const FiveRays& rays) {
   const FivePoint::Solutions solutions = FivePoint::Solve(rays.first, rays.second);
   return {solutions.E.begin(), solutions.E.begin() + solutions.count};
 }
 
 // The stacked solutions of another implementation (OpenCV: Nister's polynomial, its roots by Durand and
 // Kerner), given Frobenius norm sqrt(2).
-std::vector<Eigen::Matrix3d> SolveByOpenCv(const RayPair& rays) {
+std::vector<Eigen::Matrix3d> SolveByOpenCv(const FiveRays& rays) {
   cv::Mat points1(5, 2, CV_64F), points2(5, 2, CV_64F);
   for (int k = 0; k < 5; ++k) {
     for (int i = 0; i < 2; ++i) {
@@ -79,7 +79,7 @@ double DistanceOfSets(const std::vector<Eigen::Matrix3d>& a, const std::vector<E
 
 // Everything asked of a solution, 16 numbers: five epipolar equations of unit rays, the trace constraint, det
 // E, and the norm.
-Eigen::VectorXd ConstraintsOn(const Eigen::Matrix3d& E, const RayPair& rays) {
+Eigen::VectorXd ConstraintsOn(const Eigen::Matrix3d& E, const FiveRays& rays) {
   Eigen::VectorXd values(16);
   for (int k = 0; k < 5; ++k) {
     const size_t i = static_cast<size_t>(k);
@@ -93,7 +93,7 @@ Eigen::VectorXd ConstraintsOn(const Eigen::Matrix3d& E, const RayPair& rays) {
 }
 
 // Gauss and Newton on those 16 numbers over the nine entries of E. The numeric Jacobian of cubics is exact.
-Eigen::Matrix3d Refine(const Eigen::Matrix3d& E, const RayPair& rays) {
+Eigen::Matrix3d Refine(const Eigen::Matrix3d& E, const FiveRays& rays) {
   const auto constraints = [&](const Eigen::VectorXd& e) {
     return ConstraintsOn(Matricize(Vector9d(e)), rays);
   };
@@ -110,8 +110,8 @@ TEST(FivePoint, EverySolutionMeetsTheConstraints) {
   for (int i = 0; i < 2000; ++i) {
     RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
     AddNoise(0.5, rng, &random.problem);
-    const RayPair rays = RaysOf(random.problem);
-    for (const Eigen::Matrix3d& E : Solve(rays)) {
+    const FiveRays rays = ComputeFiveRays(random.problem);
+    for (const Eigen::Matrix3d& E : SolveFive(rays)) {
       EXPECT_LT(ConstraintsOn(E, rays).cwiseAbs().maxCoeff(), 1e-14);
       ++num_solutions;
     }
@@ -127,7 +127,7 @@ TEST(FivePoint, SolutionsAreDifferentAndComeInPairs) {
   for (int i = 0; i < 2000; ++i) {
     RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
     AddNoise(0.5, rng, &random.problem);
-    const std::vector<Eigen::Matrix3d> solutions = Solve(RaysOf(random.problem));
+    const std::vector<Eigen::Matrix3d> solutions = SolveFive(ComputeFiveRays(random.problem));
     num_odd += static_cast<int>(solutions.size() % 2);
     largest = std::max(largest, static_cast<int>(solutions.size()));
     for (size_t k = 1; k < solutions.size(); ++k) {
@@ -148,7 +148,7 @@ TEST(FivePoint, TheTruthIsAmongTheSolutionsOfExactMatches) {
   for (int i = 0; i < 5000; ++i) {
     const RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
     distances.push_back(
-        DistanceToNearest(EssentialFromPose(random.pose_true), Solve(RaysOf(random.problem))));
+        DistanceToNearest(EssentialFromPose(random.pose_true), SolveFive(ComputeFiveRays(random.problem))));
   }
   std::sort(distances.begin(), distances.end());
   RecordProperty("median", testing::PrintToString(distances[2500]));
@@ -170,8 +170,8 @@ TEST(FivePoint, SolutionsAreOpenCvs) {
   for (int i = 0; i < 5000; ++i) {
     RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
     if (i % 2 == 1) AddNoise(0.5, rng, &random.problem);
-    const RayPair rays = RaysOf(random.problem);
-    const std::vector<Eigen::Matrix3d> ours = Solve(rays), theirs = SolveByOpenCv(rays);
+    const FiveRays rays = ComputeFiveRays(random.problem);
+    const std::vector<Eigen::Matrix3d> ours = SolveFive(rays), theirs = SolveByOpenCv(rays);
     const bool equal = DistanceOfSets(ours, theirs) < 1e-6;
     agree.Add(equal);
     if (equal) {
@@ -210,7 +210,9 @@ TEST(FivePoint, PlanarScenesHaveTheTruthAmongTheirSolutions) {
       random.problem.matches[k] = ProjectToBoth(8.0 / normal.dot(ray) * ray, random.pose_true,
                                                 random.problem.camera1, random.problem.camera2);
     }
-    EXPECT_LT(DistanceToNearest(EssentialFromPose(random.pose_true), Solve(RaysOf(random.problem))), 1e-9);
+    EXPECT_LT(
+        DistanceToNearest(EssentialFromPose(random.pose_true), SolveFive(ComputeFiveRays(random.problem))),
+        1e-9);
   }
 }
 
@@ -219,13 +221,13 @@ TEST(FivePoint, LengthsAndOrderOfTheRaysDoNotMatter) {
   for (int i = 0; i < 100; ++i) {
     RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
     AddNoise(0.5, rng, &random.problem);
-    const RayPair rays = RaysOf(random.problem);
-    RayPair other;
+    const FiveRays rays = ComputeFiveRays(random.problem);
+    FiveRays other;
     for (size_t k = 0; k < 5; ++k) {
       other.first[k] = rng.Uniform(0.01, 100.0) * rays.first[4 - k];
       other.second[k] = -rng.Uniform(0.01, 100.0) * rays.second[4 - k];
     }
-    EXPECT_LT(DistanceOfSets(Solve(rays), Solve(other)), 1e-9);
+    EXPECT_LT(DistanceOfSets(SolveFive(rays), SolveFive(other)), 1e-9);
   }
 }
 
@@ -234,10 +236,10 @@ TEST(FivePoint, FewerThanFiveDifferentPointsAreDegenerate) {
   for (int i = 0; i < 50; ++i) {
     RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
     AddNoise(1.0, rng, &random.problem);
-    RayPair rays = RaysOf(random.problem);
+    FiveRays rays = ComputeFiveRays(random.problem);
     rays.first[3] = rays.first[1];
     rays.second[3] = rays.second[1];
-    EXPECT_TRUE(Solve(rays).empty());
+    EXPECT_TRUE(SolveFive(rays).empty());
   }
 }
 
@@ -250,7 +252,7 @@ TEST(FivePoint, PointsOnOneSpaceLineAreDegenerate) {
       random.problem.matches[static_cast<size_t>(k)] = ProjectToBoth(
           a + k / 4.0 * (b - a), random.pose_true, random.problem.camera1, random.problem.camera2);
     }
-    EXPECT_TRUE(Solve(RaysOf(random.problem)).empty());
+    EXPECT_TRUE(SolveFive(ComputeFiveRays(random.problem)).empty());
   }
 }
 
@@ -259,25 +261,25 @@ TEST(FivePoint, PureRotationIsDegenerate) {
   RandomStream rng({.seed = 1, .purpose = 238});
   for (int i = 0; i < 300; ++i) {
     const RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
-    RayPair rays = RaysOf(random.problem);
+    FiveRays rays = ComputeFiveRays(random.problem);
     for (size_t k = 0; k < 5; ++k) rays.second[k] = random.pose_true.R * rays.first[k];
-    EXPECT_TRUE(Solve(rays).empty());
+    EXPECT_TRUE(SolveFive(rays).empty());
   }
 }
 
 TEST(FivePoint, BadNumbersGiveNoSolution) {
   RandomStream rng({.seed = 1, .purpose = 239});
   const RandomProblem random = MakeRandomProblem(rng, kFiveMatches);
-  ASSERT_FALSE(Solve(RaysOf(random.problem)).empty());
+  ASSERT_FALSE(SolveFive(ComputeFiveRays(random.problem)).empty());
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                            std::numeric_limits<double>::max()}) {
-    RayPair rays = RaysOf(random.problem);
+    FiveRays rays = ComputeFiveRays(random.problem);
     rays.second[2].y() = bad;
-    EXPECT_TRUE(Solve(rays).empty()) << bad;
+    EXPECT_TRUE(SolveFive(rays).empty()) << bad;
   }
-  RayPair rays = RaysOf(random.problem);
+  FiveRays rays = ComputeFiveRays(random.problem);
   rays.first[4].setZero();
-  EXPECT_TRUE(Solve(rays).empty());
+  EXPECT_TRUE(SolveFive(rays).empty());
 }
 
 }  // namespace

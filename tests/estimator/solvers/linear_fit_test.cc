@@ -20,7 +20,7 @@ struct Rays {
   std::vector<Eigen::Vector3d> first, second;
 };
 
-Rays RaysOf(const MotionProblem& problem) {
+Rays ComputeRays(const MotionProblem& problem) {
   Rays rays;
   for (const Correspondence& match : problem.matches) {
     rays.first.push_back(problem.camera1.Ray(match.x1_px));
@@ -30,7 +30,7 @@ Rays RaysOf(const MotionProblem& problem) {
 }
 
 std::optional<LinearFit> Fit(const MotionProblem& problem) {
-  const Rays rays = RaysOf(problem);
+  const Rays rays = ComputeRays(problem);
   return FitLinear(rays.first, rays.second);
 }
 
@@ -56,7 +56,7 @@ TEST(FitLinear, EqualsEightPointAtEight) {
   for (int i = 0; i < 200; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(1.0, rng, &random.problem);
-    const Rays rays = RaysOf(random.problem);
+    const Rays rays = ComputeRays(random.problem);
     EightPoint::Rays first, second;
     std::copy_n(rays.first.begin(), 8, first.begin());
     std::copy_n(rays.second.begin(), 8, second.begin());
@@ -79,7 +79,7 @@ TEST(FitLinear, IsTheSmallestEigenvectorAndThePseudoInverse) {
       RandomProblem random = MakeRandomProblem(rng, {.num_matches = m});
       AddNoise(1.0, rng, &random.problem);
       const LinearFit fit = Fit(random.problem).value();
-      const Eigen::MatrixXd M = MatrixOf(RaysOf(random.problem));
+      const Eigen::MatrixXd M = MatrixOf(ComputeRays(random.problem));
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M.transpose() * M);
       const double tolerance = 1e-13 / (fit.conditioning * fit.conditioning);
       EXPECT_LT(DistanceOfLines(fit.f, eigen.eigenvectors().col(0)), tolerance);

@@ -54,12 +54,12 @@ Sample FirstMatches() {
 }
 
 template <typename Solver>
-struct RayPair {
+struct SampleRays {
   typename Solver::Rays first, second;
 };
 template <typename Solver>
-RayPair<Solver> RaysOf(const MotionProblem& problem) {
-  RayPair<Solver> rays;
+SampleRays<Solver> ComputeSampleRays(const MotionProblem& problem) {
+  SampleRays<Solver> rays;
   for (size_t k = 0; k < rays.first.size(); ++k) {
     rays.first[k] = problem.camera1.Ray(problem.matches[k].x1_px);
     rays.second[k] = problem.camera2.Ray(problem.matches[k].x2_px);
@@ -104,7 +104,7 @@ TYPED_TEST(MinimalSolverTest, ModelsFitTheirSampleAndTheTruthIsAmongThem) {
   int num_near = 0;
   for (int trial = 0; trial < 500; ++trial) {
     const RandomProblem random = MakeProblemFor<Solver>(rng, Solver::kSampleSize);
-    const RayPair<Solver> rays = RaysOf<Solver>(random.problem);
+    const SampleRays<Solver> rays = ComputeSampleRays<Solver>(random.problem);
     const auto C = ConstraintRows(rays.first, rays.second);
     const Vector9d f_true = Vectorize(EssentialFromPose(random.pose_true)) / std::sqrt(2.0);
     double nearest = 2.0;
@@ -129,7 +129,7 @@ TYPED_TEST(MinimalSolverTest, GHasANumericTwin) {
   for (int trial = 0; trial < 40; ++trial) {
     RandomProblem random = MakeProblemFor<Solver>(rng, m);
     if (!std::is_same_v<Solver, OnePoint>) AddNoise(0.5, rng, &random.problem);
-    const RayPair<Solver> rays = RaysOf<Solver>(random.problem);
+    const SampleRays<Solver> rays = ComputeSampleRays<Solver>(random.problem);
     for (const auto& model : Solver::FindModels(rays.first, rays.second)) {
       if (model.G.norm() > 3000.0) continue;  // no digits to compare
       const auto f_of = [&](const Eigen::VectorXd& n) -> Eigen::VectorXd {
@@ -223,12 +223,12 @@ TYPED_TEST(MinimalSolverTest, BadNumbersAndRepeatedPointsGiveNoModel) {
   using Solver = TypeParam;
   RandomStream rng({.seed = 1, .purpose = 2704});
   const RandomProblem random = MakeProblemFor<Solver>(rng, Solver::kSampleSize);
-  const RayPair<Solver> good = RaysOf<Solver>(random.problem);
+  const SampleRays<Solver> good = ComputeSampleRays<Solver>(random.problem);
   EXPECT_GT(Solver::FindModels(good.first, good.second).count, 0);
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (size_t k = 0; k < good.first.size(); ++k) {
-      RayPair<Solver> rays = good;
+      SampleRays<Solver> rays = good;
       rays.first[k].x() = bad;
       EXPECT_EQ(Solver::FindModels(rays.first, rays.second).count, 0);
       rays = good;
@@ -237,7 +237,7 @@ TYPED_TEST(MinimalSolverTest, BadNumbersAndRepeatedPointsGiveNoModel) {
     }
   }
   if (Solver::kSampleSize == 1) return;
-  RayPair<Solver> twice = good;
+  SampleRays<Solver> twice = good;
   twice.first.back() = twice.first[0];
   twice.second.back() = twice.second[0];
   EXPECT_EQ(Solver::FindModels(twice.first, twice.second).count, 0);

@@ -17,7 +17,7 @@
 namespace rcme {
 namespace {
 
-std::string TunedYaml() {
+std::string TunedFileYaml() {
   return "# comments\n"
          "name: rcme\n"
          "label: rcme_tuned\n"
@@ -28,14 +28,14 @@ std::string TunedYaml() {
          "provenance: {study: tune_mu_lambda, seed: 1, verified: \"3 of 400: 0.0075 [0.0015, 0.0218]\"}\n";
 }
 
-std::string Edited(const std::string& from, const std::string& to) {
-  std::string yaml = TunedYaml();
+std::string EditedFile(const std::string& from, const std::string& to) {
+  std::string yaml = TunedFileYaml();
   const size_t at = yaml.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return yaml.replace(at, from.size(), to);
 }
 
-testing::AssertionResult Refuses(const std::string& yaml, std::vector<std::string> fragments) {
+testing::AssertionResult RefusesFile(const std::string& yaml, std::vector<std::string> fragments) {
   fragments.push_back("bad.yaml:");
   return ThrowsInputError([&] { ParseEstimatorFile(yaml, "bad.yaml"); }, fragments);
 }
@@ -47,7 +47,7 @@ void ExpectSame(const EstimatorSpec& a, const EstimatorSpec& b) {
 }
 
 TEST(ParseEstimatorFile, ReadsEveryPart) {
-  const EstimatorSpec spec = ParseEstimatorFile(TunedYaml(), "tuned.yaml");
+  const EstimatorSpec spec = ParseEstimatorFile(TunedFileYaml(), "tuned.yaml");
   EXPECT_EQ(spec.name, "rcme");
   EXPECT_EQ(spec.label, "rcme_tuned");
   EXPECT_EQ(OptionOf(spec, "reading"), "rank_aware");
@@ -63,36 +63,37 @@ TEST(ParseEstimatorFile, FillsInWhatIsLeftOut) {
 }
 
 TEST(ParseEstimatorFileErrors, NameLineKeyAndWhatIsAllowed) {
+  EXPECT_TRUE(RefusesFile(EditedFile("label:", "lable:"),
+                          {":3:", "'lable'", "label, name, options, process, provenance"}));
+  EXPECT_TRUE(RefusesFile(EditedFile("label: rcme_tuned", "name: rcme"), {":3:", "'name'", "twice"}));
   EXPECT_TRUE(
-      Refuses(Edited("label:", "lable:"), {":3:", "'lable'", "label, name, options, process, provenance"}));
-  EXPECT_TRUE(Refuses(Edited("label: rcme_tuned", "name: rcme"), {":3:", "'name'", "twice"}));
-  EXPECT_TRUE(Refuses(Edited("label: rcme_tuned", "label: [a]"), {":3:", "label", "one value is needed"}));
-  EXPECT_TRUE(Refuses(Edited("name: rcme", "name: magsac"), {"'magsac'", "standard, prcme, rcme"}));
-  EXPECT_TRUE(Refuses(Edited("name: rcme\n", ""), {"estimator: key 'name' is missing"}));
-  EXPECT_TRUE(Refuses(Edited("mu: 5.25", "mus: 5.25"),
-                      {":6:", "estimator rcme has no option 'mus'", "its options", "lambda"}));
-  EXPECT_TRUE(
-      Refuses(Edited("mu: 5.25", "mu: .nan"), {":6:", "mu", "'.nan'", "a number in [-1000, 1000] or auto"}));
-  EXPECT_TRUE(Refuses("name: standard\noptions:\n  mu: 1\n",
-                      {":3:", "estimator standard has no option 'mu'", "its options", "lambda"}));
-  EXPECT_TRUE(Refuses(Edited("lambda: 0.6", "mu: 1"), {":7:", "'mu'", "twice"}));
-  EXPECT_TRUE(Refuses(Edited("seed: 1", "seed: [1]"), {":8:", "seed", "one value is needed"}));
-  EXPECT_TRUE(Refuses("name: rcme\nprovenance: tuned\n", {":2:", "provenance", "a map"}));
-  EXPECT_TRUE(Refuses("name: rcme\noptions: {selection: predictive_likelihood}\n",
-                      {":1:", "selection", "needs reading: rank_aware"}));
+      RefusesFile(EditedFile("label: rcme_tuned", "label: [a]"), {":3:", "label", "one value is needed"}));
+  EXPECT_TRUE(RefusesFile(EditedFile("name: rcme", "name: magsac"), {"'magsac'", "standard, prcme, rcme"}));
+  EXPECT_TRUE(RefusesFile(EditedFile("name: rcme\n", ""), {"estimator: key 'name' is missing"}));
+  EXPECT_TRUE(RefusesFile(EditedFile("mu: 5.25", "mus: 5.25"),
+                          {":6:", "estimator rcme has no option 'mus'", "its options", "lambda"}));
+  EXPECT_TRUE(RefusesFile(EditedFile("mu: 5.25", "mu: .nan"),
+                          {":6:", "mu", "'.nan'", "a number in [-1000, 1000] or auto"}));
+  EXPECT_TRUE(RefusesFile("name: standard\noptions:\n  mu: 1\n",
+                          {":3:", "estimator standard has no option 'mu'", "its options", "lambda"}));
+  EXPECT_TRUE(RefusesFile(EditedFile("lambda: 0.6", "mu: 1"), {":7:", "'mu'", "twice"}));
+  EXPECT_TRUE(RefusesFile(EditedFile("seed: 1", "seed: [1]"), {":8:", "seed", "one value is needed"}));
+  EXPECT_TRUE(RefusesFile("name: rcme\nprovenance: tuned\n", {":2:", "provenance", "a map"}));
+  EXPECT_TRUE(RefusesFile("name: rcme\noptions: {selection: predictive_likelihood}\n",
+                          {":1:", "selection", "needs reading: rank_aware"}));
   // One step only: a file names no other file.
-  EXPECT_TRUE(Refuses("file: other.yaml\n", {":1:", "'file'", "known keys"}));
+  EXPECT_TRUE(RefusesFile("file: other.yaml\n", {":1:", "'file'", "known keys"}));
 }
 
 TEST(ParseEstimatorFileErrors, WhatIsNoEstimator) {
-  EXPECT_TRUE(Refuses("", {":1:", "estimator", "a map"}));
-  EXPECT_TRUE(Refuses("- {name: rcme}\n", {":1:", "estimator", "a map"}));
-  EXPECT_TRUE(Refuses(SmallStudyYaml(), {":2:", "unknown key 'seed'"}));
-  EXPECT_TRUE(Refuses("name: [rcme\n", {"not valid YAML"}));
-  EXPECT_TRUE(Refuses("name: rcme\n---\nname: rcme\n", {"more than one YAML document"}));
-  EXPECT_TRUE(Refuses("options: " + std::string(100'000, '['), {"deeper than 20 levels"}));
+  EXPECT_TRUE(RefusesFile("", {":1:", "estimator", "a map"}));
+  EXPECT_TRUE(RefusesFile("- {name: rcme}\n", {":1:", "estimator", "a map"}));
+  EXPECT_TRUE(RefusesFile(SmallStudyYaml(), {":2:", "unknown key 'seed'"}));
+  EXPECT_TRUE(RefusesFile("name: [rcme\n", {"not valid YAML"}));
+  EXPECT_TRUE(RefusesFile("name: rcme\n---\nname: rcme\n", {"more than one YAML document"}));
+  EXPECT_TRUE(RefusesFile("options: " + std::string(100'000, '['), {"deeper than 20 levels"}));
   EXPECT_TRUE(
-      Refuses("name: rcme\n#" + std::string(2'000'000, 'x'), {"larger than an estimator file can be"}));
+      RefusesFile("name: rcme\n#" + std::string(2'000'000, 'x'), {"larger than an estimator file can be"}));
 }
 
 TEST(LoadEstimatorFile, RefusesWhatIsNoFile) {
@@ -107,12 +108,12 @@ TEST(LoadEstimatorFile, RefusesWhatIsNoFile) {
   if (std::filesystem::exists("/dev/zero")) {  // endless
     EXPECT_TRUE(refuses("/dev/zero", {"/dev/zero: is a device, not an estimator file"}));
   }
-  const std::string path = folder.Write("bad.yaml", Edited("lambda: 0.6", "lambda: 2"));
+  const std::string path = folder.Write("bad.yaml", EditedFile("lambda: 0.6", "lambda: 2"));
   EXPECT_TRUE(refuses(path, {path + ":7: lambda", "'2'", "a number in [0, 1]"}));
 }
 
 TEST(EstimatorFileText, RoundTrip) {
-  const EstimatorSpec spec = ParseEstimatorFile(TunedYaml(), "tuned.yaml");
+  const EstimatorSpec spec = ParseEstimatorFile(TunedFileYaml(), "tuned.yaml");
   const std::string text = EstimatorFileText(spec, {{"study", "tune_mu_lambda"}, {"seed", "1"}});
   ExpectSame(ParseEstimatorFile(text, "again.yaml"), spec);
   EXPECT_TRUE(text.starts_with("# "));
@@ -125,7 +126,7 @@ TEST(EstimatorFileText, RoundTrip) {
 }
 
 TEST(EstimatorFileText, RoundTripOfAwkwardText) {
-  EstimatorSpec spec = ParseEstimatorFile(TunedYaml(), "tuned.yaml");
+  EstimatorSpec spec = ParseEstimatorFile(TunedFileYaml(), "tuned.yaml");
   const std::vector<std::string> texts = {
       "a: b, \"c\" #d \xC3\xA4 - e", "~", "", " x", "1.0", "{a: b}", "---"};
   Provenance provenance;
@@ -152,8 +153,8 @@ class EstimatorFileInStudy : public testing::Test {
   }
 
   const TempFolder folder_;
-  const std::string file_ = folder_.Write("tuned.yaml", TunedYaml());
-  const EstimatorSpec tuned_ = ParseEstimatorFile(TunedYaml(), "tuned.yaml");
+  const std::string file_ = folder_.Write("tuned.yaml", TunedFileYaml());
+  const EstimatorSpec tuned_ = ParseEstimatorFile(TunedFileYaml(), "tuned.yaml");
 };
 
 TEST_F(EstimatorFileInStudy, IsReadFromTheStudysFolder) {
@@ -193,7 +194,7 @@ TEST_F(EstimatorFileInStudy, Errors) {
                            {":3:", "unknown key 'options'", "file, label"}));
   EXPECT_TRUE(RefusesStudy("  - {file: tuned.yaml}\n  - {file: tuned.yaml}\n",
                            {":4:", "label 'rcme_tuned'", "twice"}));
-  folder_.Write("tuned.yaml", Edited("lambda: 0.6", "lambda: 2"));
+  folder_.Write("tuned.yaml", EditedFile("lambda: 0.6", "lambda: 2"));
   EXPECT_TRUE(RefusesStudy("  - {name: standard}\n  - {file: tuned.yaml}\n",
                            {"study.yaml:4:", "tuned.yaml:7: lambda", "'2'", "a number in [0, 1]"}));
 }

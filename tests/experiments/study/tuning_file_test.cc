@@ -15,7 +15,7 @@ namespace {
 using Levels = std::vector<std::string>;
 
 // The small study with a tuning; the block begins in line 10, the options in line 15.
-std::string TunedYaml() {
+std::string TuningYaml() {
   return SmallStudyYaml() +
          "tune:\n"
          "  estimator: ours\n"
@@ -28,8 +28,8 @@ std::string TunedYaml() {
          "    selection: [mean_entropy, predictive_likelihood]\n";
 }
 
-std::string Edited(const std::string& from, const std::string& to) {
-  std::string yaml = TunedYaml();
+std::string EditedTuning(const std::string& from, const std::string& to) {
+  std::string yaml = TuningYaml();
   const size_t at = yaml.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return yaml.replace(at, from.size(), to);
@@ -38,21 +38,21 @@ std::string Edited(const std::string& from, const std::string& to) {
 const std::string kSteps = "{from: 0, to: 1.2, step: 0.3}";
 
 Levels LevelsOfMu(const std::string& given) {
-  return ParseStudy(Edited(kSteps, given), "levels.yaml").tuning->options[0].levels;
+  return ParseStudy(EditedTuning(kSteps, given), "levels.yaml").tuning->options[0].levels;
 }
 
-testing::AssertionResult Refuses(const std::string& yaml, std::vector<std::string> fragments) {
+testing::AssertionResult RefusesTuning(const std::string& yaml, std::vector<std::string> fragments) {
   fragments.push_back("bad.yaml:");
   return ThrowsInputError([&] { ParseStudy(yaml, "bad.yaml"); }, fragments);
 }
 
 testing::AssertionResult RefusesLevels(const std::string& given, std::vector<std::string> fragments) {
   fragments.push_back("bad.yaml:16: ");
-  return Refuses(Edited(kSteps, given), fragments);
+  return RefusesTuning(EditedTuning(kSteps, given), fragments);
 }
 
 TEST(TuneBlock, ReadsEveryPart) {
-  const Study study = ParseStudy(TunedYaml(), "tuned.yaml");
+  const Study study = ParseStudy(TuningYaml(), "tuned.yaml");
   ASSERT_TRUE(study.tuning.has_value());
   const Tuning& tuning = *study.tuning;
   EXPECT_EQ(tuning.estimator, "ours");
@@ -72,7 +72,7 @@ TEST(TuneBlock, ReadsEveryPart) {
 }
 
 TEST(TuneBlock, MayComeBeforeTheEstimators) {
-  const std::string block = TunedYaml().substr(SmallStudyYaml().size());
+  const std::string block = TuningYaml().substr(SmallStudyYaml().size());
   EXPECT_EQ(ParseStudy(block + SmallStudyYaml(), "a.yaml").tuning->estimator, "ours");
 }
 
@@ -100,20 +100,20 @@ TEST(TuneBlock, LevelsByStepsHaveNoRoundingNoise) {
 
 TEST(TuneBlock, LevelsOfAWholeNumberAndWords) {
   const Study study = ParseStudy(
-      Edited("mu: " + kSteps, "num_iterations: {from: 50, to: 200, step: 50}\n    mu: [auto, 1e0]"),
+      EditedTuning("mu: " + kSteps, "num_iterations: {from: 50, to: 200, step: 50}\n    mu: [auto, 1e0]"),
       "a.yaml");
   EXPECT_EQ(study.tuning->options[0].levels, (Levels{"50", "100", "150", "200"}));
   EXPECT_EQ(study.tuning->options[1].levels, (Levels{"auto", "1"}));
 }
 
 TEST(TuneBlock, IsNoPartOfTheIdentity) {
-  const StudyPlan tuned = MakePlan(ParseStudy(TunedYaml(), "small.yaml")), plain = MakePlan(SmallStudy());
+  const StudyPlan tuned = MakePlan(ParseStudy(TuningYaml(), "small.yaml")), plain = MakePlan(SmallStudy());
   EXPECT_EQ(tuned.identity, plain.identity);
   EXPECT_EQ(tuned.study_yaml, plain.study_yaml);
 }
 
 TEST(TuneBlock, SettingsInOrder) {
-  const Tuning tuning = *ParseStudy(TunedYaml(), "small.yaml").tuning;
+  const Tuning tuning = *ParseStudy(TuningYaml(), "small.yaml").tuning;
   ASSERT_EQ(NumSettings(tuning), 30u);
   EXPECT_EQ(LevelsOfSetting(tuning, 0), (Levels{"0", "0.5", "mean_entropy"}));
   EXPECT_EQ(LevelsOfSetting(tuning, 1), (Levels{"0", "0.5", "predictive_likelihood"}));
@@ -127,35 +127,38 @@ TEST(TuneBlock, SettingsInOrder) {
 }
 
 TEST(TuneBlockErrors, Keys) {
-  EXPECT_TRUE(Refuses(Edited("at_most:", "atmost:"),
-                      {":13:", "tune", "'atmost'", "known keys", "at_most", "options"}));
-  EXPECT_TRUE(Refuses(Edited("explore: 20", "at_most: 0.2"), {":14:", "tune", "'at_most'", "twice"}));
-  EXPECT_TRUE(Refuses(Edited("  estimator: ours\n", ""), {"tune: key 'estimator' is missing"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("at_most:", "atmost:"),
+                            {":13:", "tune", "'atmost'", "known keys", "at_most", "options"}));
   EXPECT_TRUE(
-      Refuses(SmallStudyYaml() + "tune: {estimator: ours}\n", {":10:", "tune: key 'options' is missing"}));
-  EXPECT_TRUE(
-      Refuses(SmallStudyYaml() + "tune: {estimator: ours, options: {}}\n", {":10:", "at least one option"}));
-  EXPECT_TRUE(Refuses(SmallStudyYaml() + "tune: {estimator: ours, options: [mu]}\n",
-                      {":10:", "tune: options", "a map"}));
-  EXPECT_TRUE(Refuses(SmallStudyYaml() + "tune: fast\n", {":10:", "tune", "a map"}));
-  EXPECT_TRUE(Refuses(SmallStudyYaml() + "tune:\n", {":10:", "the value of 'tune' is missing"}));
-  EXPECT_TRUE(
-      Refuses(Edited("mu: " + kSteps, "mus: [1]"), {":16:", "no option 'mus'", "its options", "lambda"}));
-  EXPECT_TRUE(Refuses(Edited("lambda: [0.5, 0.8, 1.0]", "mu: [1]"), {":17:", "'mu'", "twice"}));
+      RefusesTuning(EditedTuning("explore: 20", "at_most: 0.2"), {":14:", "tune", "'at_most'", "twice"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("  estimator: ours\n", ""), {"tune: key 'estimator' is missing"}));
+  EXPECT_TRUE(RefusesTuning(SmallStudyYaml() + "tune: {estimator: ours}\n",
+                            {":10:", "tune: key 'options' is missing"}));
+  EXPECT_TRUE(RefusesTuning(SmallStudyYaml() + "tune: {estimator: ours, options: {}}\n",
+                            {":10:", "at least one option"}));
+  EXPECT_TRUE(RefusesTuning(SmallStudyYaml() + "tune: {estimator: ours, options: [mu]}\n",
+                            {":10:", "tune: options", "a map"}));
+  EXPECT_TRUE(RefusesTuning(SmallStudyYaml() + "tune: fast\n", {":10:", "tune", "a map"}));
+  EXPECT_TRUE(RefusesTuning(SmallStudyYaml() + "tune:\n", {":10:", "the value of 'tune' is missing"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("mu: " + kSteps, "mus: [1]"),
+                            {":16:", "no option 'mus'", "its options", "lambda"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("lambda: [0.5, 0.8, 1.0]", "mu: [1]"), {":17:", "'mu'", "twice"}));
 }
 
 TEST(TuneBlockErrors, Values) {
-  EXPECT_TRUE(Refuses(Edited("estimator: ours", "estimator: theirs"),
-                      {":11:", "estimator", "'theirs'", "no label", "standard, ours"}));
-  EXPECT_TRUE(Refuses(Edited("estimator: ours", "estimator: ''"), {":11:", "estimator", "''"}));
-  EXPECT_TRUE(Refuses(Edited("false_refusal", "speed"),
-                      {":12:", "'speed'", "false_refusal, failure, accepted_failure, risk"}));
-  EXPECT_TRUE(Refuses(Edited("at_most: 0.1", "at_most: 0"),
-                      {":13:", "at_most", "'0'", "a number in [1e-06, 0.999]"}));
-  EXPECT_TRUE(Refuses(Edited("at_most: 0.1", "at_most: .nan"), {":13:", "at_most", "'.nan'", "a number in"}));
-  EXPECT_TRUE(Refuses(Edited("at_most: 0.1", "at_most: [0.1]"), {":13:", "at_most", "one value is needed"}));
-  EXPECT_TRUE(
-      Refuses(Edited("explore: 20", "explore: 0"), {":14:", "explore", "'0'", "a whole number in [1, "}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("estimator: ours", "estimator: theirs"),
+                            {":11:", "estimator", "'theirs'", "no label", "standard, ours"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("estimator: ours", "estimator: ''"), {":11:", "estimator", "''"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("false_refusal", "speed"),
+                            {":12:", "'speed'", "false_refusal, failure, accepted_failure, risk"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("at_most: 0.1", "at_most: 0"),
+                            {":13:", "at_most", "'0'", "a number in [1e-06, 0.999]"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("at_most: 0.1", "at_most: .nan"),
+                            {":13:", "at_most", "'.nan'", "a number in"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("at_most: 0.1", "at_most: [0.1]"),
+                            {":13:", "at_most", "one value is needed"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("explore: 20", "explore: 0"),
+                            {":14:", "explore", "'0'", "a whole number in [1, "}));
 }
 
 TEST(TuneBlockErrors, Levels) {
@@ -166,12 +169,12 @@ TEST(TuneBlockErrors, Levels) {
   EXPECT_TRUE(RefusesLevels("[1, 1.0]", {"mu", "level '1.0'", "twice"}));
   EXPECT_TRUE(RefusesLevels("[]", {"mu", "at least one level"}));
   EXPECT_TRUE(RefusesLevels("5", {"mu", "a list of at least one level is needed, or {from: "}));
-  EXPECT_TRUE(Refuses(Edited("[mean_entropy, ", "[least_entropy, "),
-                      {":18:", "selection", "'least_entropy'", "mean_entropy, predictive_likelihood"}));
-  EXPECT_TRUE(Refuses(Edited("mu: " + kSteps, "num_iterations: {from: 50, to: 60, step: 2.5}"),
-                      {":16:", "num_iterations", "'52.5'", "whole number"}));
-  EXPECT_TRUE(Refuses(Edited("mu: " + kSteps, "reading: {from: 0, to: 1, step: 1}"),
-                      {":16:", "reading", "'0'", "as_printed, rank_aware"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("[mean_entropy, ", "[least_entropy, "),
+                            {":18:", "selection", "'least_entropy'", "mean_entropy, predictive_likelihood"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("mu: " + kSteps, "num_iterations: {from: 50, to: 60, step: 2.5}"),
+                            {":16:", "num_iterations", "'52.5'", "whole number"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("mu: " + kSteps, "reading: {from: 0, to: 1, step: 1}"),
+                            {":16:", "reading", "'0'", "as_printed, rank_aware"}));
 }
 
 TEST(TuneBlockErrors, Steps) {
@@ -198,8 +201,8 @@ TEST(TuneBlockErrors, Steps) {
 
 TEST(TuneBlockErrors, TooManyCombinations) {
   const std::string many = "{from: 0, to: 1, step: 0.005}";  // 201 levels, twice
-  EXPECT_TRUE(Refuses(Edited("[0.5, 0.8, 1.0]", many + "\n    kappa: " + many),
-                      {"tune: options", "more than 20000 combinations"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("[0.5, 0.8, 1.0]", many + "\n    kappa: " + many),
+                            {"tune: options", "more than 20000 combinations"}));
   EXPECT_TRUE(RefusesLevels("{from: 0, to: 1, step: 0.00005}", {"more than 20000 levels"}));  // 20,001
   const std::string most = "{from: 0, to: 0.99995, step: 0.00005}";                           // 20,000
   const Study study =
@@ -208,23 +211,23 @@ TEST(TuneBlockErrors, TooManyCombinations) {
   std::string options;
   for (const char* option : {"mu", "lambda", "kappa", "inlier_ratio", "significance_level"})
     options += fmt::format("{}: {{from: 0.1, to: 0.5, step: 0.00003}}, ", option);
-  EXPECT_TRUE(Refuses(SmallStudyYaml() + "tune: {estimator: ours, options: {" + options + "}}\n",
-                      {":10:", "more than 20000 combinations"}));
+  EXPECT_TRUE(RefusesTuning(SmallStudyYaml() + "tune: {estimator: ours, options: {" + options + "}}\n",
+                            {":10:", "more than 20000 combinations"}));
 }
 
 TEST(TuneBlockErrors, OptionsThatContradictEachOtherInACombination) {
-  EXPECT_TRUE(Refuses(Edited("lambda: [0.5, 0.8, 1.0]", "reading: [rank_aware, as_printed]"),
-                      {":16:", "{mu: 0, reading: as_printed, selection: predictive_likelihood}",
-                       "needs reading: rank_aware"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("lambda: [0.5, 0.8, 1.0]", "reading: [rank_aware, as_printed]"),
+                            {":16:", "{mu: 0, reading: as_printed, selection: predictive_likelihood}",
+                             "needs reading: rank_aware"}));
   // Against an option that is not tuned.
-  EXPECT_TRUE(Refuses(Edited("reading: rank_aware", "reading: as_printed"),
-                      {":16:", "selection: predictive_likelihood}", "needs reading: rank_aware"}));
+  EXPECT_TRUE(RefusesTuning(EditedTuning("reading: rank_aware", "reading: as_printed"),
+                            {":16:", "selection: predictive_likelihood}", "needs reading: rank_aware"}));
 }
 
 // A run does not depend on the block: with `--set` it may contradict the estimators, and the study that the
 // run stores can be read back.
 TEST(TuneBlock, IsNoPartOfARun) {
-  Study study = ParseStudy(TunedYaml(), "small.yaml");
+  Study study = ParseStudy(TuningYaml(), "small.yaml");
   Override(&study, "reading", "as_printed");
   EXPECT_FALSE(ParseStudy(ToYaml(study), "stored.yaml").tuning.has_value());
 }

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 
 #include "estimator/estimator_registry.h"
 #include "experiments/data/make_data.h"
@@ -15,7 +14,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr size_t kNumMatches = 10;
 
 // A covariance whose rotation is known 1,000 times better than its direction, all coordinates correlated.

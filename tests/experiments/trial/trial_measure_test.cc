@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "stats/constants.h"
@@ -12,8 +11,6 @@
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TrialRecord Record(MotionStatus status, double rotation_deg, double direction_deg) {
   TrialRecord record;

@@ -289,7 +289,6 @@ TEST(Score, ADirectionThatIsNotObservableStillHasARotation) {
 
 // A failure, and no cover, whatever is left in it: NEES is infinite, not missing.
 TEST(Score, AnInvalidAnswerIsAFailureThatDoesNotCover) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   MotionEstimate estimate = HandMadeEstimate(0.0, 0.0);  // the truth itself
   estimate.pose_cov(2, 2) = std::numeric_limits<double>::quiet_NaN();
   const TrialRecord no_covariance = Score(estimate, HandMadeData(), 0.0);

@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-enum Part { kRoad, kFacades, kFar };
+enum StreetPart { kRoad, kFacades, kFar };
 
 TEST(Street, RoadAndFacadesAreWhereTheParametersSay) {
   const auto world = DrawWorld(*Configured(

@@ -14,14 +14,14 @@
 #include "experiments/audit/claims/decide_check.h"
 #include "experiments/audit/claims/sample_statistics.h"
 #include "stats/consistency.h"
+#include "stats/constants.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
 
 namespace rcme {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kConfidence = 1.0 - 0.05 / 850.0;  // per target, as in the audit
+constexpr double kPlantedConfidence = 1.0 - 0.05 / 850.0;  // per target, as in the audit
 constexpr TrialLimits kLimits{0, 40'000, 40'000};
 constexpr double kLimitSigmaPx = 1e-4;  // where first order holds for minimal samples
 
@@ -248,7 +248,7 @@ std::vector<Fault> Faults() {
 int CountVerdicts(const Check& check, Verdict verdict, std::uint32_t num_repetitions) {
   int count = 0;
   for (std::uint32_t seed = 1; seed <= num_repetitions; ++seed) {
-    count += DecideCheck(check, {seed, 7, Budget::kQuick, kConfidence}).verdict == verdict;
+    count += DecideCheck(check, {seed, 7, Budget::kQuick, kPlantedConfidence}).verdict == verdict;
   }
   return count;
 }

@@ -5,15 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "experiments/real/truth_free/validate.h"
 #include "experiments/real/truth_free/validate_output.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TruthFreeTest MakeTest(const ComparedMedians& ratio, const ComparedMedians& in_simulation,
                        const ComparedMedians& against_twins) {

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "estimator/estimator_registry.h"
@@ -16,12 +15,11 @@
 #include "experiments/real/truth_free/validate_output.h"
 #include "experiments/study/study_file.h"
 #include "parameters/stop_signal.h"
+#include "stats/constants.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Throws Stopped in place of the answer after `*num_left` of them.
 class StoppedEstimator : public MotionEstimator {
