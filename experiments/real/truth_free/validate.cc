@@ -55,7 +55,7 @@ void AddHalves(const Answered& answered, const MotionEstimator& estimator, Strea
 
 PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
                       const ValidationOptions& options) {
-  constexpr std::uint32_t kCallsOfOne = 8;  // numbers of trials: a pair's own calls, then those of each twin
+  constexpr std::uint32_t kCallsOfPair = 8;  // numbers of trials: a pair's own calls, then those of each twin
   StreamName name{options.seed, HashToStreamKey(pair.name), 0, 0};
   PairResults results;
   results.answers.whole = Ask(pair, estimator, name);
@@ -65,7 +65,7 @@ PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
   results.products = ProductsOf(pair.problem, whole.estimate);
   for (int k = 1; k <= options.num_twins; ++k) {
     const auto number = static_cast<std::uint32_t>(k);
-    name.trial = number * kCallsOfOne;
+    name.trial = number * kCallsOfPair;
     results.answers.twins.push_back(Ask(TwinOf(pair, whole.estimate, options.seed, number), estimator, name));
     const Answered& twin = results.answers.twins.back();
     if (!twin.IsOk()) continue;
