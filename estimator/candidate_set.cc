@@ -36,6 +36,7 @@ int CandidateSet::CountMembers() const {
   }));
 }
 
+// eq::model_select_entropy: the least by `decides`, over C.
 std::vector<Candidate> CandidateSet::SelectBest(int count, DecidingScore decides) const {
   std::vector<const Candidate*> members;
   members.reserve(passed_.size());

@@ -66,7 +66,7 @@ inline constexpr CheckDesign kSelection{0.01, {2'000, 2'000, 10'000}};  // trial
 inline constexpr CheckDesign kQualityTestLevel{0.03, {1'000, 12'000, 40'000}, 0.75};
 inline constexpr CheckDesign kStandardError{
     0.02, {1'000, 12'000, 60'000}, 0.75};                              // share of pairs within 1.96
-inline constexpr CheckDesign kFlag{0.1, {3'000, 3'000, 20'000}, 0.1};  // of the failures, of the others
+inline constexpr CheckDesign kFlagDesign{0.1, {3'000, 3'000, 20'000}, 0.1};  // of the failures, of the others
 inline constexpr CheckDesign kFailureOrder{0.5, {1'500, 3'000, 10'000}, 0.02};  // of trials with one failure
 inline constexpr CheckDesign kAgainstStandard{
     0.05, {1'000, 4'000, 20'000}, 1, 0.4};  // difference of failure rates
