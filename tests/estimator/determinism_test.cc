@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "estimator/estimator_registry.h"
+#include "estimator/solvers/solver_list.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/make_ransac.h"
 #include "tests/test_support/two_camera_scene.h"

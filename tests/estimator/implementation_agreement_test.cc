@@ -14,6 +14,7 @@
 #include <mutex>
 #include <thread>
 
+#include "estimator/solvers/solver_list.h"
 #include "stats/intervals.h"
 #include "tests/estimator/agreement/difference.h"
 #include "tests/estimator/agreement/given_models.h"

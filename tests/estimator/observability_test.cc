@@ -7,6 +7,7 @@
 #include "estimator/estimators/rcme.h"
 #include "estimator/kernels/block_matches.h"
 #include "estimator/kernels/rotation_equations.h"
+#include "estimator/loop_inspection.h"
 #include "estimator/reference_matches.h"
 #include "estimator/refinement/sampson_equations.h"
 #include "stats/distributions.h"

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "estimator/kernels/block_search.h"
+#include "estimator/solvers/solver_list.h"
 #include "tests/estimator/agreement/variant.h"
 
 namespace rcme::agreement {

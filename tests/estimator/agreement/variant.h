@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/solvers/solver_list.h"
 #include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
 #include "simulator/scene_generator.h"

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "estimator/estimators/robust_score.h"
+#include "estimator/loop_inspection.h"
+#include "estimator/solvers/solver_list.h"
 #include "stats/moments.h"
 #include "tests/test_support/option_checks.h"
 
