@@ -44,7 +44,7 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
   for (size_t v = 0; v < counts_.size(); ++v) {
     const std::string& event = TrialEvents()[v].name;
     const VarianceSplit split = counts_[v].scenes.Split();
-    SummaryRow within = RowOf(cell, event + kWithin, SummaryRow::Kind::kShare);
+    SummaryRow within = RowOf(cell, event + kWithin, SummaryRow::Kind::kVarianceShare);
     within.is_of_split = true;
     within.n = std::isnan(split.within_share) ? 0 : split.num_scenes;  // nothing varies: there are no shares
     within.value = split.within_share;
@@ -69,9 +69,9 @@ std::vector<QuantityHelp> SceneSplitQuantities() {
   const std::string only = "; only of runs with repeats per scene";
   for (const TrialEvent& event : TrialEvents()) {
     const std::string of = "share of the variance of " + event.name + " that is ";
-    help.push_back({event.name + kBetween, KindName(SummaryRow::Kind::kShare), of + "between scenes" + only});
+    help.push_back({event.name + kBetween, KindName(SummaryRow::Kind::kVarianceShare), of + "between scenes" + only});
     help.push_back(
-        {event.name + kWithin, KindName(SummaryRow::Kind::kShare), of + "within them, the sampler's" + only});
+        {event.name + kWithin, KindName(SummaryRow::Kind::kVarianceShare), of + "within them, the sampler's" + only});
     help.push_back({event.name + kFlips, KindName(SummaryRow::Kind::kRate),
                     "scenes in which " + event.name +
                         " depends on the sampler's seed, of all scenes with every repeat" + only});

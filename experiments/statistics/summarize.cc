@@ -213,7 +213,7 @@ std::string KindName(SummaryRow::Kind kind) {
       return "median";
     case SummaryRow::Kind::kScore:
       return "score";
-    case SummaryRow::Kind::kShare:
+    case SummaryRow::Kind::kVarianceShare:
       return "share";
   }
   return "";

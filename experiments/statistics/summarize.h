@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/trial_groups.h"
-#include "experiments/run/store/result_store.h"
 #include "stats/intervals.h"
 
 namespace rcme {
@@ -27,8 +27,8 @@ struct SummaryRow {
     kRate,
     kMean,
     kMedian,
-    kScore,  // mean of numbers in [0, 1]
-    kShare   // of a variance (scene_split.h)
+    kScore,         // mean of numbers in [0, 1]
+    kVarianceShare  // of a variance (scene_split.h)
   };
 
   std::uint32_t condition = 0;

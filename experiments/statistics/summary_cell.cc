@@ -22,7 +22,7 @@ QuantityCounts EmptyCounts(SummaryRow::Kind kind) {
     case SummaryRow::Kind::kScore:
       return ExactScores();
     case SummaryRow::Kind::kMean:
-    case SummaryRow::Kind::kShare:
+    case SummaryRow::Kind::kVarianceShare:
       break;
   }
   return ExactMoments();

@@ -200,9 +200,10 @@ TEST(DirectionNotObservable, TheSameFromTheReferenceAndFromPieces) {
     const MotionEstimate reference =
         EstimateFrom(*Make(Reading::kRankAware, Implementation::kReference), problem);
     RandomStream rng({.seed = 1, .purpose = 1407});
+    const LoopInspection& inspection = *FindInspection(*fast);
     Refinements refinements;
     const MotionEstimate pieces =
-        fast->Finish(problem, fast->Decide(fast->Trace(problem, rng)), &refinements);
+        inspection.Finish(problem, inspection.Decide(inspection.Trace(problem, rng)), &refinements);
     for (const MotionEstimate& other : {reference, pieces}) {
       EXPECT_EQ(other.status, whole.status) << trial;
       EXPECT_LT(RotationAngleBetween(other.cam2_from_cam1.R, whole.cam2_from_cam1.R), 1e-9) << trial;

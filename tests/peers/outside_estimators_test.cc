@@ -245,23 +245,24 @@ TEST(ProcessEstimator, AnswersAreEstimates) {
 }
 
 TEST(ProcessEstimator, TimeOutsCrashesAndNonsenseAreStatuses) {
-  struct Case {
+  struct Ending {
     std::string command;
     MotionStatus status;
     std::string words;
   };
-  for (const Case& c : {Case{"sleep 60", MotionStatus::kTimedOut, "in time"},
-                        Case{"read -r line; sleep 60", MotionStatus::kTimedOut, "in time"},
-                        Case{"exit 3", MotionStatus::kNoAnswer, "exit code 3"},
-                        Case{"read -r line; exit 0", MotionStatus::kNoAnswer, "exit code 0"},
-                        Case{"read -r line; kill -9 $$", MotionStatus::kNoAnswer, "signal 9"},
-                        Case{"no_such_program_at_all 2>/dev/null", MotionStatus::kNoAnswer, "exit code 127"},
-                        Case{Always("hello"), MotionStatus::kUnreadableAnswer, "hello"},
-                        Case{Always("{}\n{}"), MotionStatus::kUnreadableAnswer, ""},
-                        Case{Always("{}"), MotionStatus::kUnreadableAnswer, "no id"},
-                        Case{AlwaysWithId(R"(, "status": "too_uncertain", "message": "no")"),
-                             MotionStatus::kTooUncertain, "no"},
-                        Case{AlwaysWithId(""), MotionStatus::kNoCandidate, ""}}) {
+  for (const Ending& c :
+       {Ending{"sleep 60", MotionStatus::kTimedOut, "in time"},
+        Ending{"read -r line; sleep 60", MotionStatus::kTimedOut, "in time"},
+        Ending{"exit 3", MotionStatus::kNoAnswer, "exit code 3"},
+        Ending{"read -r line; exit 0", MotionStatus::kNoAnswer, "exit code 0"},
+        Ending{"read -r line; kill -9 $$", MotionStatus::kNoAnswer, "signal 9"},
+        Ending{"no_such_program_at_all 2>/dev/null", MotionStatus::kNoAnswer, "exit code 127"},
+        Ending{Always("hello"), MotionStatus::kUnreadableAnswer, "hello"},
+        Ending{Always("{}\n{}"), MotionStatus::kUnreadableAnswer, ""},
+        Ending{Always("{}"), MotionStatus::kUnreadableAnswer, "no id"},
+        Ending{AlwaysWithId(R"(, "status": "too_uncertain", "message": "no")"), MotionStatus::kTooUncertain,
+               "no"},
+        Ending{AlwaysWithId(""), MotionStatus::kNoCandidate, ""}}) {
     const auto process = Process(c.command, c.status == MotionStatus::kTimedOut ? "0.5" : "20");
     const auto start = std::chrono::steady_clock::now();
     for (int call = 0; call < 2; ++call) {  // what gave no answer is begun again

@@ -82,7 +82,7 @@ TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
   const VarianceSplit split = expected.Split();
   const SummaryRow within = RowOf("failure_within_scenes"), between = RowOf("failure_between_scenes"),
                    flips = RowOf("failure_flips");
-  EXPECT_EQ(within.kind, SummaryRow::Kind::kShare);
+  EXPECT_EQ(within.kind, SummaryRow::Kind::kVarianceShare);
   EXPECT_EQ(within.interval_kind, IntervalKind::kLogStudent);
   EXPECT_EQ(within.n, 36);
   EXPECT_EQ(within.value, split.within_share);

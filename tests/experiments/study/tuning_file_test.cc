@@ -16,16 +16,18 @@ using Levels = std::vector<std::string>;
 
 // The small study with a tuning; the block begins in line 10, the options in line 15.
 std::string TuningYaml() {
-  return SmallStudyYaml() +
-         "tune:\n"
-         "  estimator: ours\n"
-         "  target: false_refusal\n"
-         "  at_most: 0.1\n"
-         "  explore: 20\n"
-         "  options:\n"
-         "    mu: {from: 0, to: 1.2, step: 0.3}\n"
-         "    lambda: [0.5, 0.8, 1.0]\n"
-         "    selection: [mean_entropy, predictive_likelihood]\n";
+  std::string yaml = SmallStudyYaml();
+  yaml +=
+      "tune:\n"
+      "  estimator: ours\n"
+      "  target: false_refusal\n"
+      "  at_most: 0.1\n"
+      "  explore: 20\n"
+      "  options:\n"
+      "    mu: {from: 0, to: 1.2, step: 0.3}\n"
+      "    lambda: [0.5, 0.8, 1.0]\n"
+      "    selection: [mean_entropy, predictive_likelihood]\n";
+  return yaml;
 }
 
 std::string EditedTuning(const std::string& from, const std::string& to) {

@@ -61,17 +61,17 @@ TEST(MeanPitWithin, IsWhatAWrongSigmaDoesToTheMean) {
 // What is promised is kept: by running checks at the nominal value and at the departure that is said to be
 // found. (A check that looks once, at its last trial, as the promise is made.)
 TEST(PowerOf, IsThePowerThatChecksHave) {
-  constexpr double kConfidence = 0.999;
+  constexpr double kPowerConfidence = 0.999;
   constexpr int kTrials = 2'000, kSeeds = 60;
   for (const Target& target : {CoverageTargets(5).front(), CoverageTargets(5).back()}) {
-    const TargetPower power = PowerOf(target, kTrials, kConfidence);
+    const TargetPower power = PowerOf(target, kTrials, kPowerConfidence);
     const CoverageCount holds =
-        ShareOf(Verdict::kHolds, LawCheck(5, 0.0, {target}, kTrials), kConfidence, kSeeds);
+        ShareOf(Verdict::kHolds, LawCheck(5, 0.0, {target}, kTrials), kPowerConfidence, kSeeds);
     EXPECT_TRUE(holds.Admits(power.holds_at_nominal))
         << target.quantity << power.holds_at_nominal << ", " << holds;
     for (const double error : {power.found_sigma.lower, power.found_sigma.upper}) {
       const CoverageCount found =
-          ShareOf(Verdict::kDoesNotHold, LawCheck(5, error, {target}, kTrials), kConfidence, kSeeds);
+          ShareOf(Verdict::kDoesNotHold, LawCheck(5, error, {target}, kTrials), kPowerConfidence, kSeeds);
       EXPECT_TRUE(found.Admits(kPowerOfDesign)) << target.quantity << " at " << error << ": " << found;
     }
   }
