@@ -157,9 +157,9 @@ TEST_F(TuneProgram, Repetitions) {
   EXPECT_NE(result.out.find("tuned 5 times"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("promised at most 5 %"), std::string::npos) << result.out;
   EXPECT_EQ(Tune({"--repeat", "5", "--threads", "1"}).out, result.out);
+  EXPECT_TRUE(IsRefused(Tune({"--repeat", "5", "--out", study_}), {study_}));
   EXPECT_EQ(Tune({"--repeat", "5", "--out", out_}).out, result.out);
   EXPECT_EQ(ReadBytes(out_), result.out);
-  EXPECT_TRUE(IsRefused(Tune({"--repeat", "5", "--out", study_}), {study_}));
 }
 
 TEST_F(TuneProgram, Transfer) {

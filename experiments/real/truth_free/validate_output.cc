@@ -17,7 +17,7 @@ namespace {
 const NumberFormat kTwoDigits{1.0, "", ".2g"};
 
 std::string RangeText(double value, const Interval& interval) {
-  return FormatEstimate({value, interval}, kTwoDigits);
+  return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);  // unbounded ends too
 }
 
 const char* CauseName(FaultCause cause) {

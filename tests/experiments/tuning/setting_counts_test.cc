@@ -198,7 +198,7 @@ TEST(SettingCounts, WeightedTrialsAreRefused) {
   Study study = TunedPlan("  options: {mu: [3]}\n").study;
   study.data.emplace_back("outlier_count", "bernoulli");
   study.data.emplace_back("tilted_to", "0.6");
-  EXPECT_TRUE(ThrowsInputError([&] { Count(MakePlan(study), 0, {0, 20}); }, {"tilted_to", "weights"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Count(MakePlan(study), 0, {0, 20}); }, {"tilted_to", "weighted trials"}));
 }
 
 TEST(SettingCounts, RealPairsAreRefused) {

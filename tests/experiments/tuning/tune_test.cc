@@ -205,7 +205,7 @@ TEST(Tune, WeightedTrialsAreRefused) {
   Study study = TunedPlan(kBlock).study;
   study.data.emplace_back("outlier_count", "bernoulli");
   study.data.emplace_back("tilted_to", "0.6");
-  EXPECT_TRUE(ThrowsInputError([&] { TuneIt(MakePlan(study)); }, {"tilted_to", "weights"}));
+  EXPECT_TRUE(ThrowsInputError([&] { TuneIt(MakePlan(study)); }, {"tilted_to", "weighted trials"}));
 }
 
 TEST(Tune, OneTrialPerConditionOfEveryStage) {

@@ -136,7 +136,7 @@ class AuditParts : public testing::Test {
 TEST_F(AuditParts, OfAnyNumberInAnyOrderGiveTheSameBytes) {
   const Audit one = RunAuditInMemory(Claims(), Options());
   const std::string whole = Bytes(one);
-  EXPECT_NE(whole.find("nan"), std::string::npos);  // what JSON has no numbers for is tried too
+  EXPECT_NE(whole.find("null"), std::string::npos);  // what JSON has no numbers for is tried too
   EXPECT_NE(whole.find("does not hold"), std::string::npos);
   EXPECT_NE(whole.find("inf"), std::string::npos);
   std::set<std::int64_t> trials;  // some checks end in each of several rounds

@@ -88,7 +88,7 @@ TEST_F(ImageFolder, ImagesOfAnotherSizeAreSkippedAndNamed) {
   EXPECT_GE(num_kept, 1);
   const std::string text = ReadBytes(out + "/pairs.txt");
   for (const std::string& said :
-       {"skipped: " + mixed + "/00.png: is of 240 x 320 px; K is of images of 320 x 240 px: turn it back",
+       {"skipped: " + mixed + "/00.png: is of 240 x 320 px; K is of images of 320 x 240 px: rotate it back",
         "skipped: " + mixed + "/1.png: is of 240 x 320 px", "skipped: " + mixed + "/3.png: is of 80 x 60 px",
         std::string("put images of another size into their own folder")})
     EXPECT_NE(text.find(said), std::string::npos) << text;
