@@ -38,7 +38,7 @@
 #include "peers/outside_answer.h"
 #include "peers/peer_registry.h"
 #include "python/function_estimator.h"
-#include "simulator/severity/severity_columns.h"
+#include "experiments/trial/severity_columns.h"
 #include "stats/constants.h"
 
 namespace rcme {

@@ -103,18 +103,25 @@ void ReportDamage(const CheckArguments& arguments, const InputError& error) {
              arguments.save_good, num_sound, arguments.save_good);
 }
 
+void CheckCounts(const std::string& run) {
+  fmt::print("{}: sound: the counts of {} trials\n", run, OpenCounts(run).NumTrials());
+}
+
+void CheckTrials(const std::string& run) {
+  const ResultStore store = ResultStore::OpenForReading(run);
+  store.CheckTrials();
+  PrintSound(run, store);
+}
+
 void CheckFile(const CheckArguments& arguments) {
-  if (KeepsCounts(arguments.run)) {
-    fmt::print("{}: sound: the counts of {} trials\n", arguments.run, OpenCounts(arguments.run).NumTrials());
-    return;
-  }
+  if (KeepsCounts(arguments.run)) return CheckCounts(arguments.run);
   try {
-    const ResultStore store = ResultStore::OpenForReading(arguments.run);
-    store.CheckTrials();
-    PrintSound(arguments.run, store);
+    CheckTrials(arguments.run);
   } catch (const DamagedFileError& error) {
     ReportDamage(arguments, error);
   } catch (const InputError& error) {
+    // The run was killed while it wrote: to open its file for reading trials has undone the half of a write.
+    if (KeepsCounts(arguments.run)) return CheckCounts(arguments.run);
     if (arguments.study.empty()) throw;
     ReportDamage(arguments, error);  // it does not look like a result file, but is said to be one
   }

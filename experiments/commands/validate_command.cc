@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
@@ -114,15 +115,20 @@ void RunValidate(const ValidateArguments& arguments) {
   CheckProcessEstimators({spec});
   const AdvisedEstimator estimator = ChooseAdvised(spec, planted);
   const std::vector<PairSet> sets = ChooseSets(arguments, planted);
-  if (!arguments.out.empty()) MakeResultFolder(arguments.out);
-  Runner runner = MakeRunner(PlanValidationSteps(arguments, spec, planted, sets),
-                             arguments.out.empty() ? "" : FindCheckpointInFolder(arguments.out), 1);
-  KeptSteps steps(&runner);
+  std::optional<Runner> runner;
+  std::optional<KeptSteps> kept;
+  if (!arguments.out.empty()) {
+    MakeResultFolder(arguments.out);
+    runner = MakeRunner(PlanValidationSteps(arguments, spec, planted, sets),
+                        FindCheckpointInFolder(arguments.out), 1);
+    kept.emplace(&*runner);
+  }
+  KeptSteps* steps = kept ? &*kept : nullptr;
   const ValidationOptions options = {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins};
   std::vector<SetReport> reports;
   for (const PairSet& set : sets)
-    reports.push_back(arguments.tests_alone ? Validate(set, *estimator.make({}), options, &steps)
-                                            : ValidateAndAdvise(set, estimator, options, &steps));
+    reports.push_back(arguments.tests_alone ? Validate(set, *estimator.make({}), options, steps)
+                                            : ValidateAndAdvise(set, estimator, options, steps));
   const std::string table = ValidationAsTable(reports);
   fmt::print("{}", table);
   if (arguments.out.empty()) return;
@@ -133,7 +139,7 @@ void RunValidate(const ValidateArguments& arguments) {
   WriteFileWhole(json, ValidationAsJson(reports));
   if (!arguments.draws_no_figure)
     DrawFigures("validation", {json, "--out", (folder / "validation").string()});
-  runner.RemoveCheckpoint();
+  runner->RemoveCheckpoint();
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/trial/trial_measure.h"
-#include "simulator/severity/severity_columns.h"
+#include "experiments/trial/severity_columns.h"
 #include "stats/distributions.h"
 
 namespace rcme {

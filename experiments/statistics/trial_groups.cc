@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "parameters/input_error.h"
-#include "simulator/severity/severity_columns.h"
+#include "experiments/trial/severity_columns.h"
 
 namespace rcme {
 namespace {

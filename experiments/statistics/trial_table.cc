@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/core/text/field_text.h"
-#include "experiments/run/store/record_table.h"
+#include "experiments/trial/trial_columns.h"
 #include "experiments/trial/trial_outcome.h"
 
 namespace rcme {
@@ -37,7 +37,8 @@ void VisitNumbers(const TrialRecord& record, const ProblemRecord& problem, bool 
 
 std::string Header(const std::vector<std::string>& factors, bool with_times) {
   std::vector<std::string> before = {"study", "condition"}, after = {"trial", "estimator", "outcome"};
-  for (const ResultColumn& column : TrialTableNumbers(with_times)) after.push_back(column.name);
+  VisitNumbers({}, {}, with_times,
+               [&](const StoredColumn& column, const auto&) { after.emplace_back(column.name); });
   const auto is_taken = [&](const std::string& name) {
     return std::ranges::count(before, name) + std::ranges::count(after, name) > 0;
   };
@@ -56,14 +57,6 @@ std::string BeginningOf(const RunDescription& run, std::uint32_t condition) {
 }
 
 }  // namespace
-
-std::vector<ResultColumn> TrialTableNumbers(bool with_times) {
-  std::vector<ResultColumn> columns;
-  VisitNumbers({}, {}, with_times, [&](const StoredColumn& column, const auto& field) {
-    columns.push_back(DescribeColumn(column, field));
-  });
-  return columns;
-}
 
 void WriteTrialTable(const ResultStore& store, bool with_times,
                      const std::function<void(const std::string&)>& write) {

@@ -3,10 +3,8 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "experiments/run/store/result_store.h"
-#include "experiments/run/store/schema.h"
 
 namespace rcme {
 
@@ -18,8 +16,5 @@ namespace rcme {
 // before the first line if a trial is not sound.
 void WriteTrialTable(const ResultStore& store, bool with_times,
                      const std::function<void(const std::string&)>& write);
-
-// Its columns after the outcome, as the file stores them.
-std::vector<ResultColumn> TrialTableNumbers(bool with_times);
 
 }  // namespace rcme

@@ -7,8 +7,8 @@
 #include <type_traits>
 
 #include "experiments/trial/trial.h"
-#include "parameters/stored_column.h"
-#include "simulator/severity/severity_columns.h"
+#include "experiments/trial/stored_column.h"
+#include "experiments/trial/severity_columns.h"
 
 namespace rcme {
 
@@ -43,7 +43,7 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(StoredColumn{"num_matches", "matches", "matches of the problem", kNotNegative}, record.num_matches);
   visit(StoredColumn{"num_inliers", "matches", "final inliers", kNotNegative}, record.num_inliers);
   visit(StoredColumn{"inlier_precision", "share",
-                     "true ones among the final inliers, undetectable wrong ones left aside", kShare},
+                     "true ones among the final inliers, undetectable wrong ones left aside", kFromZeroToOne},
         record.inlier_precision);
   // Beyond 1 for an estimator that names a match twice.
   visit(StoredColumn{"inlier_recall", "share", "final inliers among the true matches", kNotNegative},
@@ -76,7 +76,7 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(StoredColumn{"failure_probability", "",
                      "probability that the motion is beyond the bounds, as the estimator states it; NULL: it "
                      "states none",
-                     kShare},
+                     kFromZeroToOne},
         record.failure_probability);
   visit(StoredColumn{"sigma_estimated_px", "px",
                      "noise per coordinate, estimated from the residuals; NULL likewise", kNotNegative},
@@ -86,7 +86,7 @@ void VisitColumns(Record& record, Visitor&& visit) {
         record.sigma_estimated_sd_px);
   visit(StoredColumn{"inlier_brier", "",
                      "mean squared error of the inlier probabilities, undetectable wrong matches left aside",
-                     kShare},
+                     kFromZeroToOne},
         record.inlier_brier);
   visit(
       StoredColumn{
@@ -97,8 +97,8 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(
       StoredColumn{
           "seconds", "s",
-          "processor time of the call, of the thread that makes it; the only number that another run "
-          "does not repeat",
+          "processor time of the call on its thread, and the time that it took in another process; the only "
+          "number that another run does not repeat",
           kFiniteAndKnown, StoredColumn::Role::kTime},
       record.seconds);
 }

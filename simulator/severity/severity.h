@@ -10,7 +10,7 @@
 
 namespace rcme {
 
-// Of the true inliers unless said otherwise; severity_columns.h says what each number is. Unknown (NaN): not
+// Of the true inliers unless said otherwise; experiments/trial/severity_columns.h says what each number is. Unknown (NaN): not
 // measured, or not defined (too few points, no translation).
 struct Severity {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

@@ -25,6 +25,7 @@ import time
 from examples import ROOT, apply, read_examples
 
 PRESET = "release"
+MADE_HERE = ".git/copy_of_contributor_paths"
 AFTER_LISTS = r"docs\.reference|architecture\."
 
 
@@ -48,10 +49,13 @@ class Tree:
     """A copy of the committed tree with its build folder."""
 
     def __init__(self, folder, jobs):
+        if folder.exists() and not (folder / MADE_HERE).exists():
+            raise Failed(f"--folder {folder}: is no copy that this script has made; give a new folder")
         self.folder, self.jobs = folder, jobs
         self.bin = folder / "build" / PRESET / "bin"
         if not folder.exists():
             self.run("git", "clone", "-q", str(ROOT), str(folder), cwd=ROOT)
+            (folder / MADE_HERE).touch()
         if not (folder / "build" / PRESET / "build.ninja").exists():
             self.run("cmake", "--preset", PRESET)
 

@@ -34,9 +34,11 @@ std::string FormatNumber(double x, const std::string& format, const Signs& signs
   return digits.starts_with('-') ? signs.minus + digits.substr(1) : digits;
 }
 
+// Empty where it says nothing: not known, or everything.
 std::string FormatInterval(const Interval& interval, double scale, const std::string& format,
                            const Signs& signs) {
-  if (!std::isfinite(interval.lower) || !std::isfinite(interval.upper)) return "";
+  if (std::isnan(interval.lower) || std::isnan(interval.upper)) return "";
+  if (std::isinf(interval.lower) && std::isinf(interval.upper)) return "";
   return fmt::format("[{}, {}]", FormatNumber(scale * interval.lower, format, signs),
                      FormatNumber(scale * interval.upper, format, signs));
 }

@@ -22,7 +22,7 @@ class KeptSteps {
   // The runner's plan is open; it outlives this. Says how many steps are there already.
   explicit KeptSteps(Runner* runner);
 
-  // What the next step gives, computed or kept. Throws Stopped and ResultIsDamaged.
+  // What the next step gives, computed or kept. Throws Stopped and KeptResultsError.
   template <typename T>
   T Next(const std::function<T()>& compute, const StepForm<T>& form) {
     const ItemPlace place = {0, num_taken_++};

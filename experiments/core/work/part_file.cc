@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksumKey = "\"checksum\": \"";
 constexpr int kMaxPieceDepth = 8;       // of lists within lists; the deepest piece has three
+constexpr size_t kMaxRestOfPiece = 256;  // of an item's line beside its result, bytes
 constexpr size_t kMaxFirstValues = 64;  // of the first line, which has ten
 constexpr const char* kAgain = "remove the file and run the command again";
 
@@ -41,6 +42,10 @@ std::string FirstLine(const Part& part, size_t num_items) {
 std::string PieceLine(const ItemPlace& place, const ItemResult& result) {
   return fmt::format("\"group\": {}, \"piece\": {}, \"seconds\": {:.6f}, \"result\": {}}}", place.group,
                      place.item, result.seconds, result.json);
+}
+
+std::string DescribeLongPiece() {
+  return fmt::format("the piece is too long; at most {} bytes are allowed", kMaxPieceBytes);
 }
 
 // Of a line's text behind its checksum; `of_first`: the first line's checksum, empty for that itself.
@@ -147,8 +152,7 @@ class PartReader {
 
   void ReadPiece(std::string_view text) {
     FixedText line(text);
-    if (text.size() > kMaxPieceBytes)
-      lines_.Fail(fmt::format("the piece is too long; at most {} bytes are allowed", kMaxPieceBytes));
+    if (text.size() > kMaxPieceBytes) lines_.Fail(DescribeLongPiece());
     if (!line.Skip("{")) FailDamaged("the line is no piece");
     RequireChecksum(&line);
     ItemPlace place;
@@ -234,6 +238,11 @@ std::string PartAsText(const Part& part, const ItemResults& results) {
 }
 
 void WritePart(const std::string& path, const Part& part, const ItemResults& results) {
+  for (const auto& [place, result] : results) {
+    if (result.json.size() + kMaxRestOfPiece > kMaxPieceBytes)
+      throw PartIsTooLong(
+          fmt::format("{}: piece {} of group {}: {}", path, place.item, place.group, DescribeLongPiece()));
+  }
   const std::string text = PartAsText(part, results);
   if (text.size() > kMaxPartBytes)
     throw PartIsTooLong(fmt::format("{}: the part has more than {} MiB; divide the work into more shards",

@@ -61,7 +61,8 @@ void RequireSize(const nlohmann::ordered_json& json, size_t size);
 // With these results in place of its own.
 std::string PartAsText(const Part& part, const ItemResults& results);
 
-// Throws InputError where it cannot be written, PartIsTooLong where it could not be read again.
+// Throws InputError where it cannot be written, PartIsTooLong where it could not be read again: the file, or
+// the result of one item, is too long.
 class PartIsTooLong : public InputError {
   using InputError::InputError;
 };

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <new>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "estimator/instruction_set.h"
@@ -135,6 +136,7 @@ void Runner::OpenFile() {
   }
   results_.results = std::move(before.results);
   results_.kept_in = path_;
+  num_written_ = results_.results.size();
 }
 
 void Runner::Get(const std::vector<ItemPlace>& places, const ComputeItem& compute, const ProgressUnit& unit) {
@@ -144,14 +146,13 @@ void Runner::Get(const std::vector<ItemPlace>& places, const ComputeItem& comput
   Write();
 }
 
-const std::string& Runner::GetOne(const ItemPlace& place, const ComputeItem& compute) {
-  if (!results_.results.contains(place)) {
-    KeepUntilStopped([&] {
-      if (IsStopRequested()) throw Stopped("stopped");
-      ComputeOne(place, compute);
-    });
-  }
-  return results_.results.at(place).json;
+void Runner::GetOne(const ItemPlace& place, const ComputeItem& compute) {
+  if (kind_ == Kind::kParts) throw std::logic_error("GetOne: an open plan has no parts");
+  if (results_.results.contains(place)) return;
+  KeepUntilStopped([&] {
+    if (IsStopRequested()) throw Stopped("stopped");
+    ComputeOne(place, compute);
+  });
 }
 
 void Runner::KeepUntilStopped(const std::function<void()>& work) {
@@ -204,10 +205,13 @@ void Runner::Write() {
   const Clock::time_point begin = Clock::now();
   try {
     WritePart(path_, part_, results_.results);
+    num_written_ = results_.results.size();
   } catch (const PartIsTooLong& error) {
     if (kind_ == Kind::kShard) throw;
     is_too_long_ = true;
     PrintMessage("warning: {}: what follows is not kept until the end\n", error.what());
+  } catch (const InputError& error) {
+    throw KeptResultsError(error.what());
   }
   // The largest takes a second: not more than a tenth of the time.
   const auto pause = 10 * (Clock::now() - begin);
@@ -218,7 +222,7 @@ std::string Runner::DescribeProgress() const {
   if (path_.empty()) return "stopped; nothing was kept";
   const std::string most =
       plan_.is_open ? "" : fmt::format("of at most {} ", ListItems(plan_, part_.shard).size());
-  return fmt::format("stopped; {} has {} {}{}s, the same command goes on", path_, results_.results.size(),
+  return fmt::format("stopped; {} has {} {}{}s, the same command goes on", path_, num_written_,
                      most, plan_.item_name);
 }
 
@@ -288,7 +292,7 @@ void ReadResult(const WorkPlan& plan, const WorkResults& results, const ItemPlac
     throw;  // no damage of the part's
   } catch (const std::exception& error) {
     const auto path = results.paths.find(place);
-    throw ResultIsDamaged(fmt::format("{}: damaged: {}: {}",
+    throw KeptResultsError(fmt::format("{}: damaged: {}: {}",
                                       path == results.paths.end() ? results.kept_in : path->second,
                                       DescribeItem(plan, place), error.what()));
   }

@@ -69,11 +69,12 @@ class Runner {
 
   // Makes sure that the results of these items are there: computes those that are not, on the runner's
   // threads (0: one per core), and shows progress. Throws Stopped that says how far it has come;
-  // ItemsAreMissing where only parts are read.
+  // KeptResultsError if a file cannot be written; ItemsAreMissing where only parts are read.
   void Get(const std::vector<ItemPlace>& places, const ComputeItem& compute, const ProgressUnit& unit = {});
 
-  // The result of one item of an open plan, which follows those before it. Throws as Get.
-  const std::string& GetOne(const ItemPlace& place, const ComputeItem& compute);
+  // The same of one item of an open plan, which follows those before it. Throws std::logic_error for a runner
+  // that reads parts.
+  void GetOne(const ItemPlace& place, const ComputeItem& compute);
 
   const WorkPlan& plan() const { return plan_; }
   const WorkResults& results() const { return results_; }
@@ -101,6 +102,7 @@ class Runner {
   std::string path_;
   Part part_;  // without results
   bool is_too_long_ = false;
+  size_t num_written_ = 0;  // items in the file
   std::chrono::steady_clock::time_point next_write_;
   std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  // of what follows, and next_write_
   WorkResults results_;
@@ -119,12 +121,13 @@ Part JoinParts(const std::vector<std::string>& paths);
 // which no shard can take less than.
 std::string DescribeCosts(const WorkPlan& plan, const WorkResults& results);
 
-// What `read` cannot read (it throws std::exception): the message names the file and the item.
-class ResultIsDamaged : public InputError {
+// The file that keeps results cannot be written, or holds what `read` cannot read (it throws std::exception):
+// the message names the file and the item.
+class KeptResultsError : public InputError {
   using InputError::InputError;
 };
 using ReadItem = std::function<void(const ItemPlace&, const std::string& json)>;
-// Hands over the result of an item. Throws ResultIsDamaged.
+// Hands over the result of an item. Throws KeptResultsError.
 void ReadResult(const WorkPlan& plan, const WorkResults& results, const ItemPlace& place,
                 const ReadItem& read);
 // Those of these groups, in their order.

@@ -221,7 +221,7 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
       }
     }
     AddComparisons(pairs, "simulated", &report);
-  } catch (const ResultIsDamaged&) {
+  } catch (const KeptResultsError&) {
     throw;
   } catch (const InputError& error) {
     report.simulated.clear();

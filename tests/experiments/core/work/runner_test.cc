@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -362,6 +363,36 @@ TEST_F(RunnerWithCheckpoint, RefusesOtherWorkAndWhatIsDamaged) {
       ThrowsInputError(open(Plan()), {path_, "damaged", "remove the file and run the command again"}));
 }
 
+TEST_F(RunnerWithCheckpoint, AFileThatCannotBeWrittenIsAnErrorOfItsOwn) {
+  const std::string folder = folder_.Path("gone");
+  std::filesystem::create_directory(folder);
+  Runner runner = Runner::WithCheckpoint(Plan(), folder + "/unfinished.part", 1);
+  std::filesystem::remove_all(folder);
+  EXPECT_THROW(runner.Get(ListItems(Plan(), {}), Knit), KeptResultsError);
+}
+
+// What could not be read again is not written; what was written before stays, and the message says how much.
+TEST_F(RunnerWithCheckpoint, AResultThatIsTooLongIsNotKept) {
+  const StopOnSignals stop;
+  Run(1, [](int call) {
+    if (call == 4) throw InputError("no wool");
+  });
+  ASSERT_EQ(NumKept(), 3u);
+  Runner runner = Runner::WithCheckpoint(Plan(), path_, 1);
+  const auto knit_long = [](const ItemPlace& place) {
+    if (place.group == 2) std::raise(SIGTERM);
+    return place.group == 0 ? Knit(place) : "\"" + std::string(kMaxPieceBytes, 'x') + "\"";
+  };
+  try {
+    runner.Get(ListItems(Plan(), {}), knit_long);
+    ADD_FAILURE() << "it was not stopped";
+  } catch (const Stopped& stopped) {
+    EXPECT_NE(std::string(stopped.what()).find("has 3 of at most 31 rows"), std::string::npos)
+        << stopped.what();
+  }
+  EXPECT_EQ(NumKept(), 3u);
+}
+
 // As the last version wrote it: one JSON object without checksums.
 TEST_F(RunnerOfShards, AnEarlierFormatIsRefusedByName) {
   const std::string old =
@@ -403,6 +434,19 @@ TEST(PartFile, IsNotFollowedFar) {
                          "2: the piece is too long; at most 8388608 bytes"));
   EXPECT_THROW(ParsePiece(std::string(1000, '[') + std::string(1000, ']')), std::invalid_argument);
   EXPECT_NO_THROW(ParsePiece("[[[1]]]"));
+}
+
+TEST(PartFile, IsNotWrittenWhereItCouldNotBeReadAgain) {
+  const TempFolder folder;
+  const std::string path = folder.Path("part");
+  const Part part{"knitting", "", {1, 1}, {"", ""}, {}};
+  const auto write = [&](size_t size) {
+    WritePart(path, part, {{{1, 0}, {"\"" + std::string(size, 'x') + "\"", 0.5}}});
+  };
+  write(kMaxPieceBytes - 300);
+  EXPECT_EQ(ReadPart(path).results.size(), 1u);
+  EXPECT_THROW(write(kMaxPieceBytes), PartIsTooLong);
+  EXPECT_EQ(ReadPart(path).results.size(), 1u);
 }
 
 TEST(PartFile, KeepsEveryNumberToItsLastBit) {

@@ -18,7 +18,7 @@ struct ColumnRange {
 // anything.
 inline constexpr ColumnRange kAnyNumber = {};
 inline constexpr ColumnRange kNotNegative = {0.0};
-inline constexpr ColumnRange kShare = {0.0, 1.0};
+inline constexpr ColumnRange kFromZeroToOne = {0.0, 1.0};
 inline constexpr ColumnRange kAngleDeg = {0.0, 180.0};
 inline constexpr ColumnRange kFiniteOrUnknown = {0.0, std::numeric_limits<double>::max()};
 inline constexpr ColumnRange kFiniteAndKnown = {0.0, std::numeric_limits<double>::max(), false};

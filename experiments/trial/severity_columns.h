@@ -1,7 +1,7 @@
 // What each number of a problem's severity is, for tables and printing.
 #pragma once
 
-#include "parameters/stored_column.h"
+#include "experiments/trial/stored_column.h"
 #include "simulator/severity/severity.h"
 
 namespace rcme {
@@ -27,7 +27,7 @@ inline constexpr SeverityColumn kSeverityColumns[] = {
     {{"planarity", "",
       "rms distance of the points from their plane over that from their centroid: 0 for a plane"},
      &Severity::planarity},
-    {{"homography_share", "share", "of the true matches that one homography explains", kShare},
+    {{"homography_share", "share", "of the true matches that one homography explains", kFromZeroToOne},
      &Severity::homography_share},
     {{"log10_condition", "", "log10 of the condition number of the motion's information matrix (5x5, rad)"},
      &Severity::log10_condition},
@@ -39,7 +39,7 @@ inline constexpr SeverityColumn kSeverityColumns[] = {
     {{"chance_inlier_share", "share", "of uniform wrong matches that the true motion would accept at 95 %",
       kNotNegative},
      &Severity::chance_inlier_share},
-    {{"undetectable_share", "share", "of all matches: wrong, but on the true epipolar line", kShare},
+    {{"undetectable_share", "share", "of all matches: wrong, but on the true epipolar line", kFromZeroToOne},
      &Severity::undetectable_share}};
 
 }  // namespace rcme
