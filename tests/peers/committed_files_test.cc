@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/study/estimator_file.h"
@@ -45,17 +46,22 @@ std::vector<std::string> StudiesIn(const std::string& folder) {
 }
 
 void ExpectRoundTrip(const std::string& path) {
-  const Study study = LoadStudy(path);
+  Study study = LoadStudy(path);
   const std::string text = ToYaml(study);
   EXPECT_EQ(ToYaml(ParseStudy(text, "again.yaml")), text) << path;
   EXPECT_FALSE(study.description.empty()) << path;
+  ASSERT_TRUE(study.ademp) << path;
+  for (const auto& [key, part] : Parts(*study.ademp)) EXPECT_FALSE(part->empty()) << path << ": " << key;
 }
 
 TEST(ToYaml, RoundTripOfTheCommittedStudies) {
   ASSERT_TRUE(IsKnown("opencv_usac"));
-  const std::vector<std::string> studies = StudiesIn("/studies");
-  for (const std::string& path : studies) ExpectRoundTrip(path);
-  EXPECT_GE(studies.size(), 20u);
+  for (const auto& [folder, num_at_least] :
+       {std::pair("/studies", 20u), std::pair("/studies/calibrated", 16u)}) {
+    const std::vector<std::string> studies = StudiesIn(folder);
+    for (const std::string& path : studies) ExpectRoundTrip(path);
+    EXPECT_GE(studies.size(), num_at_least);
+  }
 }
 
 // The studies at equal time have PoseLib's estimator in them: without it nothing but that is wrong with them.
