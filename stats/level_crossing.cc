@@ -1,0 +1,184 @@
+#include "stats/level_crossing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ranges>
+
+#include "stats/constants.h"
+#include "stats/distributions.h"
+
+namespace rcme {
+namespace {
+
+// Of the logistic curves: change of the log-odds over all levels.
+constexpr std::array kSteepness = {2.0, 5.0, 12.0, 30.0, 80.0};
+
+// Of the levels first, ..., end - 1.
+EventsAtLevel SumOver(std::span<const EventsAtLevel> events, size_t first, size_t end) {
+  EventsAtLevel sum;
+  for (const EventsAtLevel& one : events.subspan(first, end - first)) {
+    sum.num_events += one.num_events;
+    sum.num_trials += one.num_trials;
+  }
+  return sum;
+}
+
+// Whether the crossing between the levels c - 1 and c contradicts the numbers; each test at level `alpha`.
+bool IsRejected(std::span<const EventsAtLevel> events, size_t c, double rate,
+                const std::vector<size_t>& widths, double alpha) {
+  return std::ranges::any_of(widths, [&](size_t width) {
+    const EventsAtLevel below = SumOver(events, c - std::min(c, width), c);
+    const EventsAtLevel above = SumOver(events, c, std::min(c + width, events.size()));
+    return BinomialUpperTail(static_cast<int>(below.num_trials), static_cast<int>(below.num_events), rate) <=
+               alpha ||
+           BinomialCdf(above.num_events, above.num_trials, rate) <= alpha;
+  });
+}
+
+// log(1 + exp(z)).
+double SoftPlus(double z) { return std::max(z, 0.0) + std::log1p(std::exp(-std::abs(z))); }
+
+// Of the logistic curves that rise, or do not fall, through `rate` at `crossing`, over their steepness, in
+// which it is concave: by ternary search.
+double GreatestLogLikelihood(std::span<const EventsAtLevel> events, double rate, double crossing) {
+  const double log_odds = std::log(rate / (1.0 - rate));
+  const auto log_likelihood = [&](double steepness) {
+    double sum = 0.0;
+    for (const EventsAtLevel& one : events) {
+      const double z = log_odds + steepness * (one.level - crossing);
+      sum += static_cast<double>(one.num_events) * z - static_cast<double>(one.num_trials) * SoftPlus(z);
+    }
+    return sum;
+  };
+  double low = 0.0, high = 1000.0;
+  for (int i = 0; i < 60; ++i) {
+    const double third = (high - low) / 3.0;
+    if (log_likelihood(low + third) < log_likelihood(high - third)) {
+      low += third;
+    } else {
+      high -= third;
+    }
+  }
+  return log_likelihood(0.5 * (low + high));
+}
+
+constexpr size_t kNumLevels = 1024;           // of the search, over [0, 1]
+constexpr std::int64_t kNumSteps = 40;        // of the search
+constexpr std::int64_t kNumFreshLevels = 16;  // of the second part
+
+double PlaceOfLevel(size_t level) { return (static_cast<double>(level) + 0.5) / kNumLevels; }
+
+// The levels of the second part, ascending: evenly over the posterior's central 99 %, widened by half its
+// width on both sides.
+std::vector<size_t> ChooseFreshLevels(const CrossingSearch& search) {
+  const double low = search.Quantile(0.005), high = search.Quantile(0.995), margin = high - low + 1.0;
+  std::vector<size_t> levels;
+  for (std::int64_t i = 0; i < kNumFreshLevels; ++i) {
+    const double place =
+        low - margin + (high - low + 2.0 * margin) * (static_cast<double>(i) + 0.5) / kNumFreshLevels;
+    levels.push_back(static_cast<size_t>(std::clamp(std::floor(place), 0.0, kNumLevels - 1.0)));
+  }
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+  return levels;
+}
+
+}  // namespace
+
+CrossingSearch::CrossingSearch(size_t num_levels, double rate)
+    : num_levels_(num_levels), log_weights_(kSteepness.size() * (num_levels + 1)) {
+  const double log_odds = std::log(rate / (1.0 - rate)), size = static_cast<double>(num_levels);
+  for (const double steepness : kSteepness) {
+    for (size_t d = 0; d < 2 * num_levels;
+         ++d) {  // level - crossing = d - num_levels, counted from its centre
+      const double z = log_odds + steepness * (static_cast<double>(d) - size + 0.5) / size;
+      log_rates_.push_back(-std::log1p(std::exp(-z)));
+      log_rests_.push_back(-std::log1p(std::exp(z)));
+    }
+  }
+}
+
+void CrossingSearch::Add(size_t level, std::int64_t num_events, std::int64_t num_trials) {
+  const auto k = static_cast<double>(num_events), rest = static_cast<double>(num_trials - num_events);
+  for (size_t s = 0; s < kSteepness.size(); ++s) {
+    for (size_t c = 0; c <= num_levels_; ++c) {
+      const size_t curve = s * 2 * num_levels_ + level + num_levels_ - c;
+      log_weights_[s * (num_levels_ + 1) + c] += k * log_rates_[curve] + rest * log_rests_[curve];
+    }
+  }
+}
+
+double CrossingSearch::Quantile(double probability) const {
+  const double greatest = std::ranges::max(log_weights_);
+  std::vector<double> weights(num_levels_ + 1);
+  double sum = 0.0;
+  for (size_t i = 0; i < log_weights_.size(); ++i) {
+    const double weight = std::exp(log_weights_[i] - greatest);
+    weights[i % weights.size()] += weight;
+    sum += weight;
+  }
+  double below = 0.0;
+  for (size_t c = 0; c < num_levels_; ++c) {
+    below += weights[c];
+    if (below >= probability * sum) return static_cast<double>(c);
+  }
+  return static_cast<double>(num_levels_);
+}
+
+size_t CrossingSearch::NextLevel(size_t step) const {
+  constexpr std::array kQuantiles = {0.5, 0.15, 0.85, 0.3, 0.7};
+  const auto crossing = static_cast<size_t>(Quantile(kQuantiles[step % kQuantiles.size()]));
+  // The level below the crossing and that above it in turn.
+  const size_t level = step % 2 == 0 ? crossing : crossing - std::min<size_t>(crossing, 1);
+  return std::min(level, num_levels_ - 1);
+}
+
+Interval FindCrossingInterval(std::span<const EventsAtLevel> events, double rate, double confidence) {
+  std::vector<size_t> widths;
+  for (size_t width = 1; width < events.size(); width *= 2) widths.push_back(width);
+  widths.push_back(events.size());
+  const double alpha = (1.0 - confidence) / (2.0 * static_cast<double>(widths.size()));
+  Interval interval{kInfinity, -kInfinity};
+  for (size_t c = 0; c <= events.size(); ++c) {
+    if (IsRejected(events, c, rate, widths, alpha)) continue;
+    interval.lower = std::min(interval.lower, c == 0 ? -kInfinity : events[c - 1].level);
+    interval.upper = std::max(interval.upper, c == events.size() ? kInfinity : events[c].level);
+  }
+  return interval.lower < interval.upper ? interval : Interval{-kInfinity, kInfinity};
+}
+
+Interval FindLogisticInterval(std::span<const EventsAtLevel> events, double rate, double confidence) {
+  constexpr int kNumPlaces = 1000;
+  std::vector<double> likelihoods;
+  for (int i = 0; i <= kNumPlaces; ++i)
+    likelihoods.push_back(GreatestLogLikelihood(events, rate, static_cast<double>(i) / kNumPlaces));
+  const double least = std::ranges::max(likelihoods) - 0.5 * ChiSquareQuantile(1, confidence);
+  const auto is_accepted = [least](double likelihood) { return likelihood >= least; };
+  const auto first = std::ranges::find_if(likelihoods, is_accepted) - likelihoods.begin();
+  const auto last =
+      std::ranges::find_if(likelihoods | std::views::reverse, is_accepted).base() - likelihoods.begin() - 1;
+  // Between two places: outwards.
+  return {first == 0 ? -kInfinity : static_cast<double>(first - 1) / kNumPlaces,
+          last == kNumPlaces ? kInfinity : static_cast<double>(last + 1) / kNumPlaces};
+}
+
+Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence) {
+  CrossingSearch search(kNumLevels, rate);
+  Crossing crossing;
+  const auto ask_at = [&](size_t level, std::int64_t number, std::vector<EventsAtLevel>* asked) {
+    asked->push_back({PlaceOfLevel(level), ask(PlaceOfLevel(level), number), number});
+    search.Add(level, asked->back().num_events, number);
+  };
+  const std::int64_t num_steps = std::min(kNumSteps, num_trials / 3), num_searched = num_trials / 3;
+  for (std::int64_t step = 0; step < num_steps; ++step)
+    ask_at(search.NextLevel(static_cast<size_t>(step)), num_searched / num_steps, &crossing.searched);
+  const std::vector<size_t> levels = ChooseFreshLevels(search);
+  const std::int64_t per_level = (num_trials - num_searched) / std::ssize(levels);
+  for (const size_t level : levels) ask_at(level, per_level, &crossing.fresh);
+  crossing.estimate = search.Quantile(0.5) / kNumLevels;
+  crossing.interval = FindCrossingInterval(crossing.fresh, rate, confidence);
+  crossing.logistic_interval = FindLogisticInterval(crossing.fresh, rate, confidence);
+  return crossing;
+}
+
+}  // namespace rcme
