@@ -99,6 +99,7 @@ A first session:
   AddShowCommand(app);
   AddCheckCommand(app);
   AddMergeCommand(app);
+  AddSolveCommand(app);
   app.group("Thresholds, efforts and answers made elsewhere");
   AddTuneCommand(app);
   AddTransferCommand(app);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
+#include <functional>
 
 #include "stats/constants.h"
 #include "stats/distributions.h"
@@ -39,9 +39,29 @@ bool IsRejected(std::span<const EventsAtLevel> events, size_t c, double rate,
 // log(1 + exp(z)).
 double SoftPlus(double z) { return std::max(z, 0.0) + std::log1p(std::exp(-std::abs(z))); }
 
-// Of the logistic curves that rise, or do not fall, through `rate` at `crossing`, over their steepness, in
-// which it is concave: by ternary search.
-double GreatestLogLikelihood(std::span<const EventsAtLevel> events, double rate, double crossing) {
+// Where a function of one maximum is greatest: golden-section search.
+double FindMaximum(const std::function<double(double)>& function, double low, double high) {
+  constexpr double kGolden = 0.6180339887498949;
+  double inner_low = high - kGolden * (high - low), inner_high = low + kGolden * (high - low);
+  double value_low = function(inner_low), value_high = function(inner_high);
+  for (int i = 0; i < 50; ++i) {
+    if (value_low < value_high) {
+      low = inner_low;
+      inner_low = inner_high, value_low = value_high;
+      value_high = function(inner_high = low + kGolden * (high - low));
+    } else {
+      high = inner_high;
+      inner_high = inner_low, value_high = value_low;
+      value_low = function(inner_low = high - kGolden * (high - low));
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+// The greatest log-likelihood of a logistic curve through `rate` at `crossing` that does not fall, over its
+// steepness, in which it is concave.
+double ProfileLogLikelihood(std::span<const EventsAtLevel> events, double rate, double crossing) {
+  constexpr double kMostSteepness = 1000.0;
   const double log_odds = std::log(rate / (1.0 - rate));
   const auto log_likelihood = [&](double steepness) {
     double sum = 0.0;
@@ -51,16 +71,7 @@ double GreatestLogLikelihood(std::span<const EventsAtLevel> events, double rate,
     }
     return sum;
   };
-  double low = 0.0, high = 1000.0;
-  for (int i = 0; i < 60; ++i) {
-    const double third = (high - low) / 3.0;
-    if (log_likelihood(low + third) < log_likelihood(high - third)) {
-      low += third;
-    } else {
-      high -= third;
-    }
-  }
-  return log_likelihood(0.5 * (low + high));
+  return log_likelihood(FindMaximum(log_likelihood, 0.0, kMostSteepness));
 }
 
 constexpr size_t kNumLevels = 1024;           // of the search, over [0, 1]
@@ -147,19 +158,24 @@ Interval FindCrossingInterval(std::span<const EventsAtLevel> events, double rate
   return interval.lower < interval.upper ? interval : Interval{-kInfinity, kInfinity};
 }
 
+// Of a set {a + b x} of lines that is convex, the places where they cross a value are an interval: so the
+// profile likelihood rises to its maximum and then falls.
 Interval FindLogisticInterval(std::span<const EventsAtLevel> events, double rate, double confidence) {
-  constexpr int kNumPlaces = 1000;
-  std::vector<double> likelihoods;
-  for (int i = 0; i <= kNumPlaces; ++i)
-    likelihoods.push_back(GreatestLogLikelihood(events, rate, static_cast<double>(i) / kNumPlaces));
-  const double least = std::ranges::max(likelihoods) - 0.5 * ChiSquareQuantile(1, confidence);
-  const auto is_accepted = [least](double likelihood) { return likelihood >= least; };
-  const auto first = std::ranges::find_if(likelihoods, is_accepted) - likelihoods.begin();
-  const auto last =
-      std::ranges::find_if(likelihoods | std::views::reverse, is_accepted).base() - likelihoods.begin() - 1;
-  // Between two places: outwards.
-  return {first == 0 ? -kInfinity : static_cast<double>(first - 1) / kNumPlaces,
-          last == kNumPlaces ? kInfinity : static_cast<double>(last + 1) / kNumPlaces};
+  const auto profile = [&](double crossing) { return ProfileLogLikelihood(events, rate, crossing); };
+  const double best = FindMaximum(profile, 0.0, 1.0);
+  const double greatest = std::max({profile(best), profile(0.0), profile(1.0)});
+  const double least = greatest - 0.5 * ChiSquareQuantile(1, confidence);
+  // The last accepted place on the way from the best to the end.
+  const auto find_end = [&](double end, double beyond) {
+    if (profile(end) >= least) return beyond;
+    double accepted = best, rejected = end;
+    for (int i = 0; i < 40; ++i) {
+      const double middle = 0.5 * (accepted + rejected);
+      (profile(middle) >= least ? accepted : rejected) = middle;
+    }
+    return accepted;
+  };
+  return {find_end(0.0, -kInfinity), find_end(1.0, kInfinity)};
 }
 
 Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence) {

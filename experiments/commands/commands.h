@@ -32,6 +32,7 @@ void AddBudgetCommand(CLI::App& app);
 void AddTransferCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
 void AddRareCommand(CLI::App& app);
+void AddSolveCommand(CLI::App& app);
 void AddModelChoiceCommand(CLI::App& app);
 void AddValidateCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);

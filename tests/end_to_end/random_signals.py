@@ -134,6 +134,8 @@ def commands(inputs):
                 resumes=True, longer=["--trials", "10000"]),
         Command("budget", lambda out: ["budget", study, "--time-ms", "0.2", "--calls", "1", "--out", out / "study.yaml"],
                 may_differ=True),
+        Command("solve", lambda out: ["solve", study, "--over", "outlier_ratio", "--trials", "300", *base, "--out", out], resumes=True,
+                longer=["--trials", "6000"]),
         Command("model_choice", lambda out: ["model-choice", "model_choice", "--trials", "1", *base, "--out", out], resumes=True,
                 longer=["--trials", "10"]),
         Command("paper_table", lambda out: ["paper-table", run, "--out", out], codes=(0, 2)),

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
+#include "experiments/commands/shard_options.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/search/crossing_output.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct SolveArguments {
+  std::string study, out, max_time, quantity = "failure", scale = "linear";
+  std::vector<std::string> estimators;
+  StudyChanges changes;
+  CrossingQuestion question;
+  int threads = 0;
+};
+
+std::vector<std::string> EventNames() {
+  std::vector<std::string> names;
+  for (const TrialEvent& event : TrialEvents()) names.push_back(event.name);
+  return names;
+}
+
+// The range of the study's own levels where none is given.
+void SetRange(const Study& study, const CLI::Option& from, const CLI::Option& to,
+              CrossingQuestion* question) {
+  const auto factor = std::ranges::find(study.factors, question->setting, &Factor::key);
+  std::vector<double> levels;
+  if (factor != study.factors.end()) {
+    for (const std::string& level : factor->levels) {
+      double value = 0.0;
+      if (ParseReal(level, &value)) levels.push_back(value);
+    }
+  }
+  if (levels.empty() && (from.empty() || to.empty()))
+    throw InputError(fmt::format(
+        "solve: '{}' is no factor of the study with levels that are numbers; give --from and --to",
+        question->setting));
+  if (from.empty()) question->from = std::ranges::min(levels);
+  if (to.empty()) question->to = std::ranges::max(levels);
+  if (!(question->from < question->to))
+    throw InputError(fmt::format("solve: --from {} is not below --to {}", question->from, question->to));
+  if (question->is_logarithmic && question->from <= 0.0)
+    throw InputError(fmt::format("solve: --scale log needs --from above 0, not {}", question->from));
+}
+
+void KeepEstimators(const std::vector<std::string>& labels, Study* study) {
+  if (labels.empty()) return;
+  std::string known;
+  for (const EstimatorSpec& spec : study->estimators) known += (known.empty() ? "" : ", ") + spec.label;
+  for (const std::string& label : labels) {
+    if (std::ranges::count(study->estimators, label, &EstimatorSpec::label) == 0)
+      throw InputError(fmt::format("--estimator: the study has no '{}'; it has: {}", label, known));
+  }
+  std::erase_if(study->estimators,
+                [&](const EstimatorSpec& spec) { return std::ranges::count(labels, spec.label) == 0; });
+}
+
+void Solve(SolveArguments arguments, const CLI::Option& from, const CLI::Option& to) {
+  const StopOnSignals stop;
+  StartTimeLimit(arguments.max_time);
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
+  KeepEstimators(arguments.estimators, &study);
+  CrossingQuestion& question = arguments.question;
+  question.is_logarithmic = arguments.scale == "log";
+  question.event = *std::ranges::find(TrialEvents(), arguments.quantity, &TrialEvent::name);
+  SetRange(study, from, to, &question);
+  CheckProcessEstimators(study.estimators);
+  std::optional<Runner> runner;
+  std::optional<KeptSteps> steps;
+  if (!arguments.out.empty()) {
+    MakeResultFolder(arguments.out);
+    runner = MakeRunner(PlanCrossings(study, question), FindCheckpointInFolder(arguments.out), 1);
+    steps.emplace(&*runner);
+  }
+  const CrossingAnswer answer = FindCrossings(study, question, arguments.threads, steps ? &*steps : nullptr);
+  const std::string table = CrossingsAsTable(study, question, answer);
+  fmt::print("{}", table);
+  if (arguments.out.empty()) return;
+  const std::filesystem::path folder(arguments.out);
+  WriteFileWhole((folder / "crossings.txt").string(), table);
+  WriteFileWhole((folder / "crossings.csv").string(), CrossingsAsCsv(question, answer));
+  WriteFileWhole((folder / "crossings.json").string(), CrossingsAsJson(study, question, answer));
+  runner->RemoveCheckpoint();
+}
+
+}  // namespace
+
+void AddSolveCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("solve", "Find the level of a setting at which a rate crosses a value");
+  command->footer(
+      R"(Finds, say, the outlier ratio at which an estimator begins to fail more often than once in
+a hundred calls: for each estimator, and in each condition of the other factors.
+
+A third of the trials search: they go where they tell most about the crossing. The rest
+are fresh trials at 16 levels around it, on which two intervals rest. One supposes only
+that the rate does not fall with the setting; it holds for any such curve. The other also
+supposes a logistic curve near the crossing; it is several times narrower, and wrong for
+steps and plateaus. Trials of one level are the same for all estimators.
+
+If the command is stopped or killed, run it again with --out: finished work is kept in
+OUT/unfinished.part until the end.
+
+Examples:
+  rcme solve failure_vs_outliers --over outlier_ratio --at 0.1
+  rcme solve failure_vs_outliers --over sigma_px --from 0.1 --to 10 --scale log --at 0.05
+  rcme solve STUDY --over num_matches --from 10 --to 200 --falling --at 0.01 --out few)");
+  auto arguments = std::make_shared<SolveArguments>();
+  command
+      ->add_option("study", arguments->study,
+                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
+      ->required();
+  command
+      ->add_option(
+          "--over", arguments->question.setting,
+          "the setting to vary, a number: any key that --set takes (data, failure bound or estimator option)")
+      ->required();
+  CLI::Option* from =
+      command
+          ->add_option("--from", arguments->question.from, "least level; default: that of the study's factor")
+          ->transform(NumberIn());
+  CLI::Option* to =
+      command
+          ->add_option("--to", arguments->question.to, "greatest level; default: that of the study's factor")
+          ->transform(NumberIn());
+  command->add_option("--scale", arguments->scale, "linear (default) or log: how levels are spaced")
+      ->check(OneOf({"linear", "log"}));
+  command->add_option("--quantity", arguments->quantity, "event whose rate is meant; default: failure")
+      ->check(OneOf(EventNames()));
+  command->add_option("--at", arguments->question.rate, "the rate")
+      ->transform(NumberIn({1e-6, 1.0 - 1e-6}))
+      ->capture_default_str();
+  command->add_flag("--falling", arguments->question.is_falling, "the rate falls with the setting");
+  command->add_option("--estimator", arguments->estimators, "only this one, by its label; repeatable")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--trials", arguments->question.num_trials, "trials for each estimator in each condition")
+      ->transform(WholeNumberIn(100, 100'000'000))
+      ->capture_default_str();
+  command->add_option("-o,--out", arguments->out,
+                      "folder for crossings.txt, .csv and .json, created if missing");
+  AddTimeLimit(command, "batches of trials", &arguments->max_time);
+  AddStudyOptions(command, &arguments->changes);
+  AddProcessOption(command, &arguments->changes.allow_process);
+  command
+      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
+      ->transform(WholeNumberIn(0, 1024));
+  command->callback([arguments, from, to] { Solve(*arguments, *from, *to); });
+}
+
+}  // namespace rcme

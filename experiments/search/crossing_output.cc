@@ -1,0 +1,85 @@
+#include "experiments/search/crossing_output.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/json_output.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<ColumnOf<RateCrossing>> CrossingColumns(const CrossingQuestion& question,
+                                                    const std::vector<std::string>& factors) {
+  std::vector<ColumnOf<RateCrossing>> columns = LevelColumns<RateCrossing>(factors);
+  columns.push_back({Column::Key("estimator"), [](const RateCrossing& one) { return one.estimator; }});
+  Column estimate = Column::Estimated("estimate");
+  estimate.heading = question.setting;
+  columns.push_back({estimate, [](const RateCrossing& one) { return Estimate{one.estimate, one.interval}; }});
+  const auto add_interval = [&](const std::string& name, const std::string& json_name,
+                                const std::string& heading, Interval RateCrossing::*member) {
+    columns.push_back(
+        {{.name = name, .type = ColumnType::kInterval, .json_name = json_name, .heading = heading},
+         [member](const RateCrossing& one) { return one.*member; }});
+  };
+  add_interval("lower,upper", "interval", "", &RateCrossing::interval);
+  add_interval("logistic_lower,logistic_upper", "logistic_interval", "if logistic",
+               &RateCrossing::logistic_interval);
+  columns.push_back({Column::Count("trials"), [](const RateCrossing& one) { return one.num_trials(); }});
+  return columns;
+}
+
+Json EventsAsJson(const std::vector<EventsAtLevel>& events) {
+  Json json = Json::array();
+  for (const EventsAtLevel& one : events)
+    json.push_back({{"level", one.level}, {"events", one.num_events}, {"n", one.num_trials}});
+  return json;
+}
+
+}  // namespace
+
+std::string CrossingsAsTable(const Study& study, const CrossingQuestion& question,
+                             const CrossingAnswer& answer) {
+  std::vector<ColumnOf<RateCrossing>> columns = CrossingColumns(question, answer.factors);
+  std::erase_if(columns,
+                [](const auto& one) { return one.column.name == "lower,upper"; });  // beside the estimate
+  return FormatParagraph(
+             fmt::format("Study {}: {} of {} within [{:.6g}, {:.6g}] at which the rate of {} crosses {:.6g}",
+                         study.name, question.is_falling ? "the least value" : "the greatest value",
+                         question.setting, question.from, question.to, question.event.name, question.rate)) +
+         "\n" + RenderText(MakeTable(columns, answer.crossings)) + "\n" +
+         FormatParagraph(fmt::format(
+             "Intervals are of 95 % each. The first supposes only that the rate does not {} with {}; the "
+             "second also that its log-odds "
+             "are linear where the fresh trials were run. inf: the crossing may lie beyond the range.",
+             question.is_falling ? "rise" : "fall", question.setting));
+}
+
+std::string CrossingsAsCsv(const CrossingQuestion& question, const CrossingAnswer& answer) {
+  return RenderCsv(MakeTable(CrossingColumns(question, answer.factors), answer.crossings));
+}
+
+std::string CrossingsAsJson(const Study& study, const CrossingQuestion& question,
+                            const CrossingAnswer& answer) {
+  Json rows = RenderJson(MakeTable(CrossingColumns(question, answer.factors), answer.crossings));
+  for (size_t i = 0; i < answer.crossings.size(); ++i) {
+    rows[i]["searched"] = EventsAsJson(answer.crossings[i].searched);
+    rows[i]["fresh"] = EventsAsJson(answer.crossings[i].fresh);
+  }
+  return JsonText(kCrossingsFormat, {{"study", study.name},
+                                     {"setting", question.setting},
+                                     {"from", question.from},
+                                     {"to", question.to},
+                                     {"logarithmic", question.is_logarithmic},
+                                     {"falling", question.is_falling},
+                                     {"quantity", question.event.name},
+                                     {"rate", question.rate},
+                                     {"crossings", rows}});
+}
+
+}  // namespace rcme

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "experiments/search/rate_crossing.h"
+
+namespace rcme {
+
+// For people: a row for each condition and estimator.
+std::string CrossingsAsTable(const Study& study, const CrossingQuestion& question,
+                             const CrossingAnswer& answer);
+// The same rows.
+std::string CrossingsAsCsv(const CrossingQuestion& question, const CrossingAnswer& answer);
+// The rows, and the events at every level that was asked.
+std::string CrossingsAsJson(const Study& study, const CrossingQuestion& question,
+                            const CrossingAnswer& answer);
+
+}  // namespace rcme

@@ -1,0 +1,205 @@
+#include "experiments/search/rate_crossing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "experiments/core/work/for_each_index.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/study/study_file.h"
+#include "experiments/trial/trial.h"
+#include "parameters/input_error.h"
+#include "stats/constants.h"
+
+namespace rcme {
+namespace {
+
+// From the place of a level in [0, 1], where the rate rises, to the setting.
+class Scale {
+ public:
+  Scale(const CrossingQuestion& question, bool is_whole) : question_(question), is_whole_(is_whole) {}
+
+  double SettingAt(double place) const {
+    if (std::isinf(place)) return question_.is_falling ? -place : place;
+    const double along = question_.is_falling ? 1.0 - place : place;
+    return question_.is_logarithmic ? question_.from * std::pow(question_.to / question_.from, along)
+                                    : question_.from + (question_.to - question_.from) * along;
+  }
+  std::string TextAt(double place) const {
+    const double setting = SettingAt(place);
+    return is_whole_ ? fmt::format("{:.0f}", setting) : fmt::format("{:.10g}", setting);
+  }
+  Interval SettingsIn(const Interval& places) const {
+    const double a = SettingAt(places.lower), b = SettingAt(places.upper);
+    return {std::min(a, b), std::max(a, b)};
+  }
+  std::vector<EventsAtLevel> SettingsOfEvents(std::vector<EventsAtLevel> events) const {
+    for (EventsAtLevel& one : events) one.level = SettingAt(one.level);
+    return events;
+  }
+
+ private:
+  const CrossingQuestion& question_;
+  bool is_whole_;
+};
+
+StudyPlan PlanAt(const Study& study, const CrossingQuestion& question, const std::string& level) {
+  Study at_level = study;
+  Override(&at_level, question.setting, level);
+  return MakePlan(at_level);
+}
+
+// Whether the setting has no values but whole numbers: then the middle between two of them is refused.
+bool IsWhole(const Study& study, const CrossingQuestion& question) {
+  if (question.from != std::round(question.from) || question.to != std::round(question.to)) return false;
+  Study between = study;
+  try {
+    Override(&between, question.setting, fmt::format("{}", question.from + 0.5));
+    MakePlan(between, PlanEstimators::kNotMade);
+    return false;
+  } catch (const InputError&) {
+    Override(&between, question.setting, fmt::format("{}", question.from));
+    MakePlan(between, PlanEstimators::kNotMade);  // says what is wrong where that is something else
+    return true;
+  }
+}
+
+void CheckTrial(const TrialResult& result, const CrossingQuestion& question) {
+  if (result.problem.weight != 1.0)
+    throw InputError(
+        "solve: the trials of this study are weighted (tilted_to), which its intervals do not allow");
+  if (question.event.needs_truth && !IsScored(result.records.front()))
+    throw InputError("solve: the truth of this study's pairs is not known");
+}
+
+// Asks one estimator in one condition.
+class Asker {
+ public:
+  Asker(const Study& study, const CrossingQuestion& question, const Scale& scale, size_t condition,
+        size_t estimator, int num_threads, KeptSteps* steps, std::optional<Progress>* progress,
+        std::int64_t total, std::int64_t* num_done)
+      : study_(study),
+        question_(question),
+        scale_(scale),
+        condition_(condition),
+        num_threads_(num_threads),
+        steps_(steps),
+        progress_(progress),
+        total_(total),
+        num_done_(num_done) {
+    study_.estimators = {study.estimators[estimator]};
+  }
+
+  std::int64_t Ask(double place, std::int64_t num_trials) {
+    const std::string level = scale_.TextAt(place);
+    std::int64_t& next = next_trials_[level];
+    const StepForm<std::int64_t> form = {[](const std::int64_t& count) { return fmt::format("[{}]", count); },
+                                         [&](const std::string& json) {
+                                           const nlohmann::ordered_json counts = ParsePiece(json);
+                                           RequireSize(counts, 1);
+                                           return CountFrom(counts[0], num_trials);
+                                         }};
+    const std::int64_t num_events = TakeStep<std::int64_t>(
+        steps_, [&] { return Count(level, next, num_trials); }, form);
+    next += num_trials;
+    *num_done_ += num_trials;
+    return num_events;
+  }
+
+ private:
+  // The events among the trials first, ..., first + num_trials - 1.
+  std::int64_t Count(const std::string& level, std::int64_t first, std::int64_t num_trials) {
+    if (!*progress_) progress_->emplace("trials", total_, *num_done_);
+    const StudyPlan plan = PlanAt(study_, question_, level);
+    const Condition& condition = plan.conditions.at(condition_);
+    std::atomic<std::int64_t> num_events = 0;
+    ForEachIndex(num_trials, num_threads_, [&](std::int64_t index) {
+      const TrialResult result = RunTrial(plan, condition, static_cast<std::uint32_t>(first + index));
+      CheckTrial(result, question_);
+      num_events += question_.event.has_happened(result.records.front(), plan.study.failure);
+      (*progress_)->Advance(1);
+    });
+    return num_events;
+  }
+
+  Study study_;
+  const CrossingQuestion& question_;
+  const Scale& scale_;
+  size_t condition_;
+  int num_threads_;
+  KeptSteps* steps_;
+  std::optional<Progress>* progress_;  // begins with the first trial that is not kept
+  std::int64_t total_;
+  std::int64_t* num_done_;
+  std::map<std::string, std::int64_t> next_trials_;  // by level
+};
+
+// The place of the setting among the factors; their number if it is none.
+size_t FindFactor(const StudyPlan& plan, const std::string& setting) {
+  return static_cast<size_t>(std::ranges::find(plan.factor_names, setting) - plan.factor_names.begin());
+}
+
+template <typename T>
+std::vector<T> Without(std::vector<T> values, size_t place) {
+  if (place < values.size()) values.erase(values.begin() + static_cast<std::ptrdiff_t>(place));
+  return values;
+}
+
+}  // namespace
+
+std::int64_t RateCrossing::num_trials() const {
+  std::int64_t sum = 0;
+  for (const std::vector<EventsAtLevel>* part : {&searched, &fresh}) {
+    for (const EventsAtLevel& one : *part) sum += one.num_trials;
+  }
+  return sum;
+}
+
+WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question) {
+  const std::string identity =
+      fmt::format("{}\ncrossing: {} of {} in [{}, {}], logarithmic {}, falling {}, at {}, {} trials\n",
+                  MakePlan(study, PlanEstimators::kNotMade).identity, question.event.name, question.setting,
+                  question.from, question.to, question.is_logarithmic, question.is_falling, question.rate,
+                  question.num_trials);
+  return {"solve", "step", identity, {}, true};
+}
+
+CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& question, int num_threads,
+                             KeptSteps* steps) {
+  if (study.repeats_per_scene > 1)
+    throw InputError(
+        "solve: repeats of a scene (repeats_per_scene) are not independent, as its intervals require");
+  const Scale scale(question, IsWhole(study, question));
+  const StudyPlan plan = PlanAt(study, question, scale.TextAt(0.5));
+  PlanAt(study, question, scale.TextAt(0.0));
+  PlanAt(study, question, scale.TextAt(1.0));
+  const size_t factor = FindFactor(plan, question.setting);
+  CrossingAnswer answer{Without(plan.factor_names, factor), {}};
+  std::optional<Progress> progress;
+  std::int64_t num_done = 0;
+  const auto total =
+      static_cast<std::int64_t>(plan.conditions.size() * study.estimators.size()) * question.num_trials;
+  for (size_t c = 0; c < plan.conditions.size(); ++c) {
+    for (size_t e = 0; e < study.estimators.size(); ++e) {
+      Asker asker(study, question, scale, c, e, num_threads, steps, &progress, total, &num_done);
+      Crossing found =
+          FindCrossing([&](double place, std::int64_t number) { return asker.Ask(place, number); },
+                       question.rate, question.num_trials);
+      answer.crossings.push_back({Without(plan.conditions[c].levels, factor), study.estimators[e].label,
+                                  scale.SettingAt(found.estimate), scale.SettingsIn(found.interval),
+                                  scale.SettingsIn(found.logistic_interval),
+                                  scale.SettingsOfEvents(std::move(found.searched)),
+                                  scale.SettingsOfEvents(std::move(found.fresh))});
+    }
+  }
+  return answer;
+}
+
+}  // namespace rcme
