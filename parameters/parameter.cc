@@ -25,7 +25,7 @@ bool Contains(const Parameter::Range& range, double value) {
   return value >= range.min && value <= range.max;
 }
 
-std::string RangeInWords(const std::string& kind, const Parameter::Range& range) {
+std::string DescribeRange(const std::string& kind, const Parameter::Range& range) {
   if (std::isinf(range.min) && std::isinf(range.max)) return kind;
   if (std::isinf(range.max)) return fmt::format("{} >= {}", kind, range.min);
   if (std::isinf(range.min)) return fmt::format("{} <= {}", kind, range.max);
@@ -65,7 +65,7 @@ Parameter Parameter::Real(std::string name, double* target, Range range, std::st
   parameter.name_ = std::move(name);
   parameter.unit_ = std::move(unit);
   parameter.doc_ = std::move(doc);
-  parameter.allowed_ = RangeInWords("a number", range);
+  parameter.allowed_ = DescribeRange("a number", range);
   parameter.set_ = [target, range](const std::string& text) {
     double value = 0.0;
     if (!ParseReal(text, &value) || !Contains(range, value)) return false;
@@ -109,7 +109,7 @@ Parameter Parameter::Integer(std::string name, int* target, Range range, std::st
   Parameter parameter;
   parameter.name_ = std::move(name);
   parameter.doc_ = std::move(doc);
-  parameter.allowed_ = RangeInWords("a whole number", range);
+  parameter.allowed_ = DescribeRange("a whole number", range);
   parameter.set_ = [target, range](const std::string& text) {
     long long value = 0;
     if (!ParseInteger(text, &value) || !Contains(range, static_cast<double>(value))) return false;

@@ -2,15 +2,15 @@
 
 #include <memory>
 
-#include "experiments/core/text/columns.h"
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/progress.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/run/find_effort.h"
 #include "experiments/study/study_file.h"
 
@@ -24,7 +24,7 @@ struct BudgetArguments {
   std::uint32_t calls = 5;
 };
 
-std::string EndInWords(const FoundEffort& found) {
+std::string DescribeEffortEnd(const FoundEffort& found) {
   switch (found.end) {
     case EffortEnd::kReached:
       return "";
@@ -44,9 +44,9 @@ std::string EndInWords(const FoundEffort& found) {
 std::vector<std::string> Row(const FoundEffort& found, const std::vector<TimedProblem>& fresh) {
   const Moments ms = TimeCalls(found.spec, fresh);
   const Interval interval = StudentInterval(ms);
-  return {found.spec.label, EffortInWords(found.spec),
+  return {found.spec.label, DescribeEffort(found.spec),
           fmt::format("{:.3g} [{:.3g}, {:.3g}]", ms.mean(), interval.lower, interval.upper),
-          EndInWords(found)};
+          DescribeEffortEnd(found)};
 }
 
 void RunBudget(const BudgetArguments& arguments) {

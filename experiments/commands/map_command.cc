@@ -73,7 +73,8 @@ void Map(const MapArguments& arguments) {
                              FindCheckpointInFolder(arguments.out), arguments.threads);
   if (!is_part && !is_merge) {
     PrintMessage("map: {} conditions, {} cells; about {} on {} threads\n", work.map.conditions.size(),
-                 NumCells(work.map), DurationInWords(SecondsOfWork(work.map) / NumThreads(arguments.threads)),
+                 NumCells(work.map),
+                 DescribeDuration(SecondsOfWork(work.map) / NumThreads(arguments.threads)),
                  NumThreads(arguments.threads));
   }
   GetMapResults(work, &runner);

@@ -24,7 +24,7 @@ struct MergeArguments {
   MergeOptions options;
 };
 
-std::string MissingInWords(const MergeReport& report) {
+std::string DescribeMissing(const MergeReport& report) {
   if (report.num_shards == 0) {
     return fmt::format(
         "{} trials are missing; their shards are unknown: "
@@ -49,7 +49,7 @@ void CheckMissing(const MergeArguments& arguments) {
     if (report.unreadable.empty()) return;
     throw InputError("the parts above cannot be merged; the other parts have all trials");
   }
-  PrintMessage("{}\n", MissingInWords(report));
+  PrintMessage("{}\n", DescribeMissing(report));
   if (report.num_shards > 1) fmt::print("{}\n", ArrayText(report.missing_shards));
   throw EndWith{kTryAgain};
 }
@@ -76,14 +76,14 @@ void MergeResultFiles(const MergeArguments& arguments) {
   const MergeReport report = merge(arguments.parts, arguments.out, arguments.is_partial, arguments.options);
   if (report.num_missing > 0 && !arguments.is_partial) {
     PrintMessage("{}; nothing was written (--partial writes the trials that there are)\n",
-                 MissingInWords(report));
+                 DescribeMissing(report));
     throw EndWith{kTryAgain};
   }
   PrintMessage("{} parts, {} trials{} -> {}; next: rcme summarize {}\n", arguments.parts.size(),
                report.num_trials,
                report.num_twice > 0 ? fmt::format(" ({} read twice, and equal)", report.num_twice) : "",
                arguments.out, arguments.out);
-  if (report.num_missing > 0) PrintMessage("{}\n", MissingInWords(report));
+  if (report.num_missing > 0) PrintMessage("{}\n", DescribeMissing(report));
 }
 
 }  // namespace

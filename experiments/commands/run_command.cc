@@ -5,18 +5,18 @@
 #include <memory>
 #include <optional>
 
-#include "experiments/statistics/count_study.h"
-#include "experiments/core/text/columns.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/progress.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/core/files/first_difference.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_until.h"
+#include "experiments/statistics/count_study.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -164,7 +164,7 @@ void Run(const RunArguments& arguments) {
           ? fmt::format("rcme summarize {0} (or, by scene, rcme paper-table {0})", arguments.out)
           : "rcme summarize " + arguments.out;
   PrintMessage("done: {} trials ({} were there already) in {}; next: {}\n", report.num_trials,
-               report.num_trials - report.num_run_now, DurationInWords(report.seconds), next);
+               report.num_trials - report.num_run_now, DescribeDuration(report.seconds), next);
 }
 
 }  // namespace

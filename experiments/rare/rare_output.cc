@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kBruteForceLegend =
     "of brute force: calls, of those after which plain trials would have the same standard error.";
 
-std::string DoubtInWords(SplittingDoubt doubt, const RareCell& cell) {
+std::string DescribeDoubt(SplittingDoubt doubt, const RareCell& cell) {
   const SplittingRate& rate = cell.rate;
   switch (doubt) {
     case SplittingDoubt::kNoLevels:
@@ -45,9 +45,9 @@ std::string DoubtInWords(SplittingDoubt doubt, const RareCell& cell) {
   return "";
 }
 
-std::string DoubtsInWords(const RareCell& cell) {
+std::string DescribeDoubts(const RareCell& cell) {
   std::vector<std::string> words;
-  for (const SplittingDoubt doubt : cell.rate.doubts) words.push_back(DoubtInWords(doubt, cell));
+  for (const SplittingDoubt doubt : cell.rate.doubts) words.push_back(DescribeDoubt(doubt, cell));
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
@@ -168,7 +168,7 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
     if (cells[i].rate.IsTrusted()) continue;
     doubts += FormatParagraph(fmt::format("{}: not trusted: {}",
                                           fmt::join(HeadOf(plan, rows[i].condition, rows[i].estimator), ", "),
-                                          DoubtsInWords(cells[i])));
+                                          DescribeDoubts(cells[i])));
   }
   return fmt::format("{}: failures by multilevel splitting\n\n{}\n{}{}", plan.study.name, RenderText(table),
                      doubts, doubts.empty() ? "" : "\n") +

@@ -47,7 +47,7 @@ CoverageVerdict JudgeCoverage(double coverage, const Interval& interval, std::in
   return judged;
 }
 
-std::string CoverageVerdictInWords(const CoverageVerdict& verdict) {
+std::string DescribeCoverageVerdict(const CoverageVerdict& verdict) {
   const std::string name = Name(verdict.verdict);
   if (verdict.verdict != RegionVerdict::kUndecided) return name;
   if (!std::isfinite(verdict.trials_to_decide)) return name + ", on the border of the margin";

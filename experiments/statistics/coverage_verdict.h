@@ -29,6 +29,6 @@ CoverageVerdict JudgeCoverage(double coverage, const Interval& interval, std::in
                               std::int64_t num_trials, bool is_of_fixed_n);
 
 // "undecided, about 12000 trials would do"
-std::string CoverageVerdictInWords(const CoverageVerdict& verdict);
+std::string DescribeCoverageVerdict(const CoverageVerdict& verdict);
 
 }  // namespace rcme

@@ -65,7 +65,7 @@ Estimate MakeEstimate(const SummaryRow& row, std::int64_t num_trials) {
   if (row.kind == SummaryRow::Kind::kMean || row.interval_kind == IntervalKind::kWeighted)
     estimate.standard_error = row.standard_error;
   if (row.n != num_trials) estimate.n = row.n;
-  if (row.coverage_verdict) estimate.note = CoverageVerdictInWords(*row.coverage_verdict);
+  if (row.coverage_verdict) estimate.note = DescribeCoverageVerdict(*row.coverage_verdict);
   return estimate;
 }
 

@@ -248,7 +248,7 @@ Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& 
                   0,
                   run.NumTrials(),
                   run.repeats_per_scene,
-                  TruthQualityInWords(run.identity)};
+                  DescribeTruthQuality(run.identity)};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
   summary.num_retried = run.retried_trials;

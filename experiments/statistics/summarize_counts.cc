@@ -1,8 +1,8 @@
 #include "experiments/statistics/summarize_counts.h"
 
+#include "experiments/run/store/parts.h"
 #include "experiments/statistics/summary_quantities.h"
 #include "experiments/statistics/truth_quality.h"
-#include "experiments/run/store/parts.h"
 
 namespace rcme {
 namespace {
@@ -39,7 +39,7 @@ Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling poolin
                   counts.NumTrials(),
                   run.NumTrials(),
                   run.repeats_per_scene,
-                  TruthQualityInWords(run.identity)};
+                  DescribeTruthQuality(run.identity)};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
   if (pooling == Pooling::kPooled) {

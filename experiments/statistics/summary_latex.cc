@@ -30,7 +30,7 @@ class Names {
 
   std::string Of(const std::string& name) { return Of(name, name); }
 
-  std::string InWords(const std::string& name) {
+  std::string DescribeName(const std::string& name) {
     std::string words = name;
     std::ranges::replace(words, '_', ' ');
     return Of(name, words);
@@ -68,7 +68,7 @@ void Rename(Names* names, Table* table) {
     Column& column = table->columns[c];
     if (column.is_symbol) continue;
     if (column.type != ColumnType::kText || column.group == "levels") {
-      column.heading = names->InWords(column.name);
+      column.heading = names->DescribeName(column.name);
       continue;
     }
     for (std::vector<Value>& row : table->rows) row[c] = names->Of(std::get<std::string>(row[c]));
@@ -96,7 +96,7 @@ std::string SummaryAsLatex(const Summary& summary, const std::vector<std::string
       "row's.\n"
       "% Needs \\usepackage{{booktabs}}.\n{}",
       LatexText(summary.study), summary.num_trials_done, summary.num_trials_planned, IntervalKindsIn(summary),
-      IntervalKindInWords(IntervalKind::kBetting), RenderLatex(table));
+      DescribeIntervalKind(IntervalKind::kBetting), RenderLatex(table));
 }
 
 }  // namespace rcme

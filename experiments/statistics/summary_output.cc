@@ -13,7 +13,7 @@
 
 namespace rcme {
 
-std::string IntervalKindInWords(IntervalKind kind) {
+std::string DescribeIntervalKind(IntervalKind kind) {
   switch (kind) {
     case IntervalKind::kExact:
       return "exact 95 % (Clopper-Pearson)";
@@ -33,7 +33,7 @@ std::string IntervalKindsIn(const Summary& summary) {
   std::set<std::string> kinds;
   for (const SummaryRow& row : summary.rows) {
     if (row.kind == SummaryRow::Kind::kRate && row.estimator != kSceneLabel && !row.is_of_split)
-      kinds.insert(IntervalKindInWords(row.interval_kind));
+      kinds.insert(DescribeIntervalKind(row.interval_kind));
   }
   return fmt::format("{}", fmt::join(kinds, " and "));
 }
@@ -105,7 +105,7 @@ Table MakeRowTable(const Summary& summary) {
 }
 
 // One line per estimator whose effort is known.
-std::string EffortsInWords(const Summary& summary) {
+std::string DescribeEfforts(const Summary& summary) {
   std::string text;
   for (const auto& [label, effort] : summary.efforts) {
     if (!effort.empty()) text += fmt::format("  {}: {}\n", label, effort);
@@ -124,7 +124,7 @@ std::string FormatAccuracy(const Summary& summary) {
 
 // The estimators of which a verdict depends on the sampler's seed, each with the condition where it does most
 // often, and those of which none did.
-std::string FlipsInWords(const Summary& summary) {
+std::string DescribeFlips(const Summary& summary) {
   std::vector<const SummaryRow*> most;  // one per estimator
   for (const SummaryRow& row : summary.rows) {
     if (row.quantity != "failure_flips" || row.n == 0) continue;
@@ -170,7 +170,7 @@ std::string FormatSplit(const Summary& summary) {
       summary.repeats_per_scene,
       RenderText(
           MakeQuantityTable(summary, {"failure_between_scenes", "failure_within_scenes", "failure_flips"})),
-      FlipsInWords(summary));
+      DescribeFlips(summary));
 }
 
 }  // namespace
@@ -187,14 +187,14 @@ std::string SummaryAsTable(const Summary& summary) {
       "Rates: intervals {}.\n"
       "Means of successes: +- Monte-Carlo standard error. Medians: distribution-free\n"
       "95 % intervals. auc and maa: {}.\n",
-      IntervalKindsIn(summary), IntervalKindInWords(IntervalKind::kBetting));
+      IntervalKindsIn(summary), DescribeIntervalKind(IntervalKind::kBetting));
   if (summary.repeats_per_scene > 1) {
     text += fmt::format(
         "n counts scenes: rates, scores and means are of the means over a scene's\n"
         "{} trials, medians of its first. Intervals of shares: {}; of scenes with both\n"
         "outcomes: {}.\n",
-        summary.repeats_per_scene, IntervalKindInWords(IntervalKind::kLogStudent),
-        IntervalKindInWords(IntervalKind::kExact));
+        summary.repeats_per_scene, DescribeIntervalKind(IntervalKind::kLogStudent),
+        DescribeIntervalKind(IntervalKind::kExact));
   }
   text +=
       "(n ...): the trials of a number that is not of all of them; without a known\n"
@@ -211,7 +211,7 @@ std::string SummaryAsTable(const Summary& summary) {
     text += fmt::format("{} trials were run again because an answer was missing (rcme run --retry).\n",
                         summary.num_retried);
   }
-  return text + EffortsInWords(summary);
+  return text + DescribeEfforts(summary);
 }
 
 std::string SummaryAsCsv(const Summary& summary) { return RenderCsv(MakeRowTable(summary)); }

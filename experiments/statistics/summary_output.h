@@ -19,7 +19,7 @@ std::string SummaryAsCsv(const Summary& summary);
 std::string SummaryAsJson(const Summary& summary);
 
 // "exact 95 % (Clopper-Pearson)", for people.
-std::string IntervalKindInWords(IntervalKind kind);
+std::string DescribeIntervalKind(IntervalKind kind);
 
 // Of the rates of the estimators: one kind, or several joined by "and".
 std::string IntervalKindsIn(const Summary& summary);

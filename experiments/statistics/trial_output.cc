@@ -10,8 +10,8 @@
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
-#include "experiments/trial/trial_outcome.h"
 #include "experiments/trial/severity_columns.h"
+#include "experiments/trial/trial_outcome.h"
 
 namespace rcme {
 namespace {
@@ -201,7 +201,7 @@ std::string Degrees(double angle_deg) {
   return std::isnan(angle_deg) ? "-" : fmt::format("{:.3g} deg", angle_deg);
 }
 
-std::string MatchesInWords(const TrialData& data) {
+std::string DescribeMatches(const TrialData& data) {
   std::string words = fmt::format("{} matches", data.problem.matches.size());
   const std::vector<bool>& is_inlier = data.truth.is_inlier_true;
   if (!is_inlier.empty()) {
@@ -258,7 +258,7 @@ std::string TrialAsText(const StudyPlan& plan, const TrialResult& result) {
   for (const auto& [part, name] : condition.source->ChosenParts()) {
     parts += fmt::format("{}{} {}", parts.empty() ? "  " : ", ", part, name);
   }
-  text += fmt::format("{}{}  {}\n", parts, parts.empty() ? "" : "\n", MatchesInWords(result.data));
+  text += fmt::format("{}{}  {}\n", parts, parts.empty() ? "" : "\n", DescribeMatches(result.data));
   for (const SeverityColumn& column : kSeverityColumns) {
     const double value = result.problem.severity.*column.field;
     if (!std::isnan(value)) text += fmt::format("  {:<24}{:.4g}\n", column.name, value);

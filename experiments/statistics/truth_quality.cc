@@ -10,7 +10,7 @@
 
 namespace rcme {
 
-std::string TruthQualityInWords(const std::string& identity) {
+std::string DescribeTruthQuality(const std::string& identity) {
   long long num_pairs = 0, num_stated = 0, num_assumed = 0;
   for (const std::string& line : SplitText(identity, '\n')) {  // as match_folder.cc writes them
     long long condition = 0, pairs = 0, stated = 0;

@@ -6,6 +6,6 @@ namespace rcme {
 
 // What a run's identity (study_plan.h) says of how good the truth of its pairs is, in words: how many of them
 // state it (truth_sd, match_file.h). Empty where no pair is real: the truth of a simulation is exact.
-std::string TruthQualityInWords(const std::string& identity);
+std::string DescribeTruthQuality(const std::string& identity);
 
 }  // namespace rcme

@@ -27,7 +27,7 @@ Settings AnswersOptions(const std::string& path) {
   return {{"file", path}, {"digest", DigestOfAnswers(path)}};
 }
 
-std::string EffortInWords(const EstimatorSpec& spec) {
+std::string DescribeEffort(const EstimatorSpec& spec) {
   const std::unique_ptr<EstimatorModel> model = Configure(spec);
   const std::optional<Effort> effort = model->EffortOption();
   if (!effort) return {};

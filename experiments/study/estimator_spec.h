@@ -33,11 +33,11 @@ Settings AnswersOptions(const std::string& path);
 
 // What limits the work of a call, in words: "num_iterations 200", "3.1 ms a call (num_iterations 1840)",
 // "own rule, max_iterations 5000"; empty: nobody knows.
-std::string EffortInWords(const EstimatorSpec& spec);
+std::string DescribeEffort(const EstimatorSpec& spec);
 
 // Throws InputError where the command of an estimator that is a process is not allowed (command_permission.h)
-// or cannot be used (RequireCommandAnswers of peers/peer_registry.h). To be called before work that is asked of
-// these estimators begins.
+// or cannot be used (RequireCommandAnswers of peers/peer_registry.h). To be called before work that is asked
+// of these estimators begins.
 void CheckProcessEstimators(const std::vector<EstimatorSpec>& specs);
 
 // The estimator, configured or made. Throw InputError as ConfigureEstimator does; Make also for a command

@@ -6,7 +6,7 @@ namespace rcme {
 namespace {
 
 DescribedEstimator Describe(const EstimatorSpec& spec) {
-  DescribedEstimator estimator{spec.label, spec.name, EffortInWords(spec), spec.options};
+  DescribedEstimator estimator{spec.label, spec.name, DescribeEffort(spec), spec.options};
   std::ranges::sort(estimator.options);
   return estimator;
 }

@@ -18,7 +18,7 @@ struct DescribedCondition {
 };
 
 struct DescribedEstimator {
-  std::string label, name, effort;  // the last in words (EffortInWords)
+  std::string label, name, effort;  // the last in words (DescribeEffort)
   Settings options;                 // by name
 };
 
@@ -40,8 +40,8 @@ struct RunDescription {
   std::string until_options;
   std::int64_t until_trials = 0;
   std::int64_t retried_trials = 0;  // run again because an answer from outside the program was missing
-  // Which shards of the study: "3/64" (core/work/shard.h), of several that were merged "1-3,7/64", "none/64" if
-  // every one of them lacks trials; empty: all of it.
+  // Which shards of the study: "3/64" (core/work/shard.h), of several that were merged "1-3,7/64", "none/64"
+  // if every one of them lacks trials; empty: all of it.
   std::string shard;
   bool keeps_counts = false;  // of the trials, not the trials themselves (run/store/counts_tables.h)
   TrialOrigin origin;         // of all trials; several names are separated by commas, none known is empty

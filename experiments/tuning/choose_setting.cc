@@ -20,7 +20,7 @@ double RateOrOne(const ErrorCount& count) {
   return count.n > 0 ? static_cast<double>(count.errors) / static_cast<double>(count.n) : 1.0;
 }
 
-std::string RateInWords(const ErrorCount& count) {
+std::string DescribeRate(const ErrorCount& count) {
   const Interval interval = ExactBinomialInterval(count.errors, count.n);
   return fmt::format("{:.3g} % [{:.3g}, {:.3g}] of {}", 100.0 * RateOrOne(count), 100.0 * interval.lower,
                      100.0 * interval.upper, count.n);
@@ -90,7 +90,7 @@ std::string Obstacle(const Tuning& tuning, const char* what, const ErrorCount& c
                            ? "is accepted"
                            : "would be good if nothing were refused");
   }
-  const std::string figure = fmt::format("{} {}", what, RateInWords(count));
+  const std::string figure = fmt::format("{} {}", what, DescribeRate(count));
   if (ExactBinomialInterval(count.errors, count.n).lower > at_most) {
     return figure + fmt::format(": {:.3g} % is out of reach", 100.0 * at_most);
   }
@@ -123,7 +123,7 @@ std::string WhyNone(const Tuning& tuning, const std::vector<std::string>& settin
         tuning.explore);
   }
   return fmt::format("nearest is {}: {}; no setting is certified to meet the target ({})", settings[nearest],
-                     why, TargetInWords(tuning));
+                     why, DescribeTarget(tuning));
 }
 
 double UpperBound(const ErrorCount& count, double delta) {
@@ -205,7 +205,7 @@ std::string WhyTooFewTrials(const Tuning& tuning, size_t num_conditions) {
       DivideRoundingUp(needed, conditions));
 }
 
-std::string TargetInWords(const Tuning& tuning) {
+std::string DescribeTarget(const Tuning& tuning) {
   switch (tuning.target) {
     case TuneTarget::kFalseRefusal:
       return fmt::format(

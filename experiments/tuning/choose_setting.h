@@ -49,6 +49,6 @@ Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& setti
 std::string WhyTooFewTrials(const Tuning& tuning, size_t num_conditions);
 
 // "at most 5 % of ..., except with probability 0.05", for people.
-std::string TargetInWords(const Tuning& tuning);
+std::string DescribeTarget(const Tuning& tuning);
 
 }  // namespace rcme

@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-std::string ConditionInWords(const StudyPlan& plan, const Condition& condition) {
+std::string DescribeCondition(const StudyPlan& plan, const Condition& condition) {
   std::vector<std::string> words;
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {
     words.push_back(fmt::format("{} = {}", plan.factor_names[f], condition.levels[f]));
@@ -19,7 +19,7 @@ std::string ConditionInWords(const StudyPlan& plan, const Condition& condition) 
 }
 
 // A condition of a one-at-a-time study in short: what differs from the first condition.
-std::string DifferenceInWords(const StudyPlan& plan, const Condition& condition) {
+std::string DescribeDifference(const StudyPlan& plan, const Condition& condition) {
   std::vector<std::string> words;
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {
     if (condition.levels[f] == plan.conditions.front().levels[f]) continue;
@@ -31,8 +31,8 @@ std::string DifferenceInWords(const StudyPlan& plan, const Condition& condition)
 std::vector<Family> EveryCondition(const StudyPlan& plan) {
   std::vector<Family> families;
   for (const Condition& condition : plan.conditions) {
-    families.push_back({plan.study.design == Design::kOneAtATime ? DifferenceInWords(plan, condition)
-                                                                 : ConditionInWords(plan, condition),
+    families.push_back({plan.study.design == Design::kOneAtATime ? DescribeDifference(plan, condition)
+                                                                 : DescribeCondition(plan, condition),
                         {condition.index},
                         {}});
   }
@@ -82,7 +82,7 @@ TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& setting
   const Tuning& tuning = *plan.study.tuning;
   TransferResult result;
   result.families = FamiliesOf(plan, by);
-  result.settings = SettingsInWords(tuning, settings);
+  result.settings = DescribeEachSetting(tuning, settings);
   const TuningTrials trials(tuning);
   const SettingCounts explored = source.count(trials.explore), calibrated = source.count(trials.calibrate);
   const SettingCounts verified = source.count(trials.verify);

@@ -55,7 +55,7 @@ std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result)
   return FormatParagraph(fmt::format(
              "{}: {} tuned on one family, verified on all; {} trials to verify a family of one condition",
              plan.study.name, tuning.estimator, tuning.verify)) +
-         FormatParagraph("Target: " + TargetInWords(tuning)) + "\n" + RenderText(table);
+         FormatParagraph("Target: " + DescribeTarget(tuning)) + "\n" + RenderText(table);
 }
 
 std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, const TransferResult& result) {

@@ -43,7 +43,7 @@ void CheckTrialsSuffice(const Tuning& tuning, size_t num_conditions) {
   if (!why.empty()) throw InputError("tune: " + why);
 }
 
-std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan& settings) {
+std::vector<std::string> DescribeEachSetting(const Tuning& tuning, const SettingPlan& settings) {
   std::vector<std::string> names;
   for (const TunedSetting& setting : settings.settings) {
     std::vector<std::string> words;
@@ -69,7 +69,7 @@ TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached un
   const TuningTrials trials(tuning);
   const auto count_all = [&](TrialRange range) { return SumOver(source.count(range), AllConditions(plan)); };
   TuneResult result;
-  result.settings = SettingsInWords(tuning, settings);
+  result.settings = DescribeEachSetting(tuning, settings);
   result.explored = count_all(trials.explore);
   result.calibrated = count_all(trials.calibrate);
   result.choice = ChooseSetting(tuning, result.settings, result.explored, result.calibrated);
@@ -86,7 +86,7 @@ Choice ChooseFrom(const StudyPlan& plan, const SettingPlan& settings, const Tuni
   const Tuning& tuning = *plan.study.tuning;
   const TuningTrials trials(tuning);
   const auto count_all = [&](TrialRange range) { return SumOver(source.count(range), AllConditions(plan)); };
-  return ChooseSetting(tuning, SettingsInWords(tuning, settings), count_all(trials.explore),
+  return ChooseSetting(tuning, DescribeEachSetting(tuning, settings), count_all(trials.explore),
                        count_all(trials.calibrate));
 }
 

@@ -47,7 +47,7 @@ TuneResult Tune(const StudyPlan& plan, const SettingPlan& settings, Unreached un
 Choice ChooseFrom(const StudyPlan& plan, const SettingPlan& settings, const TuningSource& source);
 
 // For people: "mu = 2, lambda = 0.5", one per setting.
-std::vector<std::string> SettingsInWords(const Tuning& tuning, const SettingPlan& settings);
+std::vector<std::string> DescribeEachSetting(const Tuning& tuning, const SettingPlan& settings);
 
 // Throws InputError if the calibration of so many conditions cannot certify the target, whatever it shows;
 // the message says how many trials could.

@@ -172,7 +172,7 @@ Json TargetAsJson(const Tuning& tuning) {
           {"at_most", is_risk ? Json(nullptr) : Json(tuning.at_most)},
           {"max_refusal", is_failure ? Json(tuning.max_refusal) : Json(nullptr)},
           {"delta", tuning.delta},
-          {"words", TargetInWords(tuning)}};
+          {"words", DescribeTarget(tuning)}};
 }
 
 Json OptionsAsJson(const Study& study) {

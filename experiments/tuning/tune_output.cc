@@ -20,7 +20,7 @@ bool AllDecideAlike(const std::vector<SettingCount>& counts) {
          std::ranges::all_of(counts, [&](const SettingCount& count) { return count == counts.front(); });
 }
 
-std::string TrialsInWords(const StudyPlan& plan) {
+std::string DescribeTrials(const StudyPlan& plan) {
   const Tuning& tuning = *plan.study.tuning;
   const auto c = static_cast<std::int64_t>(plan.conditions.size());
   return fmt::format("{} conditions; {} trials to explore, {} to calibrate, {} to verify", c,
@@ -79,14 +79,14 @@ Table MakeRocTable(const StudyPlan& plan, const std::vector<EntropyRoc>& rocs) {
       rocs);
 }
 
-std::string CertifiedInWords(const Tuning& tuning, const Choice& choice) {
+std::string DescribeCertified(const Tuning& tuning, const Choice& choice) {
   if (tuning.target == TuneTarget::kRisk) return " (the least in the exploration; nothing is certified)";
   return fmt::format(" ({} of {} settings in the order of testing certified)", choice.num_certified,
                      choice.path.size());
 }
 
 // Whether the tuned setting met the limits of its target on fresh trials.
-std::string VerdictInWords(const Tuning& tuning, const TuneResult& result) {
+std::string DescribeVerdict(const Tuning& tuning, const TuneResult& result) {
   const SettingCount& verified = result.verified[*result.choice.setting];
   if (tuning.target == TuneTarget::kRisk) {
     return fmt::format("verified risk {:.4g}; bound {:.4g}, exceeded with probability {} at most",
@@ -116,7 +116,7 @@ std::vector<size_t> ByTimesChosen(const Repetitions& repetitions) {
 // The first rows of `chosen`, and every setting whose target is not known to hold.
 Table MakeChosenTable(const Tuning& tuning, const SettingPlan& settings, const Repetitions& repetitions,
                       const std::vector<size_t>& chosen) {
-  const std::vector<std::string> names = SettingsInWords(tuning, settings);
+  const std::vector<std::string> names = DescribeEachSetting(tuning, settings);
   Table table{{Column::Key("chosen"), Column::Count("times"), Column::Estimated("failure", kPercent),
                Column::Estimated("refusal", kPercent), Column::Estimated("false refusal", kPercent),
                Column::Text("target")}};
@@ -138,12 +138,13 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
   const Tuning& tuning = *plan.study.tuning;
   std::string text =
       FormatParagraph(fmt::format("{}: {} settings of {}, {}", plan.study.name, result.settings.size(),
-                                  tuning.estimator, TrialsInWords(plan))) +
-      FormatParagraph("Target: " + TargetInWords(tuning));
+                                  tuning.estimator, DescribeTrials(plan))) +
+      FormatParagraph("Target: " + DescribeTarget(tuning));
   if (!result.choice.setting) return text + FormatParagraph("Not reached: " + result.choice.why);
   text +=
       FormatParagraph(fmt::format("Tuned: {}{}; {}", result.settings[*result.choice.setting],
-                                  CertifiedInWords(tuning, result.choice), VerdictInWords(tuning, result))) +
+                                  DescribeCertified(tuning, result.choice),
+                                  DescribeVerdict(tuning, result))) +
       "\n" + RenderText(MakeVerifiedTable(result)) + "\n" +
       FormatParagraph(
           "On the trials for verification, all with the same problems (exact 95 % intervals; differences: "
@@ -170,7 +171,7 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
       FormatParagraph(fmt::format(
           "{}: tuned {} times with fresh seeds ({} trials to explore, {} to calibrate each)", plan.study.name,
           repetitions.num_done, tuning.explore * num_conditions, tuning.calibrate * num_conditions)) +
-      FormatParagraph("Target: " + TargetInWords(tuning)) +
+      FormatParagraph("Target: " + DescribeTarget(tuning)) +
       FormatParagraph(fmt::format("Violated: {} of {}: {}; promised at most {:.3g} %", violated.errors,
                                   violated.n, RateForTable(violated), 100.0 * tuning.delta)) +
       FormatParagraph(fmt::format("Violated or undecided: {}: {}; without a choice: {}", not_shown.errors,
@@ -201,14 +202,14 @@ std::vector<std::pair<std::string, std::string>> ProvenanceOf(const StudyPlan& p
           {"seed", fmt::format("{}", plan.study.seed)},
           {"estimator", tuning.estimator},
           {"tuned", result.settings[s]},
-          {"target", TargetInWords(tuning)},
+          {"target", DescribeTarget(tuning)},
           {"failure", fmt::format("rotation error above {} deg or direction error above {} deg",
                                   plan.study.failure.max_rotation_error_deg,
                                   plan.study.failure.max_direction_error_deg)},
-          {"trials", TrialsInWords(plan)},
+          {"trials", DescribeTrials(plan)},
           {"as_tuned", rates(result.calibrated[s])},
           {"verified", rates(result.verified[s])},
-          {"verdict", VerdictInWords(tuning, result)},
+          {"verdict", DescribeVerdict(tuning, result)},
           {"program", "rcme " RCME_VERSION}};
 }
 

@@ -26,7 +26,7 @@ constexpr RareEffort kEffort{{.num_particles = 60, .num_moves = 2}, 6};
 struct Coverage {
   std::int64_t num_holding = 0, n = 0;
   void Add(bool holds) { num_holding += holds, ++n; }
-  std::string InWords() const {
+  std::string Describe() const {
     const Interval exact = ExactBinomialInterval(num_holding, n);
     return fmt::format("{} of {} [{:.3f}, {:.3f}]", num_holding, n, exact.lower, exact.upper);
   }
@@ -59,7 +59,7 @@ void Repeat(const StudyPlan& plan, double known_rate, const std::string& folder,
       "of those that are trusted    {}\n",
       plan.study.name, num_repeats, kEffort.num_replicates, kEffort.splitting.num_particles,
       kEffort.splitting.num_moves, known_rate, estimates.mean(), estimates.standard_error(), relative_sd,
-      calls.mean(), 100.0 * share, of_all.InWords(), of_trusted.InWords());
+      calls.mean(), 100.0 * share, of_all.Describe(), of_trusted.Describe());
   WriteFileWhole(folder + "/coverage.csv", rows);
   WriteFileWhole(folder + "/coverage.txt", words);
   fmt::print("{}", words);

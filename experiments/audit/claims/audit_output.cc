@@ -22,7 +22,7 @@ const char* VerdictName(const std::optional<Verdict>& verdict) {
   return verdict ? Name(*verdict) : Name(ClaimVerdict::kMeasured);
 }
 
-std::string ConditionsInWords(const Check& check) {
+std::string DescribeConditions(const Check& check) {
   std::string words;
   for (const auto& [key, value] : check.conditions) {
     words += fmt::format("{}{} = {}", words.empty() ? "" : ", ", key, value);
@@ -34,16 +34,16 @@ const NumberFormat kFourDigits{1.0, "", ".4g"};
 
 Estimate MakeEstimate(const TargetResult& result) { return {result.measured, result.interval}; }
 
-std::string ClaimedInWords(const Target& target) {
+std::string DescribeClaimed(const Target& target) {
   if (!target.IsClaimed()) return "-";
   return fmt::format("{:.4g} in [{:.4g}, {:.4g}]", target.nominal, target.allowed.lower,
                      target.allowed.upper);
 }
 
 // What the target can decide at the audit's budget; "-" where nothing is claimed.
-std::string PowerInWords(const Audit& audit, const Check& check, const Target& target) {
+std::string DescribePower(const Audit& audit, const Check& check, const Target& target) {
   if (!target.IsClaimed()) return "-";
-  return FoundInWords(PowerOf(target, check.limits.Max(audit.options.budget), audit.confidence));
+  return DescribeFound(PowerOf(target, check.limits.Max(audit.options.budget), audit.confidence));
 }
 
 // How the regions of a check or a claim are wrong.
@@ -69,7 +69,7 @@ std::string AddSide(const std::string& verdict, const std::optional<Side>& side)
   return side ? fmt::format("{}: {}", verdict, Name(*side)) : verdict;
 }
 
-std::string VerdictInWords(const Claim& claim, const ClaimResult& result) {
+std::string DescribeVerdict(const Claim& claim, const ClaimResult& result) {
   std::string words = Name(result.verdict);
   if (result.verdict == ClaimVerdict::kSmallNoiseOnly) {
     return fmt::format("{} (up to {} px)", words, *result.holds_up_to_sigma_px);
@@ -81,7 +81,7 @@ std::string VerdictInWords(const Claim& claim, const ClaimResult& result) {
   return fmt::format("{} (not possible in {} of {} conditions)", words, num_impossible, claim.checks.size());
 }
 
-std::string VerdictInWords(const Check& check, const CheckResult& result) {
+std::string DescribeVerdict(const Check& check, const CheckResult& result) {
   if (!result.not_possible.empty()) return Name(ClaimVerdict::kNotPossible);
   return AddSide(VerdictName(result.verdict), FindSide(check, result));
 }
@@ -196,7 +196,7 @@ Json ClaimAsJson(const Audit& audit, const Claim& claim, const ClaimResult& resu
 }
 
 // n, and of how many trials where not all of them say something of the target.
-std::string TrialsInWords(const TargetResult& target, const CheckResult& check) {
+std::string DescribeTrials(const TargetResult& target, const CheckResult& check) {
   return target.n == check.num_trials ? fmt::format("{}", target.n)
                                       : fmt::format("{} of {}", target.n, check.num_trials);
 }
@@ -216,14 +216,14 @@ std::string FifthsAsMarkdown(const Claim& claim, const ClaimResult& result) {
                             Estimate{fifth->measured, fifth->interval}, fifth->n});
     }
     text += fmt::format("\n{}, {}, by the Cramer-Rao bound of the problem (root of the trace):\n\n{}",
-                        ConditionsInWords(claim.checks[c]), claim.checks[c].targets.front().quantity,
+                        DescribeConditions(claim.checks[c]), claim.checks[c].targets.front().quantity,
                         RenderMarkdown(table));
   }
   return text;
 }
 
 // What would decide an undecided target; else nothing.
-std::string RemedyInWords(const TargetResult& target) {
+std::string DescribeRemedy(const TargetResult& target) {
   if (target.verdict != Verdict::kUndecided) return "";
   return std::isfinite(target.trials_to_decide)
              ? fmt::format(" (about {:.2g} trials would do)", target.trials_to_decide)
@@ -239,15 +239,15 @@ Table MakeEvidenceTable(const Audit& audit, const Claim& claim, const ClaimResul
     const CheckResult& of = result.checks[c];
     if (!of.not_possible.empty()) {
       table.rows.push_back(
-          {ConditionsInWords(check), {}, {}, {}, {}, "0", "not possible: " + of.not_possible});
+          {DescribeConditions(check), {}, {}, {}, {}, "0", "not possible: " + of.not_possible});
     }
     for (size_t t = 0; t < of.targets.size(); ++t) {
       const TargetResult& target = of.targets[t];
       if (IsLeftOut(check.targets[t], target)) continue;
       table.rows.push_back(
-          {ConditionsInWords(check), check.targets[t].quantity, ClaimedInWords(check.targets[t]),
-           PowerInWords(audit, check, check.targets[t]), MakeEstimate(target), TrialsInWords(target, of),
-           AddSide(VerdictName(target.verdict), SideOf(check.targets[t], target)) + RemedyInWords(target)});
+          {DescribeConditions(check), check.targets[t].quantity, DescribeClaimed(check.targets[t]),
+           DescribePower(audit, check, check.targets[t]), MakeEstimate(target), DescribeTrials(target, of),
+           AddSide(VerdictName(target.verdict), SideOf(check.targets[t], target)) + DescribeRemedy(target)});
     }
   }
   return table;
@@ -255,7 +255,7 @@ Table MakeEvidenceTable(const Audit& audit, const Claim& claim, const ClaimResul
 
 std::string ClaimAsMarkdown(const Audit& audit, const Claim& claim, const ClaimResult& result) {
   return fmt::format("### {} ({})\n\n{}: \"{}.\" Measured: {}.\n\n**{}**\n\n", claim.id, claim.reading,
-                     claim.label, claim.sentence, claim.statistic, VerdictInWords(claim, result)) +
+                     claim.label, claim.sentence, claim.statistic, DescribeVerdict(claim, result)) +
          RenderMarkdown(MakeEvidenceTable(audit, claim, result)) + FifthsAsMarkdown(claim, result) + "\n";
 }
 
@@ -279,17 +279,17 @@ Table MakeConditionTable(const Audit& audit) {
     const ClaimResult& result = audit.results[i];
     if (claim.checks.size() > 1) {
       table.rows.push_back(
-          {claim.id, fmt::format("all {}", claim.checks.size()), VerdictInWords(claim, result)});
+          {claim.id, fmt::format("all {}", claim.checks.size()), DescribeVerdict(claim, result)});
     }
     for (size_t c = 0; c < claim.checks.size(); ++c) {
       const Decisive decisive = DecisiveOf(claim, result, c, c + 1);
-      table.rows.push_back(
-          {claim.id, ConditionsInWords(claim.checks[c]), VerdictInWords(claim.checks[c], result.checks[c])});
+      table.rows.push_back({claim.id, DescribeConditions(claim.checks[c]),
+                            DescribeVerdict(claim.checks[c], result.checks[c])});
       std::vector<Value>& row = table.rows.back();
       if (decisive.target) {
         row.insert(row.end(),
-                   {decisive.target->quantity, ClaimedInWords(*decisive.target),
-                    MakeEstimate(*decisive.result), TrialsInWords(*decisive.result, result.checks[c])});
+                   {decisive.target->quantity, DescribeClaimed(*decisive.target),
+                    MakeEstimate(*decisive.result), DescribeTrials(*decisive.result, result.checks[c])});
       } else {
         row.emplace_back(result.checks[c].not_possible);
       }
@@ -308,12 +308,12 @@ Table MakeClaimTable(const Audit& audit) {
     const Claim& claim = audit.claims[i];
     const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
     std::vector<Value>& row = table.rows.emplace_back();
-    row = {claim.id, VerdictInWords(claim, audit.results[i])};
+    row = {claim.id, DescribeVerdict(claim, audit.results[i])};
     if (decisive.target) {
       row.insert(
           row.end(),
           {decisive.target->quantity, fmt::format("{}", decisive.check->sigma_px.value_or(kAssertedSigmaPx)),
-           ClaimedInWords(*decisive.target), PowerInWords(audit, *decisive.check, *decisive.target),
+           DescribeClaimed(*decisive.target), DescribePower(audit, *decisive.check, *decisive.target),
            MakeEstimate(*decisive.result), decisive.result->n});
     } else {
       row.emplace_back(audit.results[i].checks.front().not_possible);
@@ -333,13 +333,13 @@ Table MakeVerdictTable(const Audit& audit) {
   if (num_columns == 1 || num_columns > kMostColumns) num_columns = 0;
   Table table{{Column::Text("claim"), Column::Text("reading"), Column::Text("verdict")}};
   for (size_t c = 0; c < num_columns; ++c)
-    table.columns.push_back(Column::Text(ConditionsInWords(audit.claims.front().checks[c])));
+    table.columns.push_back(Column::Text(DescribeConditions(audit.claims.front().checks[c])));
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
     std::vector<Value>& row = table.rows.emplace_back();
-    row = {claim.id, claim.reading, VerdictInWords(claim, audit.results[i])};
+    row = {claim.id, claim.reading, DescribeVerdict(claim, audit.results[i])};
     for (size_t c = 0; c < num_columns; ++c)
-      row.emplace_back(VerdictInWords(claim.checks[c], audit.results[i].checks[c]));
+      row.emplace_back(DescribeVerdict(claim.checks[c], audit.results[i].checks[c]));
   }
   return table;
 }
@@ -357,8 +357,8 @@ std::string PlanAsTable(const Audit& plan) {
     for (const Target& target : check.targets) {
       if (!target.IsClaimed()) continue;
       table.rows.push_back({claim.id, target.quantity, std::ssize(claim.checks), holds,
-                            ClaimedInWords(target), check.limits.Max(budget),
-                            PowerInWords(plan, check, target)});
+                            DescribeClaimed(target), check.limits.Max(budget),
+                            DescribePower(plan, check, target)});
     }
   }
   return FormatParagraph(fmt::format("Seed {}, budget {}. {}", plan.options.seed, BudgetName(budget),

@@ -88,7 +88,7 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runne
   const std::vector<double> seconds = EstimateSeconds(audit);
   PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
                audit.claims.size(), places.size(),
-               DurationInWords(std::accumulate(seconds.begin(), seconds.end(), 0.0)),
+               DescribeDuration(std::accumulate(seconds.begin(), seconds.end(), 0.0)),
                NumThreads(options.num_threads));
   const auto milliseconds = [&](const ItemPlace& item) {
     return static_cast<std::int64_t>(1000.0 * seconds[item.group]) + 1;

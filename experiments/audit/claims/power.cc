@@ -189,7 +189,7 @@ double HoldsAtNominal(const Claim& claim, Budget budget, double confidence) {
   return std::max(0.0, 1.0 - misses);
 }
 
-std::string FoundInWords(const TargetPower& power) {
+std::string DescribeFound(const TargetPower& power) {
   if (!std::isnan(power.found_sigma.lower)) {
     if (std::isinf(power.found_sigma.upper))
       return fmt::format("sigma off by {:.1f} %", 100.0 * power.found_sigma.lower);

@@ -31,6 +31,6 @@ TargetPower PowerOf(const Target& target, std::int64_t num_trials, double confid
 double HoldsAtNominal(const Claim& claim, Budget budget, double confidence);
 
 // "sigma off by -4.2 or +4.5 %", "below 0.87", "below 0.4 or above 0.6".
-std::string FoundInWords(const TargetPower& power);
+std::string DescribeFound(const TargetPower& power);
 
 }  // namespace rcme

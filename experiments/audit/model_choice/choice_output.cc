@@ -44,7 +44,7 @@ Table MakeMatrixTable(const std::string& criterion, const ConfusionMatrix& matri
   return table;
 }
 
-std::string LevelsInWords(const ChoiceCounts& counts, const ChoiceGroup& group) {
+std::string DescribeLevels(const ChoiceCounts& counts, const ChoiceGroup& group) {
   std::vector<std::string> words;
   for (size_t f = 0; f < counts.by.size(); ++f)
     words.push_back(fmt::format("{} = {}", counts.by[f], group.levels[f]));
@@ -61,7 +61,7 @@ std::string ChoicesAsTable(const StudyPlan& plan, const ChoiceCounts& counts) {
                       "its share of the row with the exact 95 % interval.",
                       plan.study.trials, plan.conditions.size()));
   for (const ChoiceGroup& group : counts.groups) {
-    text += fmt::format("\n{}\n", LevelsInWords(counts, group));
+    text += fmt::format("\n{}\n", DescribeLevels(counts, group));
     for (size_t c = 0; c < group.matrices.size(); ++c)
       text += "\n" + RenderText(MakeMatrixTable(CriterionNames()[c].first, group.matrices[c]));
   }

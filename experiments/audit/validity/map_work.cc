@@ -93,7 +93,7 @@ WorkPlan PlanMapWork(const MapWork& work) {
   WorkPlan plan{"map", "block", Identity(work), {}};
   const auto num_blocks = (static_cast<size_t>(work.map.trials) + kTrialsOfItem - 1) / kTrialsOfItem;
   for (std::uint32_t cell = 0; cell < NumMapCells(work); ++cell)
-    plan.groups.push_back({CellInWords(work.map, cell), num_blocks});
+    plan.groups.push_back({DescribeCell(work.map, cell), num_blocks});
   if (!work.reference) return plan;
   for (std::int64_t cell = 0; cell < NumCells(*work.reference); ++cell) {
     plan.groups.push_back(

@@ -51,7 +51,7 @@ Settings LevelsOf(const StudyPlan& plan, const Condition& condition, const Setti
   return levels;
 }
 
-std::string InWords(const StudyPlan& plan, const Settings& levels) {
+std::string DescribeCase(const StudyPlan& plan, const Settings& levels) {
   std::string words;
   for (const auto& [key, value] : levels) {
     words += fmt::format("{}{} = {}", words.empty() ? "" : ", ", key, value);
@@ -96,7 +96,7 @@ std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
     const Settings settings = SimulatedSettings(plan, condition);
     const Settings levels = LevelsOf(plan, condition, settings);
     if (!seen.insert(levels).second) continue;
-    conditions.push_back({InWords(plan, levels), [settings](int num_points, double sigma_px) {
+    conditions.push_back({DescribeCase(plan, levels), [settings](int num_points, double sigma_px) {
                             return SamplerOf(AtSigma(settings, sigma_px), num_points);
                           }});
   }

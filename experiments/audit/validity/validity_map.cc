@@ -185,7 +185,7 @@ double SecondsOfWork(const ValidityMapOptions& options) {
   return elapsed.count() / kNumTimed * static_cast<double>(options.sigmas_px.size()) * options.trials;
 }
 
-std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell) {
+std::string DescribeCell(const ValidityMapOptions& options, std::uint32_t cell) {
   const CellPlace place = PlaceOf(options, cell);
   return fmt::format("{} {}, {} points, {} px", options.condition_key,
                      options.conditions[place.condition].level, options.nums_points[place.num_points],

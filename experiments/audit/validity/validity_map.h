@@ -58,7 +58,7 @@ ValidityTrial RunValidityTrial(const MapSample& sample);
 // A cell is a condition with a number of points and a noise level; the conditions vary slowest, the noise
 // fastest.
 std::int64_t NumCells(const ValidityMapOptions& options);
-std::string CellInWords(const ValidityMapOptions& options, std::uint32_t cell);
+std::string DescribeCell(const ValidityMapOptions& options, std::uint32_t cell);
 
 // Those of these trials of a cell that have a sample, in their order.
 std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,

@@ -16,7 +16,7 @@
 namespace rcme {
 namespace {
 
-std::string KindInWords(mode_t mode) {
+std::string DescribeKind(mode_t mode) {
   if (S_ISDIR(mode)) return "a folder";
   if (S_ISFIFO(mode)) return "a pipe";
   if (S_ISSOCK(mode)) return "a socket";
@@ -36,7 +36,7 @@ RegularFile::RegularFile(const std::string& path, const FileKind& kind) : path_(
     throw InputError(fmt::format("{}: no such {} ({})", path, kind.name, std::strerror(errno)));
   if (!S_ISREG(status.st_mode)) {
     if (descriptor_ >= 0) close(descriptor_);
-    throw InputError(fmt::format("{}: is {}, not {}", path, KindInWords(status.st_mode), kind.article_name));
+    throw InputError(fmt::format("{}: is {}, not {}", path, DescribeKind(status.st_mode), kind.article_name));
   }
   if (descriptor_ < 0) throw InputError(fmt::format("{}: cannot be read: {}", path, std::strerror(error)));
 }

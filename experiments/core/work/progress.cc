@@ -51,7 +51,7 @@ void Progress::Print(Clock::time_point now) {
   const double seconds_left = rate > 0.0 ? static_cast<double>(total_ - done) / rate : 0.0;
   const std::string line = fmt::format("{} / {} {} ({:.0f} %), {:.3g} per second, {} left", done, total_,
                                        unit_, 100.0 * static_cast<double>(done) / static_cast<double>(total_),
-                                       rate, DurationInWords(seconds_left));
+                                       rate, DescribeDuration(seconds_left));
   if (is_terminal_) {
     PrintMessage("\r{:<79}", line);
   } else {
@@ -59,7 +59,7 @@ void Progress::Print(Clock::time_point now) {
   }
 }
 
-std::string DurationInWords(double seconds) {
+std::string DescribeDuration(double seconds) {
   const auto whole = static_cast<long long>(std::ceil(seconds));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);

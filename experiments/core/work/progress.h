@@ -34,6 +34,6 @@ class Progress {
 };
 
 // Seconds as "45 s", "3 min 20 s", "2 h 05 min".
-std::string DurationInWords(double seconds);
+std::string DescribeDuration(double seconds);
 
 }  // namespace rcme

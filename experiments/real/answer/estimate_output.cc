@@ -58,8 +58,8 @@ std::string FoundText(const RelativePose& pose, const MotionSpread& spread) {
     text += fmt::format(": {}\n             about the axis {} of camera 1", turn.words,
                         Vector(turn.axis_in_cam1));
   }
-  text +=
-      fmt::format("\n  stands     {}: towards {} from camera 1\n", PlaceInWords(pose), Vector(PlaceOf(pose)));
+  text += fmt::format("\n  stands     {}: towards {} from camera 1\n", DescribePlace(pose),
+                      Vector(PlaceOf(pose)));
   text += fmt::format("             sd of the direction {:.2g} deg, across {:.2g} deg\n",
                       spread.direction_sd_deg(0), spread.direction_sd_deg(1));
   text += "  cam2_from_cam1, X2 = R X1 + t, |t| = 1\n";
@@ -102,7 +102,7 @@ std::string SureText(const MotionEstimate& estimate, const MotionSpread& spread,
       "in "
       "direction: {}\n",
       other.weight, kDegPerRad * RotationAngleBetween(a.R, b.R), kDegPerRad * AngleBetween(a.t, b.t),
-      PlaceInWords(b));
+      DescribePlace(b));
   return text;
 }
 
@@ -248,7 +248,7 @@ std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& an
   const RelativePose& pose = estimate.cam2_from_cam1;
   const MotionSpread spread = SpreadOf(pose, estimate.pose_cov);
   row[2] = fmt::format("{:.2f} ({:.2g})", TurnOf(pose.R).angle_deg, spread.angle_sd_deg);
-  row[3] = fmt::format("{} ({:.2g})", PlaceInWords(pose), spread.direction_sd_deg(0));
+  row[3] = fmt::format("{} ({:.2g})", DescribePlace(pose), spread.direction_sd_deg(0));
   if (!std::isnan(estimate.failure_probability)) row[4] = ProbabilityText(estimate.failure_probability);
   if (with_errors && !std::isnan(record.rotation_error_deg))
     row[5] = fmt::format("{:.2g}/{:.2g}", record.rotation_error_deg, record.direction_error_deg);

@@ -55,7 +55,7 @@ Eigen::Vector3d PlaceOf(const RelativePose& cam2_from_cam1) {
   return -(cam2_from_cam1.R.transpose() * cam2_from_cam1.t);
 }
 
-std::string PlaceInWords(const RelativePose& cam2_from_cam1) {
+std::string DescribePlace(const RelativePose& cam2_from_cam1) {
   const Eigen::Vector3d place = PlaceOf(cam2_from_cam1);
   std::string words;
   for (const int axis : AxesBySize(place, 0.3))

@@ -21,7 +21,7 @@ Turn TurnOf(const Eigen::Matrix3d& cam2_from_cam1_R);
 // Where camera 2 stands, a unit vector in camera 1's frame: -R't; in words the sides that it is at by at
 // least 0.3, the greatest first: "right, forward".
 Eigen::Vector3d PlaceOf(const RelativePose& cam2_from_cam1);
-std::string PlaceInWords(const RelativePose& cam2_from_cam1);
+std::string DescribePlace(const RelativePose& cam2_from_cam1);
 
 // Standard deviations and 95 % regions, deg, from a covariance [rotation, direction] in rad^2.
 struct MotionSpread {

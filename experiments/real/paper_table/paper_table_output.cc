@@ -68,7 +68,7 @@ Table MakePrintedTable(const std::vector<PrintedRate>& rates) {
   return table;
 }
 
-std::string ComparisonsInWords() {
+std::string DescribeComparisons() {
   std::string text;
   for (const PrintedComparison& c : PrintedComparisons()) {
     text += FormatParagraph(fmt::format(
@@ -149,7 +149,7 @@ std::string PaperTableAsText(const PaperTable& table) {
               "failures. apart: pairs of which no two have anything in common. A group's interval is of "
               "these scenes, not of all scenes of the kind.",
               table.bounds.max_rotation_error_deg, table.bounds.max_direction_error_deg));
-  return text + "\n" + RenderText(MakePrintedTable(PrintedRates())) + "\n" + ComparisonsInWords();
+  return text + "\n" + RenderText(MakePrintedTable(PrintedRates())) + "\n" + DescribeComparisons();
 }
 
 std::string PaperTableAsCsv(const PaperTable& table) {

@@ -58,7 +58,7 @@ std::vector<std::string> FindReasons(const SetReport& report) {
       report.sizes.verdict == TruthFreeVerdict::kTooLarge)
     advice.push_back(
         fmt::format("the noise {} between matches: take sigma_px to the power {:.2g}, or one noise for all",
-                    SizeInWords(report.sizes), report.sizes.slope.value));
+                    DescribeSizeTest(report.sizes), report.sizes.slope.value));
   return advice;
 }
 

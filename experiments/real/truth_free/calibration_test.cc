@@ -103,7 +103,7 @@ std::string RangeIn(const CameraFaultText& text, const PooledParameter& of, bool
 }
 
 // "too long by 0.52 % [0.45, 0.60]"
-std::string FoundInWords(CameraFault fault, const PooledParameter& of) {
+std::string DescribeFound(CameraFault fault, const PooledParameter& of) {
   const CameraFaultText& text = TextOf(fault);
   const bool is_less = of.value < 0.0;
   return fmt::format("{} {}", RangeIn(text, of, is_less), is_less ? text.less : text.more);
@@ -118,7 +118,7 @@ double PairsNeeded(CameraFault fault, const PooledParameter& of, int num_pairs) 
 }
 
 // "focal length +-4200 %"
-std::string HalfInWords(CameraFault fault, const PooledParameter& of) {
+std::string DescribeHalf(CameraFault fault, const PooledParameter& of) {
   const CameraFaultText& text = TextOf(fault);
   return fmt::format("{} {:.2g} +-{:.2g}{}{}", text.words, text.per_unit * of.value,
                      0.5 * text.per_unit * (of.interval.upper - of.interval.lower), *text.unit ? " " : "",
@@ -131,7 +131,7 @@ std::string OutOfRange(const CalibrationReport& report) {
     const double greatest = GreatestFault(each.fault, report.camera);
     if (!(std::abs(each.joint.value) <= greatest) ||
         !(each.joint.interval.upper - each.joint.interval.lower < greatest))
-      return HalfInWords(each.fault, each.joint);
+      return DescribeHalf(each.fault, each.joint);
   }
   return "";
 }
@@ -247,7 +247,7 @@ CalibrationReport TestCalibration(const std::vector<PairAnswers>& answers) {
   return report;
 }
 
-std::string CalibrationInWords(const CalibrationReport& report) {
+std::string DescribeCalibration(const CalibrationReport& report) {
   switch (report.verdict) {
     case TruthFreeVerdict::kNoData:
       return "no data";
@@ -265,7 +265,7 @@ std::string CalibrationInWords(const CalibrationReport& report) {
   return words;
 }
 
-std::string FaultInWords(const FaultReport& report) {
+std::string DescribeFault(const FaultReport& report) {
   const CameraFaultText& text = TextOf(report.fault);
   switch (report.verdict) {
     case TruthFreeVerdict::kNoData:
@@ -290,7 +290,7 @@ std::string FaultInWords(const FaultReport& report) {
       return words;
     }
     default:
-      return FoundInWords(report.fault, report.joint);
+      return DescribeFound(report.fault, report.joint);
   }
 }
 
@@ -326,7 +326,7 @@ std::vector<std::string> CalibrationAdvice(const CalibrationReport& report) {
         break;
     }
     advice.push_back(
-        fmt::format("{}: {}: {}", TextOf(each.fault).words, FoundInWords(each.fault, each.joint), change));
+        fmt::format("{}: {}: {}", TextOf(each.fault).words, DescribeFound(each.fault, each.joint), change));
   }
   if (report.verdict == TruthFreeVerdict::kTooLarge && advice.empty())
     advice.emplace_back(

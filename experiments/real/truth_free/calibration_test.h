@@ -77,9 +77,9 @@ bool IsFault(TruthFreeVerdict verdict);
 std::vector<double> ReadoutScales(const std::vector<PairAnswers>& answers);
 
 // "focal length 0.52 % [0.45, 0.60] too long", "holds (within +-0.05 %)", "undecided: ...".
-std::string FaultInWords(const FaultReport& report);
+std::string DescribeFault(const FaultReport& report);
 // "some fault (p = 0.001)", "holds", "undecided (p = 0.3)".
-std::string CalibrationInWords(const CalibrationReport& report);
+std::string DescribeCalibration(const CalibrationReport& report);
 // What to change, a sentence for each fault that was found.
 std::vector<std::string> CalibrationAdvice(const CalibrationReport& report);
 

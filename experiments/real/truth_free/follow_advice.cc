@@ -18,7 +18,7 @@ bool AreWrong(const CovarianceVerdict& covariances) {
 }
 
 // "covariances hold: spatial_halves 0.9 [0.7, 1.2], simulation 1 [0.9, 1.1]".
-std::string CovariancesInWords(const SetReport& report) {
+std::string DescribeCovariances(const SetReport& report) {
   std::string ranges;
   for (const TruthFreeTest& test : report.tests) {
     if (test.verdict == TruthFreeVerdict::kNoData || test.name == "random_halves") continue;
@@ -28,8 +28,8 @@ std::string CovariancesInWords(const SetReport& report) {
   return fmt::format("covariances: {} ({})", VerdictName(report.covariances.verdict), ranges);
 }
 
-std::string CameraInWords(const SetReport& report) {
-  return fmt::format("camera: {}", CalibrationInWords(report.calibration));
+std::string DescribeCamera(const SetReport& report) {
+  return fmt::format("camera: {}", DescribeCalibration(report.calibration));
 }
 
 // By what the tests that decide are off, the worst of them, in powers of e.
@@ -74,7 +74,7 @@ class Follower {
         fmt::format("the assumed sigma, {:g} px, is too {}: assume {:.2g} (--sigma); followed: the residuals "
                     "say {:.2g}, {}",
                     assumed_px, now_.assumed_sigma_px > assumed_px ? "small" : "large", now_.assumed_sigma_px,
-                    now_.sigma_px.value, CovariancesInWords(now_)));
+                    now_.sigma_px.value, DescribeCovariances(now_)));
   }
 
   void FollowCamera(CalibrationReport* shown) {
@@ -92,7 +92,7 @@ class Follower {
     }
     for (const std::string& advice : CalibrationAdvice(now_.calibration))
       advice_.push_back(
-          fmt::format("{}; followed: {}, {}", advice, CameraInWords(after), CovariancesInWords(after)));
+          fmt::format("{}; followed: {}, {}", advice, DescribeCamera(after), DescribeCovariances(after)));
     set_ = corrected;
     now_ = std::move(after);
   }
@@ -115,8 +115,8 @@ class Follower {
     double factor = estimator_.factor;
     const auto follow = [&](const Settings& options, const std::string& words) {
       after = Run(set_, options);
-      tried +=
-          fmt::format("{}{}; followed: {}", tried.empty() ? "" : "; then ", words, CovariancesInWords(after));
+      tried += fmt::format("{}{}; followed: {}", tried.empty() ? "" : "; then ", words,
+                           DescribeCovariances(after));
       if (AreWrong(after.covariances)) return false;
       advice_.push_back(tried);
       return true;

@@ -68,7 +68,7 @@ SizeReport TestKeyPointSizes(const std::vector<PairAnswers>& answers) {
   return report;
 }
 
-std::string SizeInWords(const SizeReport& report) {
+std::string DescribeSizeTest(const SizeReport& report) {
   const std::string range = fmt::format("{:.2g} [{:.2g}, {:.2g}]", report.slope.value,
                                         report.slope.interval.lower, report.slope.interval.upper);
   switch (report.verdict) {

@@ -29,7 +29,7 @@ struct SizeReport {
 SizeReport TestKeyPointSizes(const std::vector<PairAnswers>& answers);
 
 // "grows by 0.4 [0.3, 0.5] of what is stated", "holds: 1 [0.9, 1.1]", ...
-std::string SizeInWords(const SizeReport& report);
+std::string DescribeSizeTest(const SizeReport& report);
 
 // S of one pair; NaN where its matches have no scale, or all the same.
 double SlopeScore(const MotionProblem& problem, const MotionEstimate& estimate);

@@ -12,12 +12,12 @@
 namespace rcme {
 namespace {
 
-std::string TailsInWords(const RedrawSettings& noise) {
+std::string DescribeTails(const RedrawSettings& noise) {
   return noise.student_dof == 0.0 ? "normal" : fmt::format("Student's t of {:g}", noise.student_dof);
 }
 
-std::string NoiseInWords(const RedrawSettings& noise) {
-  std::string text = fmt::format("{:.3g} px, {}", noise.noise_px, TailsInWords(noise));
+std::string DescribeNoise(const RedrawSettings& noise) {
+  std::string text = fmt::format("{:.3g} px, {}", noise.noise_px, DescribeTails(noise));
   if (noise.near_share >= 0.005)
     text += fmt::format(", {:.0f} % common within 1 px", 100.0 * noise.near_share);
   if (noise.far_share >= 0.005)
@@ -25,14 +25,14 @@ std::string NoiseInWords(const RedrawSettings& noise) {
   return text;
 }
 
-std::string FitInWords(const TwinReport& report) {
+std::string DescribeFit(const TwinReport& report) {
   const TwinFit& fit = report.fit;
   std::string text = FormatParagraph(fmt::format("{}: {} pairs, {} with a geometry to resemble", report.scene,
                                                  report.num_pairs, fit.num_templates)) +
-                     FormatParagraph("  noise " + NoiseInWords(fit.noise));
+                     FormatParagraph("  noise " + DescribeNoise(fit.noise));
   if (!report.simulated.empty()) {
     text += FormatParagraph(fmt::format("  simulated with {:.3g} px and {}", fit.simulated_noise.noise_px,
-                                        TailsInWords(fit.simulated_noise)));
+                                        DescribeTails(fit.simulated_noise)));
   }
   return text +
          FormatParagraph(fmt::format("  {} matches, {:.0f} % wrong ({:.0f} % of those move as a neighbour)",
@@ -72,7 +72,7 @@ Table MakeComparisonTable(const TwinReport& report, const std::string& twin, con
 }
 
 // What the semi-real twin misses, and what may be missing in it.
-std::string MissedInWords(const TwinReport& report) {
+std::string DescribeMissed(const TwinReport& report) {
   std::string text;
   for (const TwinComparison& c : report.comparisons) {
     if (c.IsWithin() || c.twin != "semi_real") continue;
@@ -85,7 +85,7 @@ std::string MissedInWords(const TwinReport& report) {
 
 std::string ReportAsText(const TwinReport& report) {
   std::string text =
-      FitInWords(report) + "\n" + RenderText(MakeComparisonTable(report, "semi_real", "semi-real")) + "\n";
+      DescribeFit(report) + "\n" + RenderText(MakeComparisonTable(report, "semi_real", "semi-real")) + "\n";
   std::string within = "  within: semi-real " + WithinText(report, "semi_real");
   if (report.simulated.empty()) {
     within += "; no simulated scene: " + report.why_not_simulated;
@@ -93,7 +93,7 @@ std::string ReportAsText(const TwinReport& report) {
     text += RenderText(MakeComparisonTable(report, "simulated", "simulated")) + "\n";
     within += "; simulated " + WithinText(report, "simulated");
   }
-  return text + FormatParagraph(within) + MissedInWords(report) + "\n";
+  return text + FormatParagraph(within) + DescribeMissed(report) + "\n";
 }
 
 // A row of the files.

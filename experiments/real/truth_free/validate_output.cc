@@ -35,7 +35,7 @@ const char* CauseName(FaultCause cause) {
 }
 
 // What a fault is of, as the end of a sentence; empty: nothing is said of it.
-std::string CauseInWords(FaultCause cause, bool is_small) {
+std::string DescribeCause(FaultCause cause, bool is_small) {
   switch (cause) {
     case FaultCause::kData:
       return "; the data: in simulation it is not";
@@ -51,10 +51,10 @@ std::string CauseInWords(FaultCause cause, bool is_small) {
 }
 
 // "covariances: too small; the data: in simulation it is not (spatial_halves)".
-std::string CovariancesInWords(const CovarianceVerdict& of) {
+std::string DescribeCovariances(const CovarianceVerdict& of) {
   const std::string text = std::string("covariances: ") + VerdictName(of.verdict);
   if (of.verdict == TruthFreeVerdict::kNoData) return text;
-  return fmt::format("{}{} ({})", text, CauseInWords(of.cause, of.verdict == TruthFreeVerdict::kTooSmall),
+  return fmt::format("{}{} ({})", text, DescribeCause(of.cause, of.verdict == TruthFreeVerdict::kTooSmall),
                      fmt::join(of.tests, ", "));
 }
 
@@ -129,18 +129,18 @@ std::vector<SetRow> RowsOf(const SetReport& set) {
   add("covariances", "", VerdictName(set.covariances.verdict), "", set.num_answered, none,
       set.covariances.cause);
   for (const TruthFreeTest& test : set.tests) {
-    add(test.name, test.name, VerdictName(test.verdict), VerdictInWords(test), test.num_values, test.ratio,
+    add(test.name, test.name, VerdictName(test.verdict), DescribeVerdict(test), test.num_values, test.ratio,
         test.cause, &test);
   }
   for (const DistanceCorrelation& c : set.correlations) rows.push_back(RowOf(set, c));
   const CalibrationReport& calibration = set.calibration;
-  add("calibration", "calibration", FaultVerdict(calibration.verdict), CalibrationInWords(calibration),
+  add("calibration", "calibration", FaultVerdict(calibration.verdict), DescribeCalibration(calibration),
       calibration.num_pairs, ComparedMedians{calibration.p_value, none.interval});
   for (const FaultReport& fault : calibration.faults) {
-    add(TextOf(fault.fault).name, TextOf(fault.fault).words, FaultVerdict(fault.verdict), FaultInWords(fault),
-        calibration.num_pairs, fault.joint);
+    add(TextOf(fault.fault).name, TextOf(fault.fault).words, FaultVerdict(fault.verdict),
+        DescribeFault(fault), calibration.num_pairs, fault.joint);
   }
-  add("noise_by_size", "noise by size", VerdictName(set.sizes.verdict), SizeInWords(set.sizes),
+  add("noise_by_size", "noise by size", VerdictName(set.sizes.verdict), DescribeSizeTest(set.sizes),
       set.sizes.num_pairs, set.sizes.slope);
   add("sigma_px", "noise", VerdictName(set.sigma_verdict),
       fmt::format("sigma {} px, assumed {:g}: {}", RangeText(set.sigma_px.value, set.sigma_px.interval),
@@ -178,24 +178,24 @@ std::string SetAsTable(const SetReport& report) {
       rows);
   std::string text = FormatParagraph(fmt::format("{}: {} pairs, {} answered, {}", report.name,
                                                  report.num_pairs, report.num_answered, LoopsText(report))) +
-                     FormatParagraph(CovariancesInWords(report.covariances)) + "\n" + RenderText(table);
+                     FormatParagraph(DescribeCovariances(report.covariances)) + "\n" + RenderText(table);
   for (const std::string& advice : report.advice) text += FormatParagraph("  -> " + advice);
   return text + "\n";
 }
 
 }  // namespace
 
-std::string VerdictInWords(const TruthFreeTest& test) {
+std::string DescribeVerdict(const TruthFreeTest& test) {
   const ComparedMedians& ratio = test.ratio;
   const std::string range = RangeText(ratio.value, ratio.interval);
   switch (test.verdict) {
     case TruthFreeVerdict::kTooSmall:
-      return fmt::format("too small by {} in variance{}", range, CauseInWords(test.cause, true));
+      return fmt::format("too small by {} in variance{}", range, DescribeCause(test.cause, true));
     case TruthFreeVerdict::kTooLarge:
       return fmt::format(
           "too large by {} in variance{}",
           RangeText(1.0 / ratio.value, {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower}),
-          CauseInWords(test.cause, false));
+          DescribeCause(test.cause, false));
     case TruthFreeVerdict::kUndecided:
       if (std::isnan(test.units_needed)) return fmt::format("undecided: {}; it takes five at least", range);
       if (test.units_needed > test.num_units)
@@ -334,7 +334,7 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                       {"alone", pooled(fault.alone)},
                                       {"twins", pooled(fault.twins)},
                                       {"verdict", FaultVerdict(fault.verdict)},
-                                      {"in_words", FaultInWords(fault)}});
+                                      {"in_words", DescribeFault(fault)}});
     }
     json["sets"].push_back(std::move(set));
   }

@@ -8,7 +8,7 @@
 namespace rcme {
 
 // "holds", "too small by 2.1 [1.8, 2.5] in variance", "undecided: 1.3 [0.9, 1.9]".
-std::string VerdictInWords(const TruthFreeTest& test);
+std::string DescribeVerdict(const TruthFreeTest& test);
 
 std::string ValidationAsTable(const std::vector<SetReport>& reports);
 // A row per set and test, sigma and correlations among them.

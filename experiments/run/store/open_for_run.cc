@@ -42,7 +42,7 @@ RunDescription Requested(const StudyPlan& plan, const Shard& shard, Keep keep) {
 }
 
 // What a file is of, and keeps.
-std::string InWords(const RunDescription& run) {
+std::string DescribeHeld(const RunDescription& run) {
   return fmt::format("{} of {}", run.keeps_counts ? "counts" : "trials",
                      run.shard.empty() ? "the whole study" : "shard " + run.shard);
 }
@@ -56,9 +56,9 @@ void CheckIsThatRun(const ResultFile& file, const RunDescription& wanted) {
                     "--out",
                     file.path, held.origin.program, FirstDifference(held.identity, wanted.identity)));
   }
-  if (InWords(held) != InWords(wanted)) {
-    throw InputError(fmt::format("{}: holds the {}, not {}. Give another --out", file.path, InWords(held),
-                                 InWords(wanted)));
+  if (DescribeHeld(held) != DescribeHeld(wanted)) {
+    throw InputError(fmt::format("{}: holds the {}, not {}. Give another --out", file.path, DescribeHeld(held),
+                                 DescribeHeld(wanted)));
   }
 }
 
@@ -103,7 +103,7 @@ std::unique_ptr<ResultFile> OpenFileForRun(const std::string& path, const StudyP
   }
   if (file->totals.NumTrials() > 0) CheckIsThatRun(*file, wanted);
   // A file without a trial (its run failed at once) takes any study and any shard.
-  if (file->description.identity != wanted.identity || InWords(file->description) != InWords(wanted)) {
+  if (file->description.identity != wanted.identity || DescribeHeld(file->description) != DescribeHeld(wanted)) {
     file->CreateAnew(wanted);
   } else {
     CheckFits(file->description, plan);

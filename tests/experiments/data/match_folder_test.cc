@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "experiments/statistics/truth_quality.h"
 #include "experiments/data/match_file.h"
+#include "experiments/real/truth_free/pair_set.h"
+#include "experiments/statistics/truth_quality.h"
 #include "experiments/study/run_description.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
-#include "experiments/real/truth_free/pair_set.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
@@ -48,16 +48,16 @@ class MatchFolderTest : public testing::Test {
 // What summaries print of it.
 TEST_F(MatchFolderTest, HowGoodTheTruthIsCountsAndIsSaid) {
   const std::string unknown = Describe(MakePlan(FolderStudy())).identity;
-  EXPECT_THAT(TruthQualityInWords(unknown), testing::HasSubstr("3 of 3 pairs do not say"));
+  EXPECT_THAT(DescribeTruthQuality(unknown), testing::HasSubstr("3 of 3 pairs do not say"));
   const std::string rest = MatchHeader() + TruePoseHeader() + "# truth_sd: 0.01 0.01 0.01 1e-3 1e-3 1e-3\n";
   folder_.Write("a_001.csv", "# scene: a\n" + rest + MatchRows(12, 1));
   const StudyPlan plan = MakePlan(FolderStudy());
-  EXPECT_THAT(TruthQualityInWords(Describe(plan).identity), testing::HasSubstr("2 of 3 pairs do not say"));
+  EXPECT_THAT(DescribeTruthQuality(Describe(plan).identity), testing::HasSubstr("2 of 3 pairs do not say"));
   EXPECT_NE(Describe(plan).identity, unknown);
   EXPECT_FALSE(plan.conditions[0].source->Make({1, 0, 0, 0}).truth.sd.has_value());
   EXPECT_TRUE(plan.conditions[0].source->Make({1, 0, 1, 0}).truth.sd.has_value());
-  EXPECT_EQ(TruthQualityInWords("a simulation"), "");
-  EXPECT_THAT(TruthQualityInWords("# condition 0: 2 files, digest 00ff, truth_sd in 2\n"),
+  EXPECT_EQ(DescribeTruthQuality("a simulation"), "");
+  EXPECT_THAT(DescribeTruthQuality("# condition 0: 2 files, digest 00ff, truth_sd in 2\n"),
               testing::HasSubstr("all 2 pairs state"));
 }
 
@@ -91,7 +91,7 @@ TEST_F(MatchFolderTest, AStudyMayGiveTheTruthAnError) {
   EXPECT_NEAR(sd_of(1).rotation_rad.x(), std::sqrt(2.0) * 0.03 * std::numbers::pi / 180.0, 1e-12);
   EXPECT_NEAR(sd_of(1).translation.x(), SdOfMotion({0.03, 0.012}, 0.5).translation.x(), 1e-12);
   EXPECT_THAT(
-      TruthQualityInWords("# condition 0: 2 files, digest 00ff, truth_sd in 1, truth_sd assumed in 1\n"),
+      DescribeTruthQuality("# condition 0: 2 files, digest 00ff, truth_sd in 1, truth_sd assumed in 1\n"),
       testing::HasSubstr("the study's assumption for 1 of 2 pairs"));
 
   folder_.Write("a_001.csv", "# scene: a\n" + known + "# baseline: short\n" + MatchRows(12, 2));

@@ -73,12 +73,12 @@ TEST(FindEffort, SaysWhyATimeIsNotReached) {
   EXPECT_EQ(FindEffort(Busy(), SomeProblems(), 100.0).end, EffortEnd::kAtTheLimit);
 }
 
-TEST(Effort, InWords) {
-  EXPECT_EQ(EffortInWords(DefaultEstimator("standard")), "num_iterations 200");
-  EXPECT_EQ(EffortInWords(Busy({{"own_limit", "10"}})), "own rule, rounds 3");
+TEST(Effort, IsDescribed) {
+  EXPECT_EQ(DescribeEffort(DefaultEstimator("standard")), "num_iterations 200");
+  EXPECT_EQ(DescribeEffort(Busy({{"own_limit", "10"}})), "own rule, rounds 3");
   EstimatorSpec spec = Busy();
   spec.budget_ms = 2.5;
-  EXPECT_EQ(EffortInWords(spec), "2.5 ms a call (rounds 3)");
+  EXPECT_EQ(DescribeEffort(spec), "2.5 ms a call (rounds 3)");
 }
 
 }  // namespace

@@ -84,8 +84,8 @@ TEST(PowerOf, SaysWhenNothingCanBeDecided) {
   const TargetPower one_sided = PowerOf(ClaimedRate("rate", 1.0, {0.9, 1.0}), 1'000, 0.999);
   EXPECT_EQ(one_sided.holds_at_nominal, 1.0);
   EXPECT_TRUE(std::isinf(one_sided.found.upper));
-  EXPECT_EQ(FoundInWords(one_sided).find(" or "), std::string::npos);
-  EXPECT_EQ(FoundInWords(PowerOf(ClaimedRate("rate", 1.0, {0.9, 1.0}), 2, 0.999)), "nothing");
+  EXPECT_EQ(DescribeFound(one_sided).find(" or "), std::string::npos);
+  EXPECT_EQ(DescribeFound(PowerOf(ClaimedRate("rate", 1.0, {0.9, 1.0}), 2, 0.999)), "nothing");
 }
 
 // The whole table: at either budget every claim can hold where everything is nominal, and can fail.

@@ -37,7 +37,7 @@ TEST(MotionWords, ATurnToTheRightMovesTheSceneToTheLeft) {
 TEST(MotionWords, ACameraThatMovesForwardStandsForward) {
   // X2 = R X1 + t: of a camera one ahead, what is five ahead is four away.
   const RelativePose forward{Eigen::Matrix3d::Identity(), {0.0, 0.0, -1.0}};
-  EXPECT_EQ(PlaceInWords(forward), "forward");
+  EXPECT_EQ(DescribePlace(forward), "forward");
   const RelativePose turned{RotationFromVector({0.0, -1.2, 0.3}),
                             Eigen::Vector3d(-2.0, 0.1, 1.0).normalized()};
   const Eigen::Vector3d place = PlaceOf(turned);

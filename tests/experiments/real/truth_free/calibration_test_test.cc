@@ -7,10 +7,10 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/geometry/sampson.h"
-#include "experiments/study/study_file.h"
 #include "experiments/real/truth_free/calibration_score.h"
 #include "experiments/real/truth_free/size_test.h"
 #include "experiments/real/truth_free/twin.h"
+#include "experiments/study/study_file.h"
 #include "simulator/calibration_error.h"
 #include "simulator/camera_defects.h"
 #include "tests/test_support/numeric_jacobian.h"
@@ -200,21 +200,21 @@ TEST(TestCalibration, DecidesNothingThatItsTwinsShowToo) {
   EXPECT_EQ(TestCalibration(answers).faults[focal].verdict, TruthFreeVerdict::kUndecided);
 }
 
-TEST(FaultInWords, ByHand) {
+TEST(DescribeFault, ByHand) {
   FaultReport report;
   report.joint = {0.0052, 0.0003, {0.0045, 0.006}, 9.0};
   report.verdict = TruthFreeVerdict::kTooLarge;
-  EXPECT_EQ(FaultInWords(report), "0.52 % [0.45, 0.6] too long");
+  EXPECT_EQ(DescribeFault(report), "0.52 % [0.45, 0.6] too long");
   report.joint = {-0.0052, 0.0003, {-0.006, -0.0045}, 9.0};
   report.verdict = TruthFreeVerdict::kTooSmall;
-  EXPECT_EQ(FaultInWords(report), "0.52 % [0.45, 0.6] too short");
+  EXPECT_EQ(DescribeFault(report), "0.52 % [0.45, 0.6] too short");
   report.joint = {0.0001, 0.0002, {-0.0003, 0.0005}, 9.0};
   report.verdict = TruthFreeVerdict::kHolds;
-  EXPECT_EQ(FaultInWords(report), "holds (within +-0.05 %)");
+  EXPECT_EQ(DescribeFault(report), "holds (within +-0.05 %)");
   report.verdict = TruthFreeVerdict::kUndecided;
   report.alone = {0.01, 0.0002, {0.009, 0.011}, 9.0};
   report.confused_with = CameraFault::kDistortion;
-  EXPECT_EQ(FaultInWords(report),
+  EXPECT_EQ(DescribeFault(report),
             "undecided: 0.01 % [-0.03, 0.05]; were it the only fault: 1 % [0.9, 1.1]; hard to tell from "
             "distortion k1");
 }
@@ -283,17 +283,17 @@ SizeReport SizesOf(double power, int num_pairs) {
 TEST(TestKeyPointSizes, FindsHowNoiseGrows) {
   const SizeReport stated = SizesOf(1.0, 16), half = SizesOf(0.5, 16), none = SizesOf(0.0, 16);
   EXPECT_EQ(stated.num_pairs, 16);
-  EXPECT_NEAR(stated.slope.value, 1.0, 0.2) << SizeInWords(stated);
-  EXPECT_EQ(stated.verdict, TruthFreeVerdict::kHolds) << SizeInWords(stated);
-  EXPECT_NEAR(half.slope.value, 0.5, 0.2) << SizeInWords(half);
-  EXPECT_EQ(half.verdict, TruthFreeVerdict::kTooSmall) << SizeInWords(half);
-  EXPECT_NEAR(none.slope.value, 0.0, 0.2) << SizeInWords(none);
-  EXPECT_THAT(SizeInWords(none), testing::HasSubstr("of what is stated"));
+  EXPECT_NEAR(stated.slope.value, 1.0, 0.2) << DescribeSizeTest(stated);
+  EXPECT_EQ(stated.verdict, TruthFreeVerdict::kHolds) << DescribeSizeTest(stated);
+  EXPECT_NEAR(half.slope.value, 0.5, 0.2) << DescribeSizeTest(half);
+  EXPECT_EQ(half.verdict, TruthFreeVerdict::kTooSmall) << DescribeSizeTest(half);
+  EXPECT_NEAR(none.slope.value, 0.0, 0.2) << DescribeSizeTest(none);
+  EXPECT_THAT(DescribeSizeTest(none), testing::HasSubstr("of what is stated"));
 }
 
 TEST(TestKeyPointSizes, WithoutSizesThereIsNoData) {
   EXPECT_EQ(TestKeyPointSizes({}).verdict, TruthFreeVerdict::kNoData);
-  EXPECT_EQ(SizeInWords({}), "no data");
+  EXPECT_EQ(DescribeSizeTest({}), "no data");
   const SizeReport report = TestKeyPointSizes({{{{"", "", "", TwoCameraProblem(50, 0.5, 0.0, 1)}, {}}, {}}});
   EXPECT_EQ(report.num_pairs, 0);
 }

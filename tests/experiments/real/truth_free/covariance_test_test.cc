@@ -35,7 +35,7 @@ TEST(JudgeCovariances, ByHand) {
   const TruthFreeTest own = MakeTest(hundred, hundred, right);
   EXPECT_EQ(own.verdict, TruthFreeVerdict::kTooSmall);
   EXPECT_EQ(own.cause, FaultCause::kEstimator);
-  EXPECT_EQ(VerdictInWords(own),
+  EXPECT_EQ(DescribeVerdict(own),
             "too small by 1e+02 [90, 1.1e+02] in variance; the estimator's own covariance is too small, in "
             "simulation too");
   const TruthFreeTest of_data = MakeTest({4.0, {3.0, 5.0}}, right, {4.0, {3.0, 5.0}});
@@ -78,9 +78,9 @@ TEST(JudgeCovariances, SaysWhatItWouldTake) {
   const TruthFreeTest test = MakeTest(ratio, {1.0, {0.9, 1.1}}, {1.1, {0.8, 1.5}});
   EXPECT_EQ(test.verdict, TruthFreeVerdict::kUndecided);
   EXPECT_EQ(test.units_needed, 22.0);
-  EXPECT_EQ(VerdictInWords(test), "undecided: 1.1 [0.8, 1.5]; some 22 in place of 20 would decide it");
+  EXPECT_EQ(DescribeVerdict(test), "undecided: 1.1 [0.8, 1.5]; some 22 in place of 20 would decide it");
   const TruthFreeTest few = MakeTest({1.1, {0.0, kInfinity}}, {1.0, {0.9, 1.1}}, {1.1, {0.0, kInfinity}});
-  EXPECT_EQ(VerdictInWords(few), "undecided: 1.1 [0, inf]; it takes five at least");
+  EXPECT_EQ(DescribeVerdict(few), "undecided: 1.1 [0, inf]; it takes five at least");
 }
 
 TEST(JudgeTests, TakesTheWorst) {

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "estimator/estimator_registry.h"
-#include "experiments/study/study_file.h"
 #include "experiments/real/truth_free/advice.h"
 #include "experiments/real/truth_free/planted_fault.h"
+#include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -85,9 +85,9 @@ TEST(JudgeFaults, NamesNothingOutsideOfTheStepsRange) {
   const CalibrationReport wide =
       MakeReport(0.001, {{CameraFault::kFocalLength, {-5.8, 14.0, {-48.0, 36.0}, 9.0}}, k1});
   EXPECT_FALSE(NamesFault(wide));
-  EXPECT_THAT(CalibrationInWords(wide),
+  EXPECT_THAT(DescribeCalibration(wide),
               HasSubstr("none is named: these pairs hardly determine the camera: focal"));
-  EXPECT_THAT(CalibrationInWords(wide), HasSubstr("+-4.2e+03 %"));
+  EXPECT_THAT(DescribeCalibration(wide), HasSubstr("+-4.2e+03 %"));
   EXPECT_FALSE(NamesFault(MakeReport(0.001, {{CameraFault::kReadoutTime, {1.8, 0.1, {1.5, 2.1}, 9.0}}, k1})));
   // Half of what is possible: 0.25 either way is too wide, a little less is not.
   EXPECT_FALSE(
@@ -125,7 +125,7 @@ TEST(Calibrate, ConvergesToAGreatFault) {
     const CalibrationReport report =
         CalibrateSet(PlantFaultsIn(MakePairs(), {1.0, 1.0, planted * FaultVector::Unit(At(fault))}));
     const FaultReport& found = *std::ranges::find(report.faults, fault, &FaultReport::fault);
-    EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << CalibrationInWords(report);
+    EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << DescribeCalibration(report);
     EXPECT_NEAR(found.joint.value, planted, 5.0 * found.joint.standard_error) << TextOf(fault).name;
     EXPECT_NEAR(found.correction, planted, 5.0 * found.joint.standard_error) << TextOf(fault).name;
     EXPECT_GE(report.p_corrected, 0.05);
@@ -145,7 +145,7 @@ TEST(Calibrate, CorrectsWhatIsLeftBesideAGreatFault) {
   const CalibrationReport report = CalibrateSet(PlantFaultsIn(MakePairs(), {1.0, 1.0, planted}));
   for (const CameraFault fault : {CameraFault::kImage2ShiftX, CameraFault::kDistortion}) {
     const FaultReport& found = *std::ranges::find(report.faults, fault, &FaultReport::fault);
-    EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << CalibrationInWords(report);
+    EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << DescribeCalibration(report);
     EXPECT_NEAR(found.correction, planted(At(fault)), 5.0 * found.joint.standard_error) << TextOf(fault).name;
   }
   EXPECT_GE(report.p_corrected, 0.05);
@@ -168,7 +168,7 @@ TEST(Calibrate, GivesAFurtherKindOfFaultNoName) {
     }
     const CalibrationReport report = CalibrateSet(set);
     EXPECT_LT(report.p_value, 0.05) << TextOf(fault).name;
-    EXPECT_FALSE(NamesFault(report)) << TextOf(fault).name << ": " << CalibrationInWords(report);
+    EXPECT_FALSE(NamesFault(report)) << TextOf(fault).name << ": " << DescribeCalibration(report);
     EXPECT_THAT(report.why_unnamed, HasSubstr("something of another kind is left"));
   }
 }

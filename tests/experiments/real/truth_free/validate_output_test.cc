@@ -112,11 +112,11 @@ std::string WordsOf(const ComparedMedians& ratio, TruthFreeVerdict verdict, Faul
   test.cause = cause;
   test.num_units = 20;
   test.units_needed = 20.0;
-  return VerdictInWords(test);
+  return DescribeVerdict(test);
 }
 
 // Too large by the inverse, whose ends change places.
-TEST(VerdictInWords, ByHand) {
+TEST(DescribeVerdict, ByHand) {
   using enum TruthFreeVerdict;
   EXPECT_EQ(WordsOf({1.1, {0.9, 1.2}}, kHolds, FaultCause::kNone), "holds: 1.1 [0.9, 1.2]");
   EXPECT_EQ(WordsOf({1.1, {0.9, 1.2}}, kNoData, FaultCause::kNone), "no data");
@@ -131,7 +131,7 @@ TEST(VerdictInWords, ByHand) {
 }
 
 // Of 20 units: 20 would not decide it by their number, 21 would.
-TEST(VerdictInWords, SaysWhatWouldDecide) {
+TEST(DescribeVerdict, SaysWhatWouldDecide) {
   const ComparedMedians wide = {1.3, {0.9, 1.9}};
   EXPECT_EQ(WordsOf(wide, TruthFreeVerdict::kUndecided, FaultCause::kNone),
             "undecided: 1.3 [0.9, 1.9]; within 1.25 of one it would be by the approximation");
@@ -140,9 +140,9 @@ TEST(VerdictInWords, SaysWhatWouldDecide) {
   test.verdict = TruthFreeVerdict::kUndecided;
   test.num_units = 20;
   test.units_needed = 21.0;
-  EXPECT_EQ(VerdictInWords(test), "undecided: 1.3 [0.9, 1.9]; some 21 in place of 20 would decide it");
+  EXPECT_EQ(DescribeVerdict(test), "undecided: 1.3 [0.9, 1.9]; some 21 in place of 20 would decide it");
   test.units_needed = kNotKnown;
-  EXPECT_EQ(VerdictInWords(test), "undecided: 1.3 [0.9, 1.9]; it takes five at least");
+  EXPECT_EQ(DescribeVerdict(test), "undecided: 1.3 [0.9, 1.9]; it takes five at least");
 }
 
 TEST(ValidationAsCsv, HasARowOfEveryTest) {

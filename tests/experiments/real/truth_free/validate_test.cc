@@ -9,12 +9,12 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/geometry/sampson.h"
-#include "experiments/study/study_file.h"
 #include "experiments/real/truth_free/halves.h"
 #include "experiments/real/truth_free/loops.h"
 #include "experiments/real/truth_free/residual_correlation.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/validate_output.h"
+#include "experiments/study/study_file.h"
 #include "stats/consistency.h"
 #include "tests/test_support/fit_of.h"
 #include "tests/test_support/paths.h"
@@ -94,7 +94,7 @@ TEST(VerdictOn, ByHand) {
   TruthFreeTest test;
   test.ratio = {2.1, {1.8, 2.5}};
   test.verdict = TruthFreeVerdict::kTooSmall;
-  EXPECT_EQ(VerdictInWords(test), "too small by 2.1 [1.8, 2.5] in variance");
+  EXPECT_EQ(DescribeVerdict(test), "too small by 2.1 [1.8, 2.5] in variance");
 }
 
 // 24 pairs of 500 matches, 10 % of them wrong.
@@ -119,15 +119,15 @@ TEST(Validate, FindsCorrelatedNoiseAndRepeatedPointsAndNothingElse) {
   const SetReport independent = ReportOn({}, {});
   EXPECT_EQ(independent.num_answered, 24);
   for (const size_t halves : {0, 1}) {
-    EXPECT_LT(independent.tests[halves].ratio.value, 2.0) << VerdictInWords(independent.tests[halves]);
-    EXPECT_GT(independent.tests[halves].ratio.value, 0.5) << VerdictInWords(independent.tests[halves]);
+    EXPECT_LT(independent.tests[halves].ratio.value, 2.0) << DescribeVerdict(independent.tests[halves]);
+    EXPECT_GT(independent.tests[halves].ratio.value, 0.5) << DescribeVerdict(independent.tests[halves]);
   }
   EXPECT_NEAR(independent.sigma_px.value, 0.5, 0.05);
 
   const Settings correlated = {{"noise", "correlated"}, {"noise_correlation_length_px", "60"}};
   const SetReport neighbours = ReportOn(correlated, {}),
                   robust = ReportOn(correlated, {{"covariance", "robust"}});
-  EXPECT_EQ(neighbours.tests[0].verdict, TruthFreeVerdict::kTooSmall) << VerdictInWords(neighbours.tests[0]);
+  EXPECT_EQ(neighbours.tests[0].verdict, TruthFreeVerdict::kTooSmall) << DescribeVerdict(neighbours.tests[0]);
   EXPECT_LT(robust.tests[0].ratio.value, 0.8 * neighbours.tests[0].ratio.value);
   EXPECT_GT(neighbours.correlations[2].difference.lower, 0.1);
 
