@@ -22,6 +22,7 @@ bool IsBetter(const InlierScore& a, const InlierScore& b, DecidingScore decides)
   return a.negative_log_likelihood < b.negative_log_likelihood;
 }
 
+// Z_j (eq. 18), with s_j, the standard deviation of the entropies (eq. 16).
 double ZStatistic(const InlierScore& score, double mu) {
   if (score.num_inliers == 0) return kInfinity;
   const double n = score.num_inliers;
@@ -30,6 +31,7 @@ double ZStatistic(const InlierScore& score, double mu) {
   return (score.mean_entropy - mu) / (s / std::sqrt(n));
 }
 
+// eq::inlier-quality-test, with the quantile as printed (eq. 19) or of the stated level.
 bool PassesQualityTest(double z, double normal_quantile, QualityTest test) {
   return z <= (test == QualityTest::kAsPrinted ? normal_quantile : -normal_quantile);
 }

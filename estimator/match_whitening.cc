@@ -9,6 +9,7 @@ MatchWhitening::MatchWhitening(const MotionProblem& problem)
       ray_scale_{problem.sigma_px / problem.camera1.fx, problem.sigma_px / problem.camera1.fy,
                  problem.sigma_px / problem.camera2.fx, problem.sigma_px / problem.camera2.fy} {}
 
+// eq::model_motion_relation.
 Eigen::Matrix3d MatchWhitening::FundamentalFromEssential(const Eigen::Matrix3d& E) const {
   return Eigen::Vector3d(ray_scale_.x2, ray_scale_.y2, 1.0).asDiagonal() * E *
          Eigen::Vector3d(ray_scale_.x1, ray_scale_.y1, 1.0).asDiagonal();

@@ -154,6 +154,7 @@ double AsPrintedTest::Distance(const Correspondence& match, PointResidual* resid
   return residual->d2;
 }
 
+// h (eq. 15).
 double AsPrintedTest::EntropyOfLogDeterminant(double log_det_cov) {
   return 0.5 * (4.0 * (kLogTwoPi + 1.0) + log_det_cov);
 }

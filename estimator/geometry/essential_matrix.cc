@@ -32,11 +32,13 @@ std::array<Eigen::Matrix3d, 5> EssentialTangent(const RelativePose& pose) {
   return tangent;
 }
 
+// eq::model_motion_relation.
 Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E, const Camera& camera1,
                                          const Camera& camera2) {
   return camera2.InverseK().transpose() * E * camera1.InverseK();
 }
 
+// The nearest essential matrix; its four motions solve eq::motion_estimate.
 EssentialProjection ProjectToEssential(const Eigen::Matrix3d& matrix) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   EssentialProjection projection{svd.matrixU(), svd.matrixV(), svd.singularValues()};

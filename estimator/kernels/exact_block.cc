@@ -12,7 +12,7 @@ namespace rcme::HWY_NAMESPACE {
 
 // In the coordinates y of delta f = T y (T the orthonormal basis of the motions at f, the unit E) the five
 // constraints c_k'f of the sample have the Jacobian H_ki = c_k'T_i, so that noise n moves y by -H^-1 n and
-// Sigma_y = L L' with L = H^-1 D^(1/2): its root needs no Cholesky factorization.
+// Sigma_y = L L' (eq. 5) with L = H^-1 D^(1/2): its root needs no Cholesky factorization.
 struct Equations {
   Vec columns[5][5];  // H, column by column; its triangle after Factor
   Vec rhs[5][5];      // D^(1/2), column by column; L after Solve

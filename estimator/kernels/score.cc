@@ -126,8 +126,8 @@ HWY_INLINE double SumOverInliers(int count, const Visit& visit) {
   return SumOfEight(sums);
 }
 
-// Two passes: the sum of squares about the mean loses no digits. `spreads` may be read beyond count, up to a
-// block.
+// Entropies (eq. 15), their mean and the sum of squares about it (eq. 16). Two passes: the sum loses no
+// digits. `spreads` may be read beyond count, up to a block.
 void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
   const Vec half = Set(0.5), shift = Set(offset);
   const auto entropy = [&](int i, Mask are_inliers) {

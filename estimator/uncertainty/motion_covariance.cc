@@ -21,11 +21,13 @@ Eigen::Matrix<double, 5, 9> MotionJacobian(const RelativePose& pose) {
   return gram.ldlt().solve(tangent.transpose());
 }
 
+// Sigma_p (eq::cov_p).
 Matrix5d CovarianceOfMotion(const RelativePose& pose, const Matrix9d& f_cov) {
   const Eigen::Matrix<double, 5, 9> J_p = MotionJacobian(pose);
   return J_p * f_cov * J_p.transpose();
 }
 
+// Of five matches: the exact case (eq. 5), carried on to the motion.
 std::optional<Matrix5d> FirstOrderMotionCovariance(const RelativePose& pose, const Camera& camera1,
                                                    const Camera& camera2,
                                                    std::span<const Correspondence> matches, double sigma_px) {
