@@ -52,7 +52,7 @@ class Recipe:
         """What the commands need and what is not there."""
         names = {shlex.split(command)[0] for command in self.commands + self.digest}
         found = [name for name in sorted(names) if "/" not in name and not (programs / name).exists()]
-        found += [each for each in self.needs if "/" in each and not (ROOT / each).exists()]
+        found += [each for each in map(with_data, self.needs) if "/" in each and not (ROOT / each).exists()]
         wanted = [each.removeprefix("estimator ") for each in self.needs if each.startswith("estimator ")]
         there = estimators_of(programs / "rcme") if wanted and "rcme" not in found else wanted
         return found + [f"estimator {name} in rcme (its library was not there when rcme was built)"
@@ -63,6 +63,20 @@ def estimators_of(program):
     """The names of a program's estimators."""
     listed = subprocess.run([str(program), "list", "estimators"], text=True, check=True, capture_output=True)
     return {line.split()[0] for line in listed.stdout.splitlines() if line}
+
+
+def data():
+    """{name: {path, what}} of the data that are not in the repository; RCME_NAME in the environment gives another path."""
+    with open(RECIPES, "rb") as file:
+        entries = tomllib.load(file)["data"]
+    return {name: entry | {"path": os.environ.get(f"RCME_{name}", entry["path"])} for name, entry in entries.items()}
+
+
+def with_data(text):
+    """A command or need with paths in the place of {PAIRS} and its like."""
+    for name, entry in data().items():
+        text = text.replace("{" + name + "}", entry["path"])
+    return text
 
 
 def with_name(value, name):
@@ -110,7 +124,7 @@ def chosen(recipes, names, with_long):
 
 def run(command, out, programs):
     """Runs one command of a recipe; "> FILE" at its end keeps what it prints."""
-    words = shlex.split(command.replace("{out}", str(out)))
+    words = shlex.split(with_data(command.replace("{out}", str(out))))
     target = None
     if len(words) > 2 and words[-2] == ">":
         target, words = words[-1], words[:-2]

@@ -4,7 +4,7 @@ import itertools
 import json
 import re
 
-from recipes import MADE, RESULTS, ROOT, read_recipes
+from recipes import MADE, RESULTS, ROOT, data, read_recipes
 from tables import as_number, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
 from validation_blocks import caught, median_ratios, truth_free, validation_values
 
@@ -25,9 +25,14 @@ def made(spec):
     minutes = entry.get("cpu_minutes", recipe.cpu_minutes)
     commands = "\n".join("    " + command.replace("{out}/", "").replace(" --out {out}", " --out .")
                          for command in recipe.commands)
+    places = {name: entry["what"] for name, entry in data().items() if "{" + name + "}" in commands}
+    for name in places:
+        commands = commands.replace("{" + name + "}", name)
+    meaning = "".join(f"\n\n`{name}` stands for the folder of {what}. The repository does not hold it; the environment variable "
+                      f"`RCME_{name}` says where it is." for name, what in places.items())
     older = ", an older one: not made again since" if "or before" in entry.get("commit", "") else ""
     return (f"`scripts/results {recipe.name}` (about {minutes:g} CPU minutes; the committed one is of commit "
-            f"{version_words(entry)}{older}) runs\n\n{commands}")
+            f"{version_words(entry)}{older}) runs\n\n{commands}{meaning}")
 
 
 def all_results(_):
