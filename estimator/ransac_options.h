@@ -7,7 +7,7 @@
 
 namespace rcme {
 
-// Two readings of the paper's Sampson covariance; README, "Two readings".
+// Two readings of the paper's Sampson covariance (docs/estimators.md).
 enum class Reading {
   kAsPrinted,  // full 4x4 inverse, chi2_3, entropy of a 4-dimensional Gaussian; each sample point tested on
                // its own
