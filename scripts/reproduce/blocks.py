@@ -26,7 +26,7 @@ import re
 
 from recipes import ROOT, RESULTS, ResultError
 from special_blocks import SPECIAL
-from tables import levels_of, markdown, read_table, select, shown, the_row, words_of
+from tables import filled, levels_of, markdown, read_table, select, shown, the_row, words_of
 
 BLOCK = re.compile(r"<!-- begin generated: (\S+) -->\n.*?<!-- end generated: (\S+) -->", re.DOTALL)
 TEMPLATE = re.compile(r"^=== (\S+)\n(.*?)(?=^=== |\Z)", re.DOTALL | re.MULTILINE)
@@ -121,7 +121,7 @@ def say(spec):
         rows = read_table(name.strip())
         return shown(the_row(rows, ", ".join(filter(None, [everywhere, conditions]))), form.strip() or "percent")
 
-    return NUMBER.sub(number, "\n".join(spec.lines).strip("\n"))
+    return filled(NUMBER.sub(number, "\n".join(spec.lines).strip("\n")))
 
 
 def text(spec):

@@ -6,6 +6,7 @@ that are numbers are compared as numbers.
 
 import csv
 import functools
+import textwrap
 
 from recipes import RESULTS, ResultError
 
@@ -130,6 +131,19 @@ def shown(row, form):
     if form not in FORMATS:
         raise ResultError(f"no format '{form}'; there are: {', '.join(FORMATS)}, column NAME")
     return FORMATS[form](row)
+
+
+def filled(text, width=140):
+    """Prose in lines of the pages' width; items of a list keep their indentation, rows of a table their line."""
+    parts = []
+    for line in text.splitlines():
+        if not parts or not line or not parts[-1] or line.startswith(("|", "- ")) or parts[-1].startswith("|"):
+            parts.append(line)
+        else:
+            parts[-1] += " " + line.strip()
+    return "\n".join(part if part.startswith("|") else
+                     textwrap.fill(part, width, subsequent_indent="  " if part.startswith("- ") else "",
+                                   break_long_words=False, break_on_hyphens=False) for part in parts)
 
 
 def markdown(head, body):
