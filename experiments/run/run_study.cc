@@ -2,51 +2,32 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
 #include <mutex>
-
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/progress.h"
-#include "experiments/core/work/stop_request.h"
-#include "experiments/run/for_each_trial.h"
-#include "experiments/run/refusal_watch.h"
 
 namespace rcme {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct TrialsToRun {
-  std::vector<TrialsOfCondition> missing;  // in the store, in the plan's order
-  std::int64_t num_trials = 0;             // with those that it holds
-};
-
-TrialsToRun FindTrialsToRun(const StudyPlan& plan, const Shard& shard, ResultStore* store) {
-  TrialsToRun found;
-  for (const Condition& condition : plan.conditions) {
-    const auto num_trials = static_cast<std::uint32_t>(condition.num_trials);
-    const ShardTrials trials(shard, condition.index, plan.study.repeats_per_scene);
-    found.num_trials += trials.NumBefore(num_trials);
-    for (const TrialRange& range : store->MissingTrials(condition.index, num_trials, trials))
-      found.missing.push_back({&condition, range, trials});
-  }
-  return found;
-}
-
 // Collects the records of finished trials; from time to time one thread writes them, while the others go on.
-class RecordBuffer {
+class RecordBuffer : public TrialKeeper {
  public:
   explicit RecordBuffer(ResultStore* store) : store_(store) {}
 
-  // The records of a whole trial.
-  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+  std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
+                                        const ShardTrials& shard) override {
+    return store_->MissingTrials(condition, num_trials, shard);
+  }
+  std::string NoteOrigin(const TrialOrigin& origin) override { return store_->NoteOrigin(origin); }
+
+  void Keep(const TrialResult& result) override {
     const Clock::time_point now = Clock::now();
     size_t num_waiting = 0;
     {
       const std::lock_guard lock(waiting_mutex_);
-      waiting_.problems.push_back(problem);
-      waiting_.trials.insert(waiting_.trials.end(), records.begin(), records.end());
+      waiting_.problems.push_back(result.problem);
+      waiting_.trials.insert(waiting_.trials.end(), result.records.begin(), result.records.end());
       num_waiting = waiting_.trials.size();
       if (now < next_write_ && num_waiting < kMaxWaiting) return;
     }
@@ -56,11 +37,13 @@ class RecordBuffer {
     Write();
   }
 
-  // Writes what is left.
-  void Flush() {
+  void Flush() override {
     const std::lock_guard writing(writing_mutex_);
     Write();
     store_->Commit();
+  }
+  std::string DescribeKept(std::int64_t num_done) const override {
+    return fmt::format("stopped, {} trials kept; the same command resumes", num_done);
   }
 
  private:
@@ -94,37 +77,8 @@ class RecordBuffer {
 }  // namespace
 
 RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store, const Shard& shard) {
-  const Clock::time_point start = Clock::now();
-  const TrialsToRun trials = FindTrialsToRun(plan, shard, store);
-  const std::int64_t num_to_run = NumTrials(trials.missing), num_before = trials.num_trials - num_to_run;
-  if (num_to_run > 0) {
-    CheckProcessEstimators(plan.study.estimators);
-    const std::string warning = store->NoteOrigin(ThisProgram());
-    if (!warning.empty()) PrintMessage("warning: {}\n", warning);
-  }
-  Progress progress("trials", trials.num_trials, num_before);
   RecordBuffer buffer(store);
-  RefusalWatch refusals;
-  std::atomic<std::int64_t> num_done = num_before;
-  try {
-    ForEachTrial(trials.missing, num_threads, &progress,
-                 [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
-                   const TrialResult result = RunTrial(plan, condition, trial);
-                   buffer.Add(result.problem, result.records);
-                   refusals.Add(result.records);
-                   ++num_done;
-                 });
-  } catch (const Stopped&) {
-    buffer.Flush();
-    throw Stopped(fmt::format("stopped, {} trials kept; the same command resumes", num_done.load()));
-  } catch (...) {
-    buffer.Flush();  // the trials before the error are good
-    throw;
-  }
-  buffer.Flush();
-  refusals.WarnOfRefusals(plan.study.estimators);
-  const std::chrono::duration<double> elapsed = Clock::now() - start;
-  return {trials.num_trials, num_to_run, elapsed.count()};
+  return RunTrials(plan, shard, num_threads, &buffer);
 }
 
 }  // namespace rcme

@@ -70,7 +70,7 @@ class MergedCounts {
       for (std::uint32_t number = 1; number <= report_->num_shards; ++number) {
         const Shard shard{number, report_->num_shards};
         const std::uint32_t end = ShardTrials(shard, c, 1).NumBefore(num_trials);
-        for (const TrialRange& range : PlacesOf(c, shard.Text()).Missing(end)) {
+        for (const TrialRange& range : counts_.conditions[c].PlacesOf(shard.Text()).Missing(end)) {
           report_->num_missing += range.end - range.first;
           shards.insert(number);
         }
@@ -91,16 +91,10 @@ class MergedCounts {
   }
 
  private:
-  const Places& PlacesOf(size_t condition, const std::string& shard) const {
-    static const Places none;
-    const auto found = counts_.conditions[condition].places.find(shard);
-    return found == counts_.conditions[condition].places.end() ? none : found->second;
-  }
-
   bool HasCommonTrials(const RunCounts& part) const {
     for (size_t c = 0; c < part.conditions.size(); ++c) {
       for (const auto& [shard, places] : part.conditions[c].places) {
-        if (places.HasAnyOf(PlacesOf(c, shard))) return true;
+        if (places.HasAnyOf(counts_.conditions[c].PlacesOf(shard))) return true;
       }
     }
     return false;

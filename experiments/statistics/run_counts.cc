@@ -122,6 +122,12 @@ std::map<std::uint32_t, StoredTrial> KeptTrials::All() const {
   return all;
 }
 
+const Places& ConditionCounts::PlacesOf(const std::string& shard) const {
+  static const Places none;
+  const auto found = places.find(shard);
+  return found == places.end() ? none : found->second;
+}
+
 RunCounts::RunCounts(const RunDescription& description)
     : run(description), conditions(run.conditions.size(), ConditionCounts(run.estimators.size())) {}
 

@@ -59,6 +59,8 @@ struct ConditionCounts {
   SummaryCell cell;
   std::map<std::string, Places> places;  // by shard, as Shard::Text
   KeptTrials kept;
+
+  const Places& PlacesOf(const std::string& shard) const;
 };
 
 struct RunCounts {

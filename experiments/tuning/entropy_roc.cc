@@ -104,10 +104,9 @@ void AddRoc(size_t estimator, const std::string& population, const std::vector<T
 
 EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials) {
   const auto estimators = WithoutQualityTest(plan);
-  const std::vector<TrialsOfCondition> all = TrialsOfEach(plan, trials);
-  EntropiesOfTrials entropies(estimators.size(),
-                              std::vector<TrialEntropies>(static_cast<size_t>(NumTrials(all))));
-  ForEachTrial(all, 1, nullptr, [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
+  const size_t num_trials = plan.conditions.size() * (trials.end - trials.first);
+  EntropiesOfTrials entropies(estimators.size(), std::vector<TrialEntropies>(num_trials));
+  ForEachTrial(plan, trials, [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
     const StreamName name = NameOfTrial(plan, condition, trial);
     const TrialData data = condition.source->Make(name);
     for (size_t e = 0; e < estimators.size(); ++e) {

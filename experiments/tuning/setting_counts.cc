@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <atomic>
 #include <map>
 
 #include "experiments/run/for_each_trial.h"
@@ -74,18 +73,15 @@ class TrialDecisions {
   std::map<const MotionEstimator*, TrialOutcome> decided_;
 };
 
-// Counters of one condition and setting that several threads add to.
-struct SharedCount {
-  std::atomic<std::int64_t> failures = 0, refusals = 0, good = 0, false_refusals = 0;
-  void Add(TrialOutcome outcome, TrialOutcome without_limits) {
-    const bool is_refused = outcome == TrialOutcome::kRefusal,
-               is_good = without_limits == TrialOutcome::kSuccess;
-    failures += outcome == TrialOutcome::kFailure;
-    refusals += is_refused;
-    good += is_good;
-    false_refusals += is_refused && is_good;
-  }
-};
+void AddOutcome(TrialOutcome outcome, TrialOutcome without_limits, SettingCount* count) {
+  const bool is_refused = outcome == TrialOutcome::kRefusal,
+             is_good = without_limits == TrialOutcome::kSuccess;
+  ++count->n;
+  count->failures += outcome == TrialOutcome::kFailure;
+  count->refusals += is_refused;
+  count->good += is_good;
+  count->false_refusals += is_refused && is_good;
+}
 
 void CheckTrialsAreFresh(const StudyPlan& plan) {
   for (const Condition& condition : plan.conditions) {
@@ -108,30 +104,20 @@ SettingCount& SettingCount::operator+=(const SettingCount& other) {
   return *this;
 }
 
-SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials,
-                            int num_threads, Progress* progress) {
+SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials) {
   CheckTrialsAreFresh(plan);
-  const auto num_settings = settings.settings.size(), num_conditions = plan.conditions.size();
+  SettingCounts counts(plan.conditions.size(), std::vector<SettingCount>(settings.settings.size()));
   const std::int64_t per_condition = trials.end - trials.first;
-  std::vector<SharedCount> shared(num_conditions * num_settings);
-  ForEachTrial(TrialsOfEach(plan, trials), num_threads, progress,
-               [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
-                 // Its place in the plan, which may be a part of a study's.
-                 const auto place = static_cast<size_t>(index / per_condition);
-                 TrialDecisions decisions(plan, condition, trial);
-                 for (const TraceGroup& group : settings.groups) {
-                   decisions.ForEachSetting(settings, group,
-                                            [&](size_t s, TrialOutcome outcome, TrialOutcome without) {
-                                              shared[place * num_settings + s].Add(outcome, without);
-                                            });
-                 }
-               });
-  SettingCounts counts(num_conditions, std::vector<SettingCount>(num_settings));
-  for (size_t i = 0; i < shared.size(); ++i) {
-    const SharedCount& count = shared[i];
-    counts[i / num_settings][i % num_settings] = {per_condition, count.failures, count.refusals, count.good,
-                                                  count.false_refusals};
-  }
+  ForEachTrial(plan, trials, [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
+    // By its place in the plan, which may be a part of a study's.
+    std::vector<SettingCount>& of_condition = counts[static_cast<size_t>(index / per_condition)];
+    TrialDecisions decisions(plan, condition, trial);
+    for (const TraceGroup& group : settings.groups) {
+      decisions.ForEachSetting(settings, group, [&](size_t s, TrialOutcome outcome, TrialOutcome without) {
+        AddOutcome(outcome, without, &of_condition[s]);
+      });
+    }
+  });
   return counts;
 }
 

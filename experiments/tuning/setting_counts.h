@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "experiments/core/work/progress.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 #include "experiments/tuning/setting_plan.h"
@@ -28,10 +27,8 @@ struct SettingCount {
 using SettingCounts = std::vector<std::vector<SettingCount>>;
 
 // The same trials of every condition of the plan. A function of the plan, the settings and the range alone.
-// Advances `progress` by one per trial. Throws InputError if a condition has weighted trials, or its trials
-// are not fresh (real pairs).
-SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials,
-                            int num_threads, Progress* progress);
+// Throws InputError if a condition has weighted trials, or its trials are not fresh (real pairs).
+SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials);
 
 // One per setting: the sum over some conditions.
 std::vector<SettingCount> SumOver(const SettingCounts& counts, const std::vector<std::uint32_t>& conditions);

@@ -191,7 +191,7 @@ std::string ComputeBlock(const StudyPlan& plan, const SettingPlan& settings, std
   if (kind == Kind::kPlainCalls) {
     return VerifiedAsJson(VerifyEstimators(PlanWithTuned(one, settings, tuned.value()), trials)).dump();
   }
-  return CountsAsJson(CountOutcomes(one, settings, trials, 1, nullptr).front()).dump();
+  return CountsAsJson(CountOutcomes(one, settings, trials).front()).dump();
 }
 
 std::int64_t NumTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
@@ -203,7 +203,7 @@ std::int64_t NumTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
 std::string ComputeRepetition(const StudyPlan& plan, const SettingPlan& settings, size_t number) {
   StudyPlan fresh = plan;
   fresh.study.seed += number + 1;
-  const auto count = [&](TrialRange range) { return CountOutcomes(fresh, settings, range, 1, nullptr); };
+  const auto count = [&](TrialRange range) { return CountOutcomes(fresh, settings, range); };
   const Choice choice = ChooseFrom(fresh, settings, {count, {}});
   return (choice.setting ? Json(*choice.setting) : Json()).dump();
 }

@@ -25,10 +25,9 @@ void AddTrial(const std::vector<TrialRecord>& records, const FailureBounds& boun
 std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials) {
   std::vector<VerifiedEstimator> verified;
   for (const EstimatorSpec& spec : plan.study.estimators) verified.push_back({spec, {}, {}, {}, {}});
-  ForEachTrial(TrialsOfEach(plan, trials), 1, nullptr,
-               [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
-                 AddTrial(RunTrial(plan, condition, trial).records, plan.study.failure, &verified);
-               });
+  ForEachTrial(plan, trials, [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
+    AddTrial(RunTrial(plan, condition, trial).records, plan.study.failure, &verified);
+  });
   return verified;
 }
 

@@ -22,9 +22,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksumKey = "\"checksum\": \"";
-constexpr int kMaxPieceDepth = 8;       // of lists within lists; the deepest piece has three
+constexpr int kMaxPieceDepth = 8;        // of lists within lists; the deepest piece has three
 constexpr size_t kMaxRestOfPiece = 256;  // of an item's line beside its result, bytes
-constexpr size_t kMaxFirstValues = 64;  // of the first line, which has ten
+constexpr size_t kMaxFirstValues = 64;   // of the first line, which has ten
 constexpr const char* kAgain = "remove the file and run the command again";
 
 std::string QuotedAsJson(const std::string& text) {

@@ -1,11 +1,11 @@
-// The file that keeps the results of a work plan (core/work/work_plan.h): a shard's part, several parts joined
-// into one, or the checkpoint of a stopped command. It holds the result of each item, every number to its last
-// bit, and the identity of the work. Lines of JSON: the first line describes the part and counts its items,
-// which it calls pieces; each further line is one item, ordered by group and number.
+// The file that keeps the results of a work plan (core/work/work_plan.h): a shard's part, several parts
+// joined into one, or the checkpoint of a stopped command. It holds the result of each item, every number to
+// its last bit, and the identity of the work. Lines of JSON: the first line describes the part and counts its
+// items, which it calls pieces; each further line is one item, ordered by group and number.
 //
-// Every line begins with a checksum (CRC-32) of the rest of the line; an item's also covers the checksum of the
-// first line, so that a line of another part, or of another state of this one, is detected. Like the checksums
-// of result files it detects accidents, not forgery: whoever counts the results checks them again.
+// Every line begins with a checksum (CRC-32) of the rest of the line; an item's also covers the checksum of
+// the first line, so that a line of another part, or of another state of this one, is detected. Like the
+// checksums of result files it detects accidents, not forgery: whoever counts the results checks them again.
 #pragma once
 
 #include <map>

@@ -18,6 +18,7 @@ class Progress {
 
   // Callable from several threads.
   void Advance(std::int64_t count);
+  std::int64_t num_done() const { return done_; }
 
  private:
   using Clock = std::chrono::steady_clock;

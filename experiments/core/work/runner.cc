@@ -16,7 +16,6 @@
 #include "experiments/core/text/program_name.h"
 #include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/core/work/thread_time.h"
 #include "parameters/input_error.h"
 
@@ -142,29 +141,17 @@ void Runner::OpenFile() {
 void Runner::Get(const std::vector<ItemPlace>& places, const ComputeItem& compute, const ProgressUnit& unit) {
   if (kind_ == Kind::kParts)
     return RequireNoneMissing(plan_, FindMissingAmong(places, results_), results_.num_shards);
-  KeepUntilStopped([&] { ComputeAll(places, compute, unit); });
-  Write();
+  ComputeAll(places, compute, unit);
+  Flush();
 }
 
 void Runner::GetOne(const ItemPlace& place, const ComputeItem& compute) {
   if (kind_ == Kind::kParts) throw std::logic_error("GetOne: an open plan has no parts");
   if (results_.results.contains(place)) return;
-  KeepUntilStopped([&] {
-    if (IsStopRequested()) throw Stopped("stopped");
+  FinishItems(1, 1, nullptr, this, [&](std::int64_t) {
     ComputeOne(place, compute);
+    return 1;
   });
-}
-
-void Runner::KeepUntilStopped(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Stopped&) {
-    Write();
-    throw Stopped(DescribeProgress());
-  } catch (...) {
-    Write();  // the items before the error are good
-    throw;
-  }
 }
 
 void Runner::ComputeAll(const std::vector<ItemPlace>& places, const ComputeItem& compute,
@@ -179,10 +166,10 @@ void Runner::ComputeAll(const std::vector<ItemPlace>& places, const ComputeItem&
     if (!is_done) left.push_back(place);
   }
   Progress progress(unit.amount ? unit.name : plan_.item_name + "s", total, done);
-  ForEachIndex(std::ssize(left), num_threads_, [&](std::int64_t index) {
+  FinishItems(std::ssize(left), num_threads_, &progress, this, [&](std::int64_t index) {
     const ItemPlace& place = left[static_cast<size_t>(index)];
     ComputeOne(place, compute);
-    progress.Advance(amount_in(place));
+    return amount_in(place);
   });
 }
 
@@ -197,10 +184,10 @@ void Runner::ComputeOne(const ItemPlace& place, const ComputeItem& compute) {
 void Runner::Keep(const ItemPlace& place, ItemResult result) {
   const std::lock_guard lock(*mutex_);
   results_.results.emplace(place, std::move(result));
-  if (Clock::now() >= next_write_) Write();
+  if (Clock::now() >= next_write_) Flush();
 }
 
-void Runner::Write() {
+void Runner::Flush() {
   if (path_.empty() || is_too_long_) return;
   const Clock::time_point begin = Clock::now();
   try {
@@ -218,12 +205,12 @@ void Runner::Write() {
   next_write_ = Clock::now() + std::max<Clock::duration>(kWriteInterval, pause);
 }
 
-std::string Runner::DescribeProgress() const {
+std::string Runner::DescribeKept(std::int64_t) const {
   if (path_.empty()) return "stopped; nothing was kept";
   const std::string most =
       plan_.is_open ? "" : fmt::format("of at most {} ", ListItems(plan_, part_.shard).size());
-  return fmt::format("stopped; {} has {} {}{}s, the same command goes on", path_, num_written_,
-                     most, plan_.item_name);
+  return fmt::format("stopped; {} has {} {}{}s, the same command goes on", path_, num_written_, most,
+                     plan_.item_name);
 }
 
 void Runner::RemoveCheckpoint() {
@@ -293,8 +280,8 @@ void ReadResult(const WorkPlan& plan, const WorkResults& results, const ItemPlac
   } catch (const std::exception& error) {
     const auto path = results.paths.find(place);
     throw KeptResultsError(fmt::format("{}: damaged: {}: {}",
-                                      path == results.paths.end() ? results.kept_in : path->second,
-                                      DescribeItem(plan, place), error.what()));
+                                       path == results.paths.end() ? results.kept_in : path->second,
+                                       DescribeItem(plan, place), error.what()));
   }
 }
 

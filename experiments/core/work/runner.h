@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/work/item_loop.h"
 #include "experiments/core/work/part_file.h"
 
 namespace rcme {
@@ -55,7 +56,7 @@ struct ProgressUnit {
 //
 // A file is written every ten seconds, at the end of Get, when a request stops it and on an error, whole or
 // not at all.
-class Runner {
+class Runner : private ItemKeeper {
  public:
   // Keeps nothing.
   static Runner InMemory(const WorkPlan& plan, int num_threads);
@@ -91,10 +92,9 @@ class Runner {
   void OpenFile();
   void ComputeAll(const std::vector<ItemPlace>& places, const ComputeItem& compute, const ProgressUnit& unit);
   void ComputeOne(const ItemPlace& place, const ComputeItem& compute);
-  void KeepUntilStopped(const std::function<void()>& work);
   void Keep(const ItemPlace& place, ItemResult result);
-  void Write();
-  std::string DescribeProgress() const;
+  void Flush() override;
+  std::string DescribeKept(std::int64_t) const override;
 
   Kind kind_;
   WorkPlan plan_;

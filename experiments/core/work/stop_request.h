@@ -1,6 +1,6 @@
-// Treats Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request: the items in progress are finished
-// and kept, then the program ends. A signal also cuts off a wait for an estimator outside the program
-// (parameters/stop_signal.h). The same signal a second time ends the program at once.
+// Treats Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request: the items in progress are
+// finished and kept, then the program ends. A signal also cuts off a wait for an estimator outside the
+// program (parameters/stop_signal.h). The same signal a second time ends the program at once.
 #pragma once
 
 #include <chrono>

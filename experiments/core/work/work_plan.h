@@ -1,5 +1,5 @@
-// Long work as a list of items, each a pure function of the plan, in groups of items with similar cost. The runner
-// (core/work/runner.h) computes them; a shard (core/work/shard.h) has a fixed share of them.
+// Long work as a list of items, each a pure function of the plan, in groups of items with similar cost. The
+// runner (core/work/runner.h) computes them; a shard (core/work/shard.h) has a fixed share of them.
 #pragma once
 
 #include <compare>

@@ -71,8 +71,7 @@ TEST_F(PeerOptions, InATuning) {
       TunedPlan("  options: {min_inliers: [0, 50, 1000], effort: [low, high]}\n", "peer", Entry(""));
   const SettingPlan settings = SettingsOf(plan);
   EXPECT_EQ(settings.groups.size(), 6u);
-  Progress progress("trials", 1);
-  const std::vector<SettingCount> counts = CountOutcomes(plan, settings, {0, 10}, 1, &progress)[0];
+  const std::vector<SettingCount> counts = CountOutcomes(plan, settings, {0, 10})[0];
   EXPECT_EQ(counts[0].false_refusals, 0);
   EXPECT_GT(counts[0].good, 0);
   EXPECT_EQ(counts[4].refusals, 10);

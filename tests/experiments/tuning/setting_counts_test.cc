@@ -15,9 +15,8 @@
 namespace rcme {
 namespace {
 
-std::vector<SettingCount> Count(const StudyPlan& plan, size_t condition, TrialRange trials, int threads = 2) {
-  Progress progress("trials", 1);
-  return CountOutcomes(plan, SettingsOf(plan), trials, threads, &progress)[condition];
+std::vector<SettingCount> Count(const StudyPlan& plan, size_t condition, TrialRange trials) {
+  return CountOutcomes(plan, SettingsOf(plan), trials)[condition];
 }
 
 // The study's plan with two estimators: one setting, and the same without its limits.
@@ -161,13 +160,6 @@ TEST(SettingCounts, ManyLevelsOfMuTakeNoFurtherTrace) {
   EXPECT_LT(calls.finishes, 2 * 7 * 20) << "one per winner at most, not one per level";
   EXPECT_GE(calls.finishes, finishes_of_one);
   EXPECT_EQ(num_traces("mu: [3, 4, 5], significance_level: [0.01, 0.05]"), 2 * 2 * 7);
-}
-
-TEST(SettingCounts, DoNotDependOnThreads) {
-  const StudyPlan plan = TunedPlan("  options: {mu: [1, 3, 6], kappa: [0.3, 0.7]}\n");
-  for (const size_t condition : {0, 1}) {
-    EXPECT_EQ(Text(Count(plan, condition, {0, 20}, 1)), Text(Count(plan, condition, {0, 20}, 4)));
-  }
 }
 
 TEST(SettingCounts, OfARangeAreTheSumOfItsParts) {

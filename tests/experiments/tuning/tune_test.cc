@@ -230,9 +230,8 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
   std::vector<std::int64_t> num_chosen(6, 0);
   std::int64_t num_without = 0;
   std::map<Verdict, std::int64_t> num_with;
-  Progress progress("trials", 1);
   const std::vector<SettingCount> reference =
-      SumOver(CountOutcomes(plan, SettingsOf(plan), {30, 40}, 1, &progress), {0, 1});
+      SumOver(CountOutcomes(plan, SettingsOf(plan), {30, 40}), {0, 1});
   EXPECT_EQ(Text(repetitions.reference), Text(reference));
   for (std::uint64_t r = 1; r <= 8; ++r) {
     StudyPlan of_seed = plan;
