@@ -109,4 +109,33 @@ MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forec
   return error;
 }
 
+BootstrapEstimate MeasurePopulationCalibrationError(std::span<const Forecast> forecasts, Binning binning,
+                                                    int num_bins, const BootstrapOptions& given,
+                                                    RandomStream& rng) {
+  const std::vector<size_t> bin_numbers = BinNumbers(forecasts, binning, num_bins);
+  const std::vector<std::int64_t> clusters = NumberedClusters(forecasts);
+  const size_t num_clusters = static_cast<size_t>(*std::ranges::max_element(clusters)) + 1;
+  const size_t K = static_cast<size_t>(num_bins);
+  std::vector<double> excess(num_clusters * K),
+      sizes(num_clusters);  // sum of probability - outcome; forecasts
+  for (size_t i = 0; i < forecasts.size(); ++i) {
+    const size_t cluster = static_cast<size_t>(clusters[i]);
+    excess[cluster * K + bin_numbers[i]] += forecasts[i].probability - (forecasts[i].happened ? 1.0 : 0.0);
+    sizes[cluster] += 1.0;
+  }
+  const ConditionStatistic error = [&](std::span<const int> times) {
+    std::vector<double> sums(K);
+    double n = 0.0, sum = 0.0;
+    for (size_t c = 0; c < num_clusters; ++c) {
+      n += times[c] * sizes[c];
+      for (size_t k = 0; times[c] > 0 && k < K; ++k) sums[k] += times[c] * excess[c * K + k];
+    }
+    for (const double of_bin : sums) sum += std::abs(of_bin) / n;
+    return sum;
+  };
+  BootstrapOptions options = given;
+  options.chance_bias = ChanceBias::kUpwards;
+  return BootstrapOverConditions(num_clusters, error, options, rng);
+}
+
 }  // namespace rcme

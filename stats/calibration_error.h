@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "stats/condition_bootstrap.h"
 #include "stats/forecast.h"
 
 namespace rcme {
@@ -38,5 +39,12 @@ struct MeasuredCalibrationError {
 };
 MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forecasts, Binning binning,
                                                  int num_bins, int num_samples, RandomStream& rng);
+
+// The error in the population that the forecasts' clusters are a random sample of (conditions), with its
+// interval by a bootstrap over clusters; the bins are those of all forecasts. Measured coverage:
+// results/population/README.md.
+BootstrapEstimate MeasurePopulationCalibrationError(std::span<const Forecast> forecasts, Binning binning,
+                                                    int num_bins, const BootstrapOptions& options,
+                                                    RandomStream& rng);
 
 }  // namespace rcme

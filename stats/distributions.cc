@@ -36,7 +36,7 @@ double NormalQuantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);
 }
 double NormalCdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
-double StudentQuantile(int degrees_of_freedom, double probability) {
+double StudentQuantile(double degrees_of_freedom, double probability) {
   return boost::math::quantile(boost::math::students_t(degrees_of_freedom), probability);
 }
 double BinomialCdf(std::int64_t successes, std::int64_t n, double probability) {

@@ -11,7 +11,7 @@ double ChiSquareCdf(int degrees_of_freedom, double x);
 double NonCentralChiSquareCdf(int degrees_of_freedom, double noncentrality, double x);
 double NormalQuantile(double probability);
 double NormalCdf(double x);
-double StudentQuantile(int degrees_of_freedom, double probability);
+double StudentQuantile(double degrees_of_freedom, double probability);
 // P(at most `successes` of n); 0 for negative counts, 1 from n on.
 double BinomialCdf(std::int64_t successes, std::int64_t n, double probability);
 // Of the ratio of two independent chi-squares, each over its degrees of freedom.

@@ -94,5 +94,37 @@ TEST(CalibrationError, BadInput) {
                std::invalid_argument);
 }
 
+// 30 conditions of 20 forecasts each, whose log odds are wrong by an amount of their own, one on average:
+// what the interval has to hold is the error of a million such forecasts. 300 repetitions.
+TEST(CalibrationError, IntervalForThePopulationOfConditions) {
+  RandomStream rng({.seed = 1, .purpose = 489});
+  const auto forecasts_of = [&](int num_conditions, int num_trials) {
+    std::vector<Forecast> forecasts;
+    for (int condition = 0; condition < num_conditions; ++condition) {
+      const double error = 1.0 + rng.Normal(), level = rng.Normal();
+      for (int i = 0; i < num_trials; ++i) {
+        const double log_odds = level + rng.Normal();
+        const double right = 1.0 / (1.0 + std::exp(-log_odds - error));
+        forecasts.push_back({1.0 / (1.0 + std::exp(-log_odds)), rng.Uniform() < right, condition});
+      }
+    }
+    return forecasts;
+  };
+  const double truth =
+      ExpectedCalibrationError(BinForecasts(forecasts_of(200'000, 5), Binning::kEqualWidth, 10));
+  CoverageCount covered;
+  for (int repetition = 0; repetition < 300; ++repetition) {
+    const std::vector<Forecast> forecasts = forecasts_of(30, 20);
+    RandomStream samples({.seed = 1, .trial = static_cast<std::uint32_t>(repetition), .purpose = 490});
+    const BootstrapEstimate error =
+        MeasurePopulationCalibrationError(forecasts, Binning::kEqualWidth, 10, {.num_samples = 200}, samples);
+    EXPECT_NEAR(error.value, ExpectedCalibrationError(BinForecasts(forecasts, Binning::kEqualWidth, 10)),
+                1e-12);
+    covered.Add(error.interval.Contains(truth));
+  }
+  EXPECT_TRUE(covered.Admits(0.95)) << covered;
+  EXPECT_FALSE(covered.Admits(0.84)) << "no power";
+}
+
 }  // namespace
 }  // namespace rcme
