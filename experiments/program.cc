@@ -93,6 +93,7 @@ A first session:
   AddSummarizeCommand(app);
   AddCompareCommand(app);
   AddReliabilityCommand(app);
+  AddMarginalsCommand(app);
   AddReportCommand(app);
   AddPlotCommand(app);
   AddReplayCommand(app);

@@ -1,0 +1,249 @@
+#include "experiments/statistics/marginals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "experiments/statistics/failure_forecasts.h"
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "stats/distributions.h"
+#include "stats/moments.h"
+#include "stats/population_mean.h"
+#include "stats/population_rate.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char* kDrawFactor = "draw";
+constexpr const char* kNotDrawn = "-";
+constexpr size_t kNumQuantities = std::size(kMarginalQuantities);
+
+// What a trial says of a quantity; nothing where it says nothing.
+std::optional<double> ValueIn(const TrialRecord& record, const FailureBounds& bounds, bool states,
+                              MarginalQuantity quantity) {
+  static const double nees_bound = ChiSquareQuantile(5, 0.95);
+  const std::optional<double> stated = StatedFailureProbability(record);
+  const bool has_failed = HasFailed(record, bounds);
+  switch (quantity) {
+    case MarginalQuantity::kFailedLessStated:
+      return stated ? std::optional(has_failed - *stated) : std::nullopt;
+    case MarginalQuantity::kSureFailed:
+      return stated && *stated <= kSureBelow ? std::optional(has_failed - *stated) : std::nullopt;
+    case MarginalQuantity::kSureCoverage: {
+      const bool counts = states ? stated && *stated <= kCertainBelow : HasSucceeded(record, bounds);
+      return counts && !std::isnan(record.nees) ? std::optional<double>(record.nees <= nees_bound)
+                                                : std::nullopt;
+    }
+    case MarginalQuantity::kFailure:
+      return IsScored(record) || HasRefused(record) ? std::optional<double>(has_failed) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+double ClaimOf(MarginalQuantity quantity) {
+  switch (quantity) {
+    case MarginalQuantity::kSureCoverage:
+      return 0.95;
+    case MarginalQuantity::kFailure:
+      return std::numeric_limits<double>::quiet_NaN();
+    default:
+      return 0.0;
+  }
+}
+
+// By estimator, quantity and condition.
+using Values = std::vector<std::vector<std::vector<Moments>>>;
+
+Values CollectValues(const ResultStore& run, const RunDescription& description) {
+  const size_t num_estimators = description.estimators.size(), num_conditions = description.conditions.size();
+  std::vector<bool> states(num_estimators);
+  run.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    if (problem.weight != 1.0)
+      throw InputError(
+          "marginals: the trials of this run are weighted (tilted_to), which its intervals do not allow");
+    for (size_t e = 0; e < records.size(); ++e)
+      if (StatedFailureProbability(records[e])) states[e] = true;
+  });
+  Values values(num_estimators, {kNumQuantities, std::vector<Moments>(num_conditions)});
+  run.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    for (size_t e = 0; e < records.size(); ++e) {
+      for (size_t q = 0; q < kNumQuantities; ++q) {
+        const auto value = ValueIn(records[e], description.failure, states[e], kMarginalQuantities[q]);
+        if (value) values[e][q][problem.condition].Add(*value);
+      }
+    }
+  });
+  return values;
+}
+
+// A level of a factor, or a range of its levels.
+struct Level {
+  size_t factor = 0;
+  Regime regime;
+};
+
+std::vector<std::string> LevelsOfFactor(const RunDescription& run, size_t factor) {
+  std::vector<std::string> levels;
+  for (const auto& condition : run.conditions) levels.push_back(condition.levels[factor]);
+  return levels;
+}
+
+// Fifths of the conditions by a number; those without it are in none.
+std::vector<Level> DivideIntoFifths(const std::string& name, size_t factor,
+                                    const std::vector<double>& numbers) {
+  constexpr size_t kNumParts = 5;
+  std::vector<double> sorted;
+  for (const double x : numbers)
+    if (!std::isnan(x)) sorted.push_back(x);
+  std::ranges::sort(sorted);
+  std::vector<Level> parts;
+  for (size_t part = 0; part < kNumParts; ++part) {
+    const double low = sorted[part * sorted.size() / kNumParts];
+    const bool is_last = part + 1 == kNumParts;
+    const double high = is_last ? sorted.back() : sorted[(part + 1) * sorted.size() / kNumParts];
+    Level level{factor, {fmt::format("{} {:.3g} to {:.3g}", name, low, high), {}}};
+    for (const double x : numbers) level.regime.has.push_back(x >= low && (is_last || x < high));
+    parts.push_back(std::move(level));
+  }
+  return parts;
+}
+
+std::vector<Level> ListLevels(const RunDescription& run, size_t factor) {
+  const std::string& name = run.factors[factor];
+  const std::vector<std::string> levels = LevelsOfFactor(run, factor);
+  std::vector<std::string> distinct;
+  std::vector<double> numbers;
+  bool are_numbers = true;
+  for (const std::string& level : levels) {
+    double number = std::numeric_limits<double>::quiet_NaN();
+    are_numbers = are_numbers && (level == kNotDrawn || ParseReal(level, &number));
+    numbers.push_back(number);
+    if (level != kNotDrawn && std::ranges::count(distinct, level) == 0) distinct.push_back(level);
+  }
+  if (are_numbers && distinct.size() > kMaxLevels) return DivideIntoFifths(name, factor, numbers);
+  std::vector<Level> all;
+  for (const std::string& one : distinct) {
+    Level level{factor, {fmt::format("{} = {}", name, one), {}}};
+    for (const std::string& of_condition : levels) level.regime.has.push_back(of_condition == one);
+    all.push_back(std::move(level));
+  }
+  return all;
+}
+
+bool IsRegime(const std::vector<bool>& has) {
+  const auto number = static_cast<size_t>(std::ranges::count(has, true));
+  return number >= kLeastConditions && number < has.size();
+}
+
+// Those in the regime; conditions without such trials do not count.
+std::vector<Moments> Select(const std::vector<Moments>& conditions, const std::vector<bool>& has) {
+  std::vector<Moments> selected;
+  for (size_t c = 0; c < conditions.size(); ++c)
+    if (has[c] && conditions[c].n() > 0) selected.push_back(conditions[c]);
+  return selected;
+}
+
+bool IsShare(MarginalQuantity quantity) {
+  return quantity == MarginalQuantity::kFailure || quantity == MarginalQuantity::kSureCoverage;
+}
+
+Marginal Measure(const std::vector<Moments>& conditions, MarginalQuantity quantity, double confidence) {
+  Marginal marginal;
+  marginal.quantity = quantity;
+  marginal.claimed = ClaimOf(quantity);
+  if (IsShare(quantity)) {
+    std::vector<ConditionCount> counts;
+    for (const Moments& one : conditions)
+      counts.push_back({std::llround(one.mean() * static_cast<double>(one.n())), one.n()});
+    const PopulationRate rate = MeasurePopulationRate(counts, ConditionWeights::kByTrials, confidence);
+    marginal.value = rate.value, marginal.interval = rate.interval, marginal.n = rate.n;
+  } else {
+    const PopulationMean mean = MeasurePopulationMean(conditions, ConditionWeights::kByTrials, confidence);
+    marginal.value = mean.value, marginal.interval = mean.interval, marginal.n = mean.n;
+  }
+  marginal.num_conditions = std::ssize(conditions);
+  const double beyond =
+      std::max({0.0, marginal.interval.lower - marginal.claimed, marginal.claimed - marginal.interval.upper});
+  if (beyond > 0.0) marginal.excess = beyond / (0.5 * (marginal.interval.upper - marginal.interval.lower));
+  return marginal;
+}
+
+}  // namespace
+
+std::string Name(MarginalQuantity quantity) {
+  switch (quantity) {
+    case MarginalQuantity::kFailedLessStated:
+      return "failed - P";
+    case MarginalQuantity::kSureFailed:
+      return fmt::format("failed - P at P <= {}", kSureBelow);
+    case MarginalQuantity::kSureCoverage:
+      return "coverage";
+    case MarginalQuantity::kFailure:
+      return "failure";
+  }
+  return {};
+}
+
+std::vector<Regime> ListRegimes(const RunDescription& run, bool with_pairs) {
+  std::vector<Regime> regimes = {{"", std::vector<bool>(run.conditions.size(), true)}};
+  std::vector<Level> levels;
+  for (size_t f = 0; f < run.factors.size(); ++f) {
+    if (run.factors[f] == kDrawFactor) continue;
+    for (Level& level : ListLevels(run, f))
+      if (IsRegime(level.regime.has)) levels.push_back(std::move(level));
+  }
+  for (const Level& level : levels) regimes.push_back(level.regime);
+  for (size_t i = 0; with_pairs && i < levels.size(); ++i) {
+    for (size_t j = i + 1; j < levels.size(); ++j) {
+      if (levels[j].factor == levels[i].factor) continue;
+      std::vector<bool> both;
+      for (size_t c = 0; c < levels[i].regime.has.size(); ++c)
+        both.push_back(levels[i].regime.has[c] && levels[j].regime.has[c]);
+      // One within the other is no regime of its own.
+      if (IsRegime(both) && both != levels[i].regime.has && both != levels[j].regime.has)
+        regimes.push_back({levels[i].regime.text + ", " + levels[j].regime.text, std::move(both)});
+    }
+  }
+  return regimes;
+}
+
+Marginals MeasureMarginals(const ResultStore& run, bool with_pairs) {
+  const RunDescription description = run.Description();
+  if (description.conditions.size() < kLeastConditions)
+    throw InputError(fmt::format("marginals: the run has {} conditions; at least {} are needed",
+                                 description.conditions.size(), kLeastConditions));
+  const Values values = CollectValues(run, description);
+  const std::vector<Regime> regimes = ListRegimes(description, with_pairs);
+  struct Question {
+    size_t estimator, quantity;
+    const Regime* regime;
+    std::vector<Moments> conditions;
+  };
+  std::vector<Question> questions;
+  for (size_t e = 0; e < values.size(); ++e) {
+    for (const Regime& regime : regimes) {
+      for (size_t q = 0; q < kNumQuantities; ++q) {
+        std::vector<Moments> conditions = Select(values[e][q], regime.has);
+        if (conditions.size() >= kLeastConditions)
+          questions.push_back({e, q, &regime, std::move(conditions)});
+      }
+    }
+  }
+  Marginals marginals;
+  marginals.num_intervals = questions.size();
+  const double confidence = 1.0 - (1.0 - marginals.confidence) / static_cast<double>(questions.size());
+  for (const Question& question : questions) {
+    Marginal row = Measure(question.conditions, kMarginalQuantities[question.quantity], confidence);
+    row.estimator = description.estimators[question.estimator].label;
+    row.regime = question.regime->text;
+    marginals.rows.push_back(std::move(row));
+  }
+  std::ranges::stable_sort(marginals.rows, std::ranges::greater(), &Marginal::excess);
+  return marginals;
+}
+
+}  // namespace rcme

@@ -1,0 +1,86 @@
+#include "experiments/statistics/marginals_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/json_output.h"
+
+namespace rcme {
+namespace {
+
+using MarginalColumns = std::vector<ColumnOf<Marginal>>;
+
+Column Heading(Column column, const std::string& heading) {
+  column.heading = heading;
+  return column;
+}
+
+MarginalColumns ListColumns(bool for_people) {
+  MarginalColumns columns = {
+      {Column::Key("estimator"), [](const Marginal& one) { return one.estimator; }},
+      {Column::Key("regime"), [](const Marginal& one) { return one.regime.empty() ? "all" : one.regime; }},
+      {Column::Key("quantity"), [](const Marginal& one) { return Name(one.quantity); }},
+      {Column::Estimated("value", kPercent), [for_people](const Marginal& one) {
+         return Estimate{.value = one.value,
+                         .interval = one.interval,
+                         .n = for_people ? std::optional(one.n) : std::nullopt};
+       }}};
+  if (!for_people)
+    columns.push_back({{.name = "lower,upper", .type = ColumnType::kInterval, .json_name = "interval"},
+                       [](const Marginal& one) { return one.interval; }});
+  columns.push_back({Column::Number("claimed", kPercent), [](const Marginal& one) { return one.claimed; }});
+  if (!for_people)
+    columns.push_back({Column::Number("excess"), [](const Marginal& one) { return one.excess; }});
+  columns.push_back({Heading(Column::Count("num_conditions"), "conditions"),
+                     [](const Marginal& one) { return one.num_conditions; }});
+  if (!for_people) columns.push_back({Column::Count("n"), [](const Marginal& one) { return one.n; }});
+  return columns;
+}
+
+}  // namespace
+
+std::string MarginalsAsTable(const std::string& study, const Marginals& marginals, size_t num_shown) {
+  std::vector<Marginal> whole, worst;
+  for (const Marginal& one : marginals.rows) {
+    if (one.regime.empty())
+      whole.push_back(one);
+    else if (one.excess > 0.0)
+      worst.push_back(one);
+  }
+  std::ranges::stable_sort(whole, {}, &Marginal::estimator);
+  const size_t num_wrong = worst.size();
+  worst.resize(std::min(worst.size(), num_shown));
+  std::string text =
+      FormatParagraph(fmt::format("Study {}: every estimator over all conditions, then the regimes in which "
+                                  "it is farthest from what is claimed",
+                                  study));
+  text += "\n" + RenderText(MakeTable(ListColumns(true), whole)) + "\n";
+  text += num_wrong == 0 ? FormatParagraph("In no regime does an interval exclude what is claimed.")
+                         : RenderText(MakeTable(ListColumns(true), worst));
+  text += "\n" +
+          FormatParagraph(fmt::format("{} of {} regimes and quantities differ from what is claimed; {} are "
+                                      "shown. The {} intervals hold together with {:.0f} % "
+                                      "(Bonferroni), if the conditions are a random sample of a population.",
+                                      num_wrong, marginals.rows.size() - whole.size(), worst.size(),
+                                      marginals.num_intervals, 100.0 * marginals.confidence));
+  return text;
+}
+
+std::string MarginalsAsCsv(const Marginals& marginals) {
+  return RenderCsv(MakeTable(ListColumns(false), marginals.rows));
+}
+
+std::string MarginalsAsJson(const std::string& study, const Marginals& marginals) {
+  return JsonText(kMarginalsFormat,
+                  {{"study", study},
+                   {"confidence", marginals.confidence},
+                   {"num_intervals", marginals.num_intervals},
+                   {"marginals", RenderJson(MakeTable(ListColumns(false), marginals.rows))}});
+}
+
+}  // namespace rcme

@@ -1,0 +1,93 @@
+#include "experiments/statistics/marginals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/statistics/marginals_output.h"
+#include "stats/random.h"
+#include "tests/test_support/add_records.h"
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/summarized_run.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+// 24 outlier ratios, which are divided into fifths, times two numbers of matches.
+Study WideStudy() {
+  std::string ratios;
+  for (int i = 0; i < 24; ++i) ratios += fmt::format("{}{}", i == 0 ? "" : ", ", 0.02 * i);
+  return ParseStudy(
+      "name: wide\nseed: 1\ntrials: 40\n"
+      "data: {scene: uniform_volume, sigma_px: 0.5}\n"
+      "factors:\n  outlier_ratio: [" +
+          ratios +
+          "]\n  num_matches: [50, 60]\n"
+          "estimators:\n  - {name: standard}\n",
+      "wide.yaml");
+}
+
+// Answers with a stated probability of .2 that fail as often as `rate` says, in each condition.
+class MarginalsOfRun : public testing::Test {
+ protected:
+  template <typename Rate>
+  Marginals Measure(Rate rate, bool with_pairs = false) {
+    const StudyPlan plan = MakePlan(WideStudy());
+    ResultStore store = ResultStore::OpenForRun(folder_.Path(fmt::format("{}.sqlite", number_++)), plan);
+    RandomStream rng({1, number_, 0, 0});
+    for (const Condition& condition : plan.conditions) {
+      std::vector<TrialRecord> records;
+      for (std::uint32_t trial = 0; trial < 40; ++trial) {
+        TrialRecord record = Motion(trial, rng.Uniform() < rate(condition) ? 90.0 : 0.1, 0.1, 4.0);
+        record.condition = condition.index;
+        record.failure_probability = 0.2;
+        records.push_back(record);
+      }
+      AddRecords(store, records);
+    }
+    store.Commit();
+    return MeasureMarginals(store, with_pairs);
+  }
+
+  const TempFolder folder_;
+  std::uint32_t number_ = 0;
+};
+
+bool IsIn(const Condition& condition, double least_ratio, const std::string& num_matches) {
+  return std::stod(condition.levels[0]) >= least_ratio && condition.levels[1] == num_matches;
+}
+
+TEST_F(MarginalsOfRun, WhereNothingIsWrongNothingIsFound) {
+  const Marginals marginals = Measure([](const Condition&) { return 0.2; });
+  // All and 5 + 2 regimes; no answer is sure, so that two quantities remain.
+  EXPECT_EQ(marginals.num_intervals, 16u);
+  for (const Marginal& one : marginals.rows) EXPECT_EQ(one.excess, 0.0) << one.regime;
+}
+
+TEST_F(MarginalsOfRun, TheWrongRegimeComesFirst) {
+  const Marginals marginals =
+      Measure([](const Condition& condition) { return IsIn(condition, 0.29, "60") ? 0.9 : 0.2; }, true);
+  const Marginal& worst = marginals.rows.front();
+  EXPECT_EQ(worst.quantity, MarginalQuantity::kFailedLessStated);
+  EXPECT_NE(worst.regime.find("num_matches = 60"), std::string::npos) << worst.regime;
+  EXPECT_NE(worst.regime.find("outlier_ratio 0.3"), std::string::npos) << worst.regime;
+  EXPECT_GT(worst.interval.lower, 0.2);
+  EXPECT_NEAR(worst.value, 0.7, 0.15);
+  for (const Marginal& one : marginals.rows) {
+    EXPECT_TRUE(one.excess == 0.0 || one.regime.find("num_matches = 50") == std::string::npos) << one.regime;
+  }
+  EXPECT_NE(MarginalsAsTable("wide", marginals, 3).find("num_matches = 60"), std::string::npos);
+}
+
+TEST_F(MarginalsOfRun, OneOrTwoConditionsAreNoRegime) {
+  const TempFolder folder;
+  const StudyPlan plan = MakePlan(SmallStudy());
+  const ResultStore store = ResultStore::OpenForRun(folder.Path("small.sqlite"), plan);
+  EXPECT_TRUE(ThrowsInputError([&] { MeasureMarginals(store, false); }, {"2 conditions; at least 5"}));
+}
+
+}  // namespace
+}  // namespace rcme
