@@ -1,6 +1,7 @@
 """The recipes of the committed results (results/results.toml), and how one is followed."""
 
 import csv
+import functools
 import json
 import os
 import resource
@@ -65,11 +66,15 @@ def estimators_of(program):
     return {line.split()[0] for line in listed.stdout.splitlines() if line}
 
 
-def data():
-    """{name: {path, what}} of the data that are not in the repository; RCME_NAME in the environment gives another path."""
+@functools.lru_cache(maxsize=None)
+def stated_data():
     with open(RECIPES, "rb") as file:
-        entries = tomllib.load(file)["data"]
-    return {name: entry | {"path": os.environ.get(f"RCME_{name}", entry["path"])} for name, entry in entries.items()}
+        return tomllib.load(file)["data"]
+
+
+def data():
+    """{name: {path, what}} of the data that the repository does not hold; RCME_NAME in the environment gives another path."""
+    return {name: entry | {"path": os.environ.get(f"RCME_{name}", entry["path"])} for name, entry in stated_data().items()}
 
 
 def with_data(text):

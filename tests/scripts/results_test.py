@@ -1,13 +1,16 @@
-"""What counts as the same result: see scripts/results --check."""
+"""What counts as the same result (scripts/results --check), where its data are, and how its words are filled."""
 
+import os
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts/reproduce"))
 
-from recipes import is_same  # noqa: E402
+from recipes import data, is_same, read_recipes, with_data  # noqa: E402
+from tables import filled  # noqa: E402
 
 OLD = 'study,estimator,quantity,value\ns,"a, b",failure,0.1\ns,c,failure,0.2\n'
 
@@ -32,6 +35,28 @@ class TheSame(unittest.TestCase):
     def test_other_tables_are_compared_whole(self):
         self.assertFalse(self.same("a,b\n1,2\n3,4\n", old="a,b\n1,2\n"))
         self.assertFalse(self.same(OLD.replace("s,c,", "s,c,refusal,0.5\ns,c,"), name="summary.txt"))
+
+
+class TheData(unittest.TestCase):
+    def test_every_word_in_braces_is_known(self):
+        for recipe in read_recipes().values():
+            for text in recipe.commands + recipe.digest + recipe.needs:
+                self.assertLessEqual(set(re.findall(r"{(\w+)}", text)), {"out", *data()}, text)
+                self.assertNotIn("..", text, "a path outside of the repository has a name in [data]")
+
+    def test_the_environment_says_where_they_are(self):
+        before = os.environ.pop("RCME_PAIRS", None)
+        self.addCleanup(lambda: os.environ.update({} if before is None else {"RCME_PAIRS": before}))
+        self.assertEqual(with_data("rcme twin {PAIRS} --out {out}"), f"rcme twin {data()['PAIRS']['path']} --out {{out}}")
+        os.environ["RCME_PAIRS"] = "mine"
+        self.addCleanup(os.environ.pop, "RCME_PAIRS", None)
+        self.assertEqual(with_data("rcme twin {PAIRS} --out {out}"), "rcme twin mine --out {out}")
+
+
+class TheWords(unittest.TestCase):
+    def test_prose_is_filled_and_rows_are_not(self):
+        text = "one two\nthree\n\n- four five\n  six\n- seven\n| a | b c d e f |"
+        self.assertEqual(filled(text, width=9), "one two\nthree\n\n- four\n  five\n  six\n- seven\n| a | b c d e f |")
 
 
 if __name__ == "__main__":
