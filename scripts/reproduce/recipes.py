@@ -148,7 +148,7 @@ def make(recipe, out, programs, say=lambda words: None):
     out.mkdir(parents=True, exist_ok=True)
     for number, command in enumerate(recipe.commands, 1):
         start = time.monotonic()
-        say(f"{recipe.name}: {number} of {len(recipe.commands)}: {command.replace('{out}/', '')}")
+        say(f"{recipe.name}: {number} of {len(recipe.commands)}: {with_data(command).replace('{out}/', '')}")
         run(command, out, programs)
         say(f"{recipe.name}: {number} of {len(recipe.commands)}: {time.monotonic() - start:.0f} s")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
