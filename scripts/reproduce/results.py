@@ -9,9 +9,11 @@
   scripts/results --digests            stores the hashes of a few trials of each result, for the test results.digests
 
 A result is an entry of results/results.toml: commands, files, cost. Its numbers stand in the pages between
-"begin generated" and "end generated"; README.md.in beside a page says what they are made of; nothing there is typed by hand. Results do not depend
-on the number of threads or on the machine; what holds times (the benchmarks, the audit's figure of complexity) is made
-again, but not compared. Figures are compared byte by byte: another version of matplotlib draws other bytes.
+"begin generated" and "end generated", and README.md.in beside a page says what they are made of. Nothing there is typed
+by hand. Results do not depend on the number of threads or on the machine. What holds times (the benchmarks, the audit's
+figure of complexity) is made again, but not compared. Figures are compared byte by byte: another version of matplotlib
+draws other bytes. Some results need data that the repository does not hold; RCME_PAIRS and its like say where they are
+([data] of results.toml).
 """
 
 import argparse
