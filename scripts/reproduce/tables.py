@@ -6,6 +6,7 @@ that are numbers are compared as numbers.
 
 import csv
 import functools
+import re
 import textwrap
 
 from recipes import RESULTS, ResultError
@@ -134,16 +135,21 @@ def shown(row, form):
 
 
 def filled(text, width=140):
-    """Prose in lines of the pages' width; items of a list keep their indentation, rows of a table their line."""
+    """Prose in lines of the pages' width; items of a list keep their indentation, rows of a table their line, and intervals
+    and links are not broken."""
     parts = []
     for line in text.splitlines():
         if not parts or not line or not parts[-1] or line.startswith(("|", "- ")) or parts[-1].startswith("|"):
             parts.append(line)
         else:
             parts[-1] += " " + line.strip()
-    return "\n".join(part if part.startswith("|") else
-                     textwrap.fill(part, width, subsequent_indent="  " if part.startswith("- ") else "",
-                                   break_long_words=False, break_on_hyphens=False) for part in parts)
+    return "\n".join(part if part.startswith("|") else wrapped(part, width) for part in parts)
+
+
+def wrapped(part, width):
+    whole = re.sub(r"\[[^\[\]]*\]", lambda match: match[0].replace(" ", "\0"), part)
+    return textwrap.fill(whole, width, subsequent_indent="  " if part.startswith("- ") else "", break_long_words=False,
+                         break_on_hyphens=False).replace("\0", " ")
 
 
 def markdown(head, body):
