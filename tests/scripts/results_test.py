@@ -57,6 +57,7 @@ class TheWords(unittest.TestCase):
     def test_prose_is_filled_and_rows_are_not(self):
         text = "one two\nthree\n\n- four five\n  six\n- seven\n| a | b c d e f |"
         self.assertEqual(filled(text, width=9), "one two\nthree\n\n- four\n  five\n  six\n- seven\n| a | b c d e f |")
+        self.assertEqual(filled("a rate of 5 [1, 9] %", width=14), "a rate of 5\n[1, 9] %")
 
 
 if __name__ == "__main__":
