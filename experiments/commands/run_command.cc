@@ -34,12 +34,6 @@ struct RunArguments {
   std::int64_t max_trials = UntilOptions{}.max_trials;
 };
 
-std::vector<std::string> EventNames() {
-  std::vector<std::string> names;
-  for (const TrialEvent& event : TrialEvents()) names.push_back(event.name);
-  return names;
-}
-
 Study StudyFrom(const RunArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
@@ -207,7 +201,7 @@ void AddRunCommand(CLI::App& app) {
   command
       ->add_option("--until-event", arguments->until_event,
                    "event of --until: failure, refusal or failure_or_refusal")
-      ->check(OneOf(EventNames()))
+      ->check(OneOf(TrialEventNames()))
       ->capture_default_str()
       ->needs(until);
   command

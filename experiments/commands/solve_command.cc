@@ -27,12 +27,6 @@ struct SolveArguments {
   int threads = 0;
 };
 
-std::vector<std::string> EventNames() {
-  std::vector<std::string> names;
-  for (const TrialEvent& event : TrialEvents()) names.push_back(event.name);
-  return names;
-}
-
 // The range of the study's own levels where none is given.
 void SetRange(const Study& study, const CLI::Option& from, const CLI::Option& to,
               CrossingQuestion* question) {
@@ -139,7 +133,7 @@ Examples:
   command->add_option("--scale", arguments->scale, "linear (default) or log: how levels are spaced")
       ->check(OneOf({"linear", "log"}));
   command->add_option("--quantity", arguments->quantity, "event whose rate is meant; default: failure")
-      ->check(OneOf(EventNames()));
+      ->check(OneOf(TrialEventNames()));
   command->add_option("--at", arguments->question.rate, "the rate")
       ->transform(NumberIn({1e-6, 1.0 - 1e-6}))
       ->capture_default_str();

@@ -15,4 +15,10 @@ const std::vector<TrialEvent>& TrialEvents() {
   return events;
 }
 
+std::vector<std::string> TrialEventNames() {
+  std::vector<std::string> names;
+  for (const TrialEvent& event : TrialEvents()) names.push_back(event.name);
+  return names;
+}
+
 }  // namespace rcme

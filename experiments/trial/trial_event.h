@@ -14,5 +14,6 @@ struct TrialEvent {
   bool needs_truth;  // says nothing of a trial that is not scored
 };
 const std::vector<TrialEvent>& TrialEvents();
+std::vector<std::string> TrialEventNames();
 
 }  // namespace rcme
