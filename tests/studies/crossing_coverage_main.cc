@@ -1,6 +1,6 @@
 // How often the interval of stats/level_crossing.h holds the crossing, and how wide it is, on known curves:
 // the study behind results/statistics. Two thirds of the trials are for the interval, as in `rcme solve`.
-//   rcme_crossing_coverage [searches per row, default 1000]
+//   rcme_crossing_coverage [searches per row, default 400]
 #include <fmt/format.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@
 
 int main(int argc, char** argv) {
   using namespace rcme;
-  const int num_searches = argc > 1 ? std::atoi(argv[1]) : 1000;
+  const int num_searches = argc > 1 ? std::atoi(argv[1]) : 400;
   fmt::print("curve,rate,trials,n,interval,covered,lower,upper,median_width,median_error\n");
   std::uint32_t row = 0;
   for (const double rate : {0.01, 0.1, 0.5}) {
