@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/run_study.h"
 #include "experiments/statistics/count_study.h"
 #include "experiments/statistics/merge_counts.h"
 #include "experiments/statistics/summarize_counts.h"
