@@ -2,109 +2,185 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 #include <utility>
 
-#include "experiments/statistics/summary_quantities.h"
 #include "experiments/core/files/damage.h"
+#include "experiments/statistics/summary_quantities.h"
+#include "experiments/statistics/truth_quality.h"
 #include "parameters/parameter.h"
+#include "stats/confidence_sequence.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-QuantityCounts EmptyCounts(SummaryRow::Kind kind) {
+using Kind = SummaryRow::Kind;
+
+QuantityCounts EmptyCounts(Kind kind) {
   switch (kind) {
-    case SummaryRow::Kind::kRate:
-      return RateCount();
-    case SummaryRow::Kind::kMedian:
+    case Kind::kRate:
+      return WeightedEvents();
+    case Kind::kMedian:
       return StreamMedian();
-    case SummaryRow::Kind::kScore:
+    case Kind::kScore:
       return ExactScores();
-    case SummaryRow::Kind::kMean:
-    case SummaryRow::Kind::kVarianceShare:
+    case Kind::kMean:
+    case Kind::kVarianceShare:
       break;
   }
   return ExactMoments();
 }
 
 template <typename Record>
-std::vector<QuantityCounts> EmptyCounts(const std::vector<Quantity<Record>>& quantities) {
-  std::vector<QuantityCounts> counts;
-  for (const Quantity<Record>& quantity : quantities) counts.push_back(EmptyCounts(quantity.kind));
-  return counts;
+QuantitySums EmptySums(const std::vector<Quantity<Record>>& quantities) {
+  QuantitySums sums;
+  for (const Quantity<Record>& quantity : quantities) sums.counts.push_back(EmptyCounts(quantity.kind));
+  return sums;
 }
 
+void PrepareForRows(bool has_repeats, QuantitySums* sums) {
+  for (QuantityCounts& counts : sums->counts) {
+    if (std::holds_alternative<ExactMoments>(counts)) counts = Moments();
+  }
+  sums->scores.resize(sums->counts.size());
+  if (has_repeats) sums->scene.resize(sums->counts.size());
+}
+
+// Whether the quantity is a mean of scores: the means of scenes are no zeros and ones.
+bool IsOfScores(const QuantitySums& sums, Kind kind) {
+  return !sums.scores.empty() && (kind == Kind::kScore || (kind == Kind::kRate && !sums.scene.empty()));
+}
+
+// What the first trial of a scene alone decides.
+bool IsOfFirst(Kind kind) { return kind == Kind::kRate || kind == Kind::kMedian; }
+
 struct AddNumber {
-  double x;
-  void operator()(RateCount& rate) const { ++rate.n, rate.num_events += x != 0.0; }
+  double x, weight;
+  void operator()(WeightedEvents& rate) const { rate.Add(weight, x != 0.0); }
   void operator()(auto& numbers) const { numbers.Add(x); }
 };
 
+// The mean of a scene, which is its number where it has one trial.
+void AddMean(double mean, Kind kind, size_t q, QuantitySums* sums) {
+  if (IsOfScores(*sums, kind)) {
+    sums->scores[q].moments.Add(mean);
+    sums->scores[q].scores.Add(mean);
+  } else if (!IsOfFirst(kind)) {
+    std::visit(AddNumber{mean, 1.0}, sums->counts[q]);
+  }
+}
+
 template <typename Record>
-void AddRecord(const Record& record, const FailureBounds& bounds,
-               const std::vector<Quantity<Record>>& quantities, std::vector<QuantityCounts>* counts) {
+void AddRecord(const Record& record, double weight, bool is_first_of_scene, const FailureBounds& bounds,
+               const std::vector<Quantity<Record>>& quantities, QuantitySums* sums) {
+  const bool has_repeats = !sums->scene.empty();
+  sums->is_weighted = sums->is_weighted || weight != 1.0;
+  sums->num_scenes += !has_repeats;
   for (size_t q = 0; q < quantities.size(); ++q) {
     const std::optional<double> value = quantities[q].contribution(record, bounds);
-    if (value) std::visit(AddNumber{*value}, (*counts)[q]);
+    if (!value) continue;
+    if (is_first_of_scene && IsOfFirst(quantities[q].kind))
+      std::visit(AddNumber{*value, weight}, sums->counts[q]);
+    if (has_repeats) {
+      sums->scene[q].Add(*value);
+    } else {
+      AddMean(*value, quantities[q].kind, q, sums);
+    }
   }
 }
 
-void MergeCounts(const std::vector<QuantityCounts>& from, std::vector<QuantityCounts>* into) {
-  for (size_t q = 0; q < from.size(); ++q) {
-    std::visit(
-        [&]<typename Counts>(Counts& counts) {
-          const Counts& other = std::get<Counts>(from[q]);
-          if constexpr (std::is_same_v<Counts, RateCount>) {
-            counts.n += other.n;
-            counts.num_events += other.num_events;
-          } else {
-            counts.Merge(other);
-          }
-        },
-        (*into)[q]);
-  }
-}
+struct FillFrom {
+  std::int64_t num_trials;  // of the cell
+  SummaryRow* row;
 
-void FillFrom(const RateCount& rate, std::int64_t num_trials, SummaryRow* row) {
-  Collected collected{.n = rate.n};
-  if (rate.n > 0) collected.mean = static_cast<double>(rate.num_events) / static_cast<double>(rate.n);
-  FillRow(collected, num_trials, row);
-}
-void FillFrom(const ExactMoments& moments, std::int64_t num_trials, SummaryRow* row) {
-  FillRow({moments.n(), moments.mean(), moments.standard_error()}, num_trials, row);
-}
-void FillFrom(const StreamMedian& median, std::int64_t num_trials, SummaryRow* row) {
-  FillRow({.median = &median}, num_trials, row);
-}
-void FillFrom(const ExactScores& exact, std::int64_t num_trials, SummaryRow* row) {
-  const ScoreMean scores = exact.Scores();
-  FillRow({.n = exact.moments().n(), .mean = exact.moments().mean(), .scores = &scores}, num_trials, row);
+  void operator()(const WeightedEvents& rate) const {
+    const bool is_of_fixed_n = row->interval_kind == IntervalKind::kExact;
+    const std::int64_t num_events = std::llround(rate.sum_weights);
+    row->n = rate.num_trials;
+    row->interval =
+        is_of_fixed_n ? ExactBinomialInterval(num_events, row->n) : ConfidenceSequence(num_events, row->n);
+    row->value = row->n > 0 ? static_cast<double>(num_events) / static_cast<double>(row->n) : kNaN;
+    if (row->n > 0 && row->quantity == "nees_coverage")
+      row->coverage_verdict = JudgeCoverage(row->value, row->interval, row->n, num_trials, is_of_fixed_n);
+  }
+  // Its interval is of a number of trials that was fixed beforehand.
+  void operator()(const StreamMedian& median) const {
+    row->n = median.n();
+    row->value = median.median();
+    row->interval = row->interval_kind == IntervalKind::kExact ? median.interval() : Interval{kNaN, kNaN};
+  }
+  void operator()(const ExactScores& exact) const { FillScores(exact.moments(), exact.Scores()); }
+  void operator()(const RowScores& plain) const { FillScores(plain.moments, plain.scores); }
+  void operator()(const auto& moments) const {
+    row->n = moments.n();
+    row->value = moments.mean();
+    row->standard_error = moments.standard_error();
+  }
+
+  void FillScores(const auto& moments, const ScoreMean& scores) const {
+    row->n = moments.n();
+    row->value = moments.mean();
+    row->interval_kind = IntervalKind::kBetting;
+    row->interval = scores.Sequence();
+  }
+};
+
+// Of weighted trials there are rates of all of them, and no others.
+void FillWeighted(const QuantityCounts& counts, std::int64_t num_trials, SummaryRow* row) {
+  row->interval_kind = IntervalKind::kWeighted;
+  if (row->kind == Kind::kMedian) return FillFrom{num_trials, row}(StreamMedian());
+  const auto* events = std::get_if<WeightedEvents>(&counts);
+  const bool is_of_all = events && events->num_trials == num_trials;
+  const WeightedRate rate = EstimateWeightedRate(is_of_all ? *events : WeightedEvents());
+  row->n = is_of_all ? num_trials : 0;
+  row->value = is_of_all ? std::min(rate.estimate, 1.0) : kNaN;
+  row->standard_error = is_of_all ? rate.standard_error : kNaN;
+  row->interval = {std::min(rate.interval.lower, 1.0), std::min(rate.cautious_upper, 1.0)};
 }
 
 template <typename Record>
-void AppendRowsOf(const std::vector<Quantity<Record>>& quantities, const std::vector<QuantityCounts>& counts,
-                  std::int64_t num_trials, const SummaryRow& cell, std::vector<SummaryRow>* rows) {
+void AppendRowsOf(const std::vector<Quantity<Record>>& quantities, const QuantitySums& sums,
+                  const SummaryRow& cell, std::vector<SummaryRow>* rows) {
   for (size_t q = 0; q < quantities.size(); ++q) {
     SummaryRow row = cell;
     row.quantity = quantities[q].name;
     row.kind = quantities[q].kind;
-    std::visit([&](const auto& numbers) { FillFrom(numbers, num_trials, &row); }, counts[q]);
+    const FillFrom fill{sums.num_scenes, &row};
+    if (sums.is_weighted) {
+      FillWeighted(sums.counts[q], sums.num_scenes, &row);
+    } else if (IsOfScores(sums, row.kind)) {
+      fill(sums.scores[q]);
+    } else {
+      std::visit(fill, sums.counts[q]);
+    }
     rows->push_back(std::move(row));
+  }
+}
+
+void MergeSums(const QuantitySums& from, QuantitySums* into) {
+  into->num_scenes += from.num_scenes;
+  for (size_t q = 0; q < from.counts.size(); ++q) {
+    std::visit([&]<typename Counts>(Counts& counts) { counts.Merge(std::get<Counts>(from.counts[q])); },
+               into->counts[q]);
   }
 }
 
 struct SetTexts {
   CountedQuantity* row;
-  void operator()(const RateCount& rate) const {
-    row->n = rate.n;
-    row->sum = std::to_string(rate.num_events);
+  void operator()(const WeightedEvents& rate) const {
+    row->n = rate.num_trials;
+    row->sum = std::to_string(std::llround(rate.sum_weights));
   }
   void operator()(const StreamMedian& median) const {
     row->n = median.n();
     row->cells = median.Text();
   }
   void operator()(const ExactMoments& moments) const { SetMoments(moments); }
+  void operator()(const Moments&) const { throw std::logic_error("rows have no counts"); }
   void operator()(const ExactScores& scores) const {
     SetMoments(scores.moments());
     row->cells = scores.Texts().back();
@@ -120,11 +196,12 @@ struct SetTexts {
 // Throws std::invalid_argument.
 struct ReadTexts {
   const CountedQuantity& row;
-  void operator()(RateCount& rate) const {
+  void operator()(WeightedEvents& rate) const {
     long long num_events = 0;
     if (!ParseInteger(row.sum, &num_events) || num_events < 0 || num_events > row.n)
       throw std::invalid_argument("more events than trials");
-    rate = {row.n, num_events};
+    const auto sum = static_cast<double>(num_events);
+    rate = {row.n, 1.0, sum, sum, 1.0};
   }
   void operator()(StreamMedian& median) const {
     median = StreamMedian::FromText(row.cells);
@@ -133,19 +210,20 @@ struct ReadTexts {
   void operator()(ExactMoments& moments) const {
     moments = ExactMoments::FromTexts({std::to_string(row.n), row.sum, row.sum_squares});
   }
+  void operator()(Moments&) const { throw std::logic_error("rows have no counts"); }
   void operator()(ExactScores& scores) const {
     scores = ExactScores::FromTexts({std::to_string(row.n), row.sum, row.sum_squares, row.cells});
   }
 };
 
 template <typename Record>
-void AppendTexts(const std::vector<Quantity<Record>>& quantities, const std::vector<QuantityCounts>& counts,
-                 size_t estimator, std::vector<CountedQuantity>* texts) {
+void AppendTexts(const std::vector<Quantity<Record>>& quantities, const QuantitySums& sums, size_t estimator,
+                 std::vector<CountedQuantity>* texts) {
   for (size_t q = 0; q < quantities.size(); ++q) {
     CountedQuantity row;
     row.estimator = static_cast<std::uint32_t>(estimator);
     row.quantity = quantities[q].name;
-    std::visit(SetTexts{&row}, counts[q]);
+    std::visit(SetTexts{&row}, sums.counts[q]);
     texts->push_back(std::move(row));
   }
 }
@@ -154,7 +232,8 @@ using TextsByName = std::map<std::pair<size_t, std::string>, const CountedQuanti
 
 template <typename Record>
 void ReadAllTexts(const TextsByName& texts, size_t estimator, std::int64_t num_trials,
-                  const std::vector<Quantity<Record>>& quantities, std::vector<QuantityCounts>* counts) {
+                  const std::vector<Quantity<Record>>& quantities, QuantitySums* sums) {
+  sums->num_scenes = num_trials;
   for (size_t q = 0; q < quantities.size(); ++q) {
     const auto found = texts.find({estimator, quantities[q].name});
     if (found == texts.end())
@@ -162,7 +241,7 @@ void ReadAllTexts(const TextsByName& texts, size_t estimator, std::int64_t num_t
     const CountedQuantity& row = *found->second;
     try {
       if (row.n < 0 || row.n > num_trials) throw std::invalid_argument("more numbers than trials");
-      std::visit(ReadTexts{row}, (*counts)[q]);
+      std::visit(ReadTexts{row}, sums->counts[q]);
     } catch (const std::invalid_argument& error) {
       throw Damage(fmt::format("'{}' of table counts is not possible: {}", row.quantity, error.what()));
     }
@@ -172,31 +251,51 @@ void ReadAllTexts(const TextsByName& texts, size_t estimator, std::int64_t num_t
 }  // namespace
 
 SummaryCell::SummaryCell(size_t num_estimators)
-    : estimators_(num_estimators, EmptyCounts(TrialQuantities())),
-      problems_(EmptyCounts(ProblemQuantities())) {}
+    : estimators_(num_estimators, EmptySums(TrialQuantities())), problems_(EmptySums(ProblemQuantities())) {}
+
+SummaryCell::SummaryCell(size_t num_estimators, int repeats_per_scene) : SummaryCell(num_estimators) {
+  const bool has_repeats = repeats_per_scene > 1;
+  for (QuantitySums& estimator : estimators_) PrepareForRows(has_repeats, &estimator);
+  PrepareForRows(/*has_repeats=*/false, &problems_);  // all trials of a scene have one: it counts once
+  if (has_repeats) splits_.assign(num_estimators, SceneSplit(repeats_per_scene));
+}
 
 void SummaryCell::Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records,
-                      const FailureBounds& bounds) {
+                      const FailureBounds& bounds, bool is_first_of_scene) {
   ++num_trials_;
+  if (is_first_of_scene) AddRecord(problem, problem.weight, true, bounds, ProblemQuantities(), &problems_);
   for (size_t e = 0; e < estimators_.size(); ++e)
-    AddRecord(records[e], bounds, TrialQuantities(), &estimators_[e]);
-  AddRecord(problem, bounds, ProblemQuantities(), &problems_);
+    AddRecord(records[e], problem.weight, is_first_of_scene, bounds, TrialQuantities(), &estimators_[e]);
+  for (size_t e = 0; e < splits_.size(); ++e) splits_[e].Add(records[e], bounds);
+}
+
+void SummaryCell::EndScene() {
+  if (splits_.empty()) return;
+  for (QuantitySums& sums : estimators_) {
+    ++sums.num_scenes;
+    for (size_t q = 0; q < sums.scene.size(); ++q) {
+      if (const std::optional<double> mean = sums.scene[q].Take())
+        AddMean(*mean, TrialQuantities()[q].kind, q, &sums);
+    }
+  }
+  for (SceneSplit& split : splits_) split.EndScene();
 }
 
 void SummaryCell::Merge(const SummaryCell& other) {
   num_trials_ += other.num_trials_;
-  for (size_t e = 0; e < estimators_.size(); ++e) MergeCounts(other.estimators_[e], &estimators_[e]);
-  MergeCounts(other.problems_, &problems_);
+  for (size_t e = 0; e < estimators_.size(); ++e) MergeSums(other.estimators_[e], &estimators_[e]);
+  MergeSums(other.problems_, &problems_);
 }
 
 void SummaryCell::AppendRows(const RunDescription& run, SummaryRow cell,
                              std::vector<SummaryRow>* rows) const {
   for (size_t e = 0; e < estimators_.size(); ++e) {
     cell.estimator = run.estimators[e].label;
-    AppendRowsOf(TrialQuantities(), estimators_[e], num_trials_, cell, rows);
+    AppendRowsOf(TrialQuantities(), estimators_[e], cell, rows);
+    if (!splits_.empty()) splits_[e].AppendRows(cell, rows);
   }
   cell.estimator = kSceneLabel;
-  AppendRowsOf(ProblemQuantities(), problems_, num_trials_, cell, rows);
+  AppendRowsOf(ProblemQuantities(), problems_, cell, rows);
 }
 
 std::vector<CountedQuantity> SummaryCell::Texts() const {
@@ -219,6 +318,31 @@ SummaryCell SummaryCell::FromTexts(const std::vector<CountedQuantity>& texts, si
   const size_t num_rows = num_estimators * TrialQuantities().size() + ProblemQuantities().size();
   if (texts.size() != num_rows) throw Damage("table counts has rows of quantities that there are not");
   return cell;
+}
+
+Summary SummarizeCells(const RunDescription& run, const TrialGroups& groups,
+                       const std::vector<const SummaryCell*>& cells, bool with_times) {
+  Summary summary{run.study,
+                  groups.factor_names,
+                  {},
+                  {},
+                  0,
+                  run.NumTrials(),
+                  run.repeats_per_scene,
+                  DescribeTruthQuality(run.identity),
+                  run.retried_trials};
+  for (const DescribedEstimator& estimator : run.estimators)
+    summary.efforts.emplace_back(estimator.label, estimator.effort);
+  for (std::uint32_t c = 0; c < cells.size(); ++c) {
+    summary.num_trials_done += cells[c]->num_trials();
+    SummaryRow row;
+    row.condition = c;
+    row.levels = groups.levels[c];
+    if (!run.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
+    cells[c]->AppendRows(run, row, &summary.rows);
+  }
+  LeaveOutRows(with_times, &summary);
+  return summary;
 }
 
 }  // namespace rcme
