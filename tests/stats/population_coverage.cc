@@ -29,6 +29,7 @@ struct Coverage {
   std::int64_t n = 0, num_covered = 0, num_above = 0,
                num_below = 0;       // above: the truth is above the interval
   std::int64_t num_by_pooling = 0;  // covered by an interval that takes all trials for independent
+  bool has_pooled = true;
   double width = 0.0;
 
   void Add(const Interval& interval, double truth, const Interval& pooled) {
@@ -41,6 +42,10 @@ struct Coverage {
   }
   double Share(std::int64_t count) const { return static_cast<double>(count) / static_cast<double>(n); }
   double value() const { return Share(num_covered); }
+  // A dash where there is no such interval.
+  std::string PooledText(double share, int digits) const {
+    return has_pooled ? fmt::format("{:.{}f}", share, digits) : "-";
+  }
 };
 
 struct Cell {
@@ -54,17 +59,18 @@ class Tables {
  public:
   void Add(const Cell& cell, const Coverage& c) {
     const Interval interval = ExactBinomialInterval(c.num_covered, c.n);
-    cells_ += fmt::format("{},{},{},{},{},{},{},{:.6g},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4g},{:.4f}\n",
+    cells_ += fmt::format("{},{},{},{},{},{},{},{:.6g},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4g},{}\n",
                           cell.quantity, cell.grid, cell.regime, cell.law, cell.num_conditions, cell.trials,
                           cell.correlation, cell.truth, c.n, c.value(), interval.lower, interval.upper,
                           c.Share(c.num_above), c.Share(c.num_below), c.width / static_cast<double>(c.n),
-                          c.Share(c.num_by_pooling));
+                          c.PooledText(c.Share(c.num_by_pooling), 4));
     Extremes& e = extremes_[{cell.quantity, cell.grid, cell.regime, cell.num_conditions}];
     ++e.num_cells;
     e.num_near += c.value() >= 0.93 && c.value() <= 0.97;
     e.least = std::min(e.least, c.value());
     e.greatest = std::max(e.greatest, c.value());
     e.least_by_pooling = std::min(e.least_by_pooling, c.Share(c.num_by_pooling));
+    e.pooled_text = c.PooledText(e.least_by_pooling, 3);
   }
 
   std::string Cells() const {
@@ -76,8 +82,8 @@ class Tables {
     std::string text = "quantity,grid,regime,conditions,cells,cells_near,least,greatest,least_pooled\n";
     for (const auto& [key, e] : extremes_) {
       const auto& [quantity, grid, regime, num_conditions] = key;
-      text += fmt::format("{},{},{},{},{},{},{:.3f},{:.3f},{:.3f}\n", quantity, grid, regime, num_conditions,
-                          e.num_cells, e.num_near, e.least, e.greatest, e.least_by_pooling);
+      text += fmt::format("{},{},{},{},{},{},{:.3f},{:.3f},{}\n", quantity, grid, regime, num_conditions,
+                          e.num_cells, e.num_near, e.least, e.greatest, e.pooled_text);
     }
     return text;
   }
@@ -86,6 +92,7 @@ class Tables {
   struct Extremes {
     int num_cells = 0, num_near = 0;
     double least = 1.0, greatest = 0.0, least_by_pooling = 1.0;
+    std::string pooled_text;
   };
   std::string cells_;
   std::map<std::tuple<std::string, std::string, std::string, int>, Extremes> extremes_;
@@ -116,11 +123,18 @@ std::vector<int> TrialsOf(const Sizes& sizes, int num_conditions) {
   return trials;
 }
 
-// hidden: where all conditions of a sample may look alike, and the few that differ were not drawn; rare:
-// fewer than five events of the size that conditions give them are expected.
+// hidden: of the conditions of the kind that fewer have, less than three are expected, and the others have
+// events too, so that a sample without the few looks complete; rare: fewer than five events of the size that
+// conditions give them are expected.
 std::string RegimeOf(Shape shape, int num_conditions, double p, double rho) {
-  if (rho > 0.0 && (shape == Shape::kLowOrAlways || (shape == Shape::kNeverOrHigh && p == 0.5)))
-    return "hidden";
+  if (rho > 0.0 && shape == Shape::kNeverOrHigh) {
+    const double share_of_never = 1.0 - p / (p + rho * (1.0 - p));
+    if (share_of_never < 0.5 && num_conditions * share_of_never < 3.0) return "hidden";
+  }
+  if (rho > 0.0 && shape == Shape::kLowOrAlways) {
+    const double low = p * (1.0 - rho), share_of_always = (p - low) / (1.0 - low);
+    if (share_of_always < 0.5 && num_conditions * share_of_always < 3.0) return "hidden";
+  }
   const double size = 1.0 / 60.0 + rho * (1.0 - 1.0 / 60.0);
   return num_conditions * std::min(p, 1.0 - p) / size < 5.0 ? "rare" : "common";
 }
@@ -287,10 +301,11 @@ void MeasureCalibrationErrors(int repetitions, Tables* tables) {
       RandomStream rng = StreamOf(number, 164), samples = StreamOf(number, 165);
       ++number;
       Coverage coverage;
+      coverage.has_pooled = false;
       for (int repetition = 0; repetition < repetitions; ++repetition) {
         const BootstrapEstimate error = MeasurePopulationCalibrationError(
             DrawForecasts(law, m, 60, rng), Binning::kEqualWidth, 10, {.num_samples = 300}, samples);
-        coverage.Add(error.interval, truth, {error.value, error.value});  // no interval for pooled trials
+        coverage.Add(error.interval, truth, {});
       }
       tables->Add({"calibration_error", "asked", "common", law.name, "60", m, kNaN, truth}, coverage);
     }
