@@ -141,6 +141,16 @@ Rows ListStudies() {
   return rows;
 }
 
+Rows ListPopulations() {
+  Rows rows = {{"population", "what it stands for"}};
+  for (const std::string& name : NamesIn(SharedFolder::kPopulations)) {
+    std::string description = ValueIn(SharedFolder::kPopulations, name, "description");
+    std::replace(description.begin(), description.end(), '\n', ' ');
+    rows.push_back({name, description});
+  }
+  return rows;
+}
+
 Rows ListEstimatorFiles() {
   Rows rows = {{"estimator file", "estimator", "label"}};
   for (const std::string& name : NamesIn(SharedFolder::kEstimators)) {
@@ -167,6 +177,7 @@ void AddListCommand(CLI::App& app) {
                                                                      {"quantities", ListQuantities},
                                                                      {"claims", ListClaims},
                                                                      {"studies", ListStudies},
+                                                                     {"populations", ListPopulations},
                                                                      {"estimator_files", ListEstimatorFiles}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
@@ -175,14 +186,15 @@ void AddListCommand(CLI::App& app) {
       "List what you can name: estimators, options, scenes, study keys, quantities, claims, studies, ...");
   auto what = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("table");
-  command->add_option("what", *what, "which list; default: all except studies and estimator_files")
+  command->add_option("what", *what, "which list; default: all except studies, populations and estimator_files")
       ->check(OneOf(names));
   command->add_option("--format", *format, "table: columns for a terminal; markdown: as in docs/reference")
       ->check(OneOf({"table", "markdown"}))
       ->capture_default_str();
   command->callback([what, format] {
     for (const auto& [name, lister] : kLists) {
-      if (what->empty() ? name == "studies" || name == "estimator_files" : name != *what) continue;
+      const bool is_of_files = name == "studies" || name == "populations" || name == "estimator_files";
+      if (what->empty() ? is_of_files : name != *what) continue;
       fmt::print("{}\n", *format == "table" ? FormatColumns(lister()) : FormatMarkdown(lister()));
     }
   });

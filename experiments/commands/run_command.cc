@@ -147,6 +147,8 @@ void Run(const RunArguments& arguments) {
   PrintMessage("{}: {} conditions, {} trials, {} estimators{} -> {}\n", plan.study.name,
                plan.conditions.size(), plan.NumTrials(), plan.estimators.size(),
                shard.count > 1 ? ", of which shard " + shard.Text() : "", arguments.out);
+  const std::string population = DescribePopulation(plan.identity);
+  if (!population.empty()) PrintMessage("{}\n", population);
   if (!arguments.until.empty() && shard.count > 1) return RunRound(plan, arguments, shard, &*store);
   if (!arguments.until.empty()) return RunToPrecision(plan, arguments, &*store);
   const RunReport report = keeps_counts ? CountStudy(plan, arguments.threads, arguments.out, shard)

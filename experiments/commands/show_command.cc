@@ -53,7 +53,7 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
 }
 
 // Numbers of the estimators with these labels, each once, in the order asked for.
-std::vector<size_t> EstimatorsOf(const Study& study, const std::vector<std::string>& labels) {
+std::vector<size_t> NumbersOfEstimators(const Study& study, const std::vector<std::string>& labels) {
   std::vector<size_t> chosen;
   for (const std::string& label : labels) {
     const auto spec = std::ranges::find(study.estimators, label, &EstimatorSpec::label);
@@ -95,7 +95,7 @@ void Show(const ShowArguments& arguments, bool has_out) {
   const std::string out = has_out ? arguments.out : DefaultOut(plan, arguments);
   CheckOut(out);
   const Condition& condition = ChosenCondition(plan, arguments.condition);
-  std::vector<size_t> drawn = EstimatorsOf(plan.study, arguments.estimators);
+  std::vector<size_t> drawn = NumbersOfEstimators(plan.study, arguments.estimators);
   const TrialResult result = RunTrial(plan, condition, arguments.trial);
   if (drawn.empty()) drawn = {MostTelling(plan, result)};
 

@@ -26,7 +26,8 @@ enum class StreamPurpose : std::uint32_t {
   kCheck = 6,
   kSeverity = 7,
   kPilotScene = 8,
-  kTrueKind = 9
+  kTrueKind = 9,
+  kPopulation = 10
 };
 
 // The stream of a trial for a purpose.

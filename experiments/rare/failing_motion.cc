@@ -19,6 +19,7 @@ bool SeesAll(const Scene& scene, const std::vector<Eigen::Vector3d>& points) {
 }  // namespace
 
 void RequireDrawnScenes(const Study& study) {
+  RequireFixedOptions(study, "rcme rare");
   for (const std::vector<std::string>& levels : DesignRows(study)) {
     for (const auto& [key, value] : SettingsOf(study, levels)) {
       if (key == "scene" && value == kMatchFilesScene) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "experiments/statistics/failure_forecasts.h"
+#include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "stats/distributions.h"
@@ -18,8 +19,6 @@
 namespace rcme {
 namespace {
 
-constexpr const char* kDrawFactor = "draw";
-constexpr const char* kNotDrawn = "-";
 constexpr size_t kNumQuantities = std::size(kMarginalQuantities);
 
 // What a trial says of a quantity; nothing where it says nothing.

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/forecast_output.h"
 #include "experiments/statistics/report_findings.h"
 #include "experiments/statistics/summary_output.h"
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/json_output.h"
 #include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 

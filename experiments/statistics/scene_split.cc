@@ -69,9 +69,10 @@ std::vector<QuantityHelp> SceneSplitQuantities() {
   const std::string only = "; only of runs with repeats per scene";
   for (const TrialEvent& event : TrialEvents()) {
     const std::string of = "share of the variance of " + event.name + " that is ";
-    help.push_back({event.name + kBetween, KindName(SummaryRow::Kind::kVarianceShare), of + "between scenes" + only});
     help.push_back(
-        {event.name + kWithin, KindName(SummaryRow::Kind::kVarianceShare), of + "within them, the sampler's" + only});
+        {event.name + kBetween, KindName(SummaryRow::Kind::kVarianceShare), of + "between scenes" + only});
+    help.push_back({event.name + kWithin, KindName(SummaryRow::Kind::kVarianceShare),
+                    of + "within them, the sampler's" + only});
     help.push_back({event.name + kFlips, KindName(SummaryRow::Kind::kRate),
                     "scenes in which " + event.name +
                         " depends on the sampler's seed, of all scenes with every repeat" + only});

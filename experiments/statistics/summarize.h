@@ -58,6 +58,7 @@ struct Summary {
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
   int repeats_per_scene = 1;
   std::string truth_quality;     // truth_quality.h
+  std::string population;        // DescribePopulation of study/population.h
   std::int64_t num_retried = 0;  // trials that were run again (RunDescription::retried_trials)
 };
 

@@ -11,6 +11,7 @@
 #include "experiments/core/files/damage.h"
 #include "experiments/statistics/summary_quantities.h"
 #include "experiments/statistics/truth_quality.h"
+#include "experiments/study/population.h"
 #include "parameters/parameter.h"
 #include "stats/confidence_sequence.h"
 #include "stats/constants.h"
@@ -330,6 +331,7 @@ Summary SummarizeCells(const RunDescription& run, const TrialGroups& groups,
                   run.NumTrials(),
                   run.repeats_per_scene,
                   DescribeTruthQuality(run.identity),
+                  DescribePopulation(run.identity),
                   run.retried_trials};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);

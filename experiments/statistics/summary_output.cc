@@ -207,6 +207,7 @@ std::string SummaryAsTable(const Summary& summary) {
       "maa_10_deg: mean share of errors up to 1, 2, ..., 10 deg. --format csv and json\n"
       "hold all quantities, also those that leave refusals out.\n";
   if (!summary.truth_quality.empty()) text += summary.truth_quality + "\n";
+  if (!summary.population.empty()) text += summary.population + "\n";
   if (summary.num_retried > 0) {
     text += fmt::format("{} trials were run again because an answer was missing (rcme run --retry).\n",
                         summary.num_retried);
@@ -225,6 +226,7 @@ std::string SummaryAsJson(const Summary& summary) {
                                  {"rows", RenderJson(MakeRowTable(summary))}};
   for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;
   if (!summary.truth_quality.empty()) json["truth"] = summary.truth_quality;
+  if (!summary.population.empty()) json["population"] = summary.population;
   if (summary.num_retried > 0) json["retried_trials"] = summary.num_retried;
   return JsonText(kSummaryFormat, json);
 }

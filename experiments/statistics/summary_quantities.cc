@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "experiments/statistics/failure_forecasts.h"
-#include "experiments/trial/trial_measure.h"
 #include "experiments/trial/severity_columns.h"
+#include "experiments/trial/trial_measure.h"
 #include "stats/distributions.h"
 
 namespace rcme {

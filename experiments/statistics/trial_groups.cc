@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parameters/input_error.h"
 #include "experiments/trial/severity_columns.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -29,6 +31,11 @@ Rows AllCombinations(const std::vector<Factor>& factors) {
 
 std::string BaseLevel(const Study& study, const std::string& key) {
   std::string base;
+  for (const EstimatorSpec& spec : study.estimators) {
+    for (const auto& [option, value] : spec.options) {
+      if (key == spec.label + "." + option) base = value;
+    }
+  }
   for (const auto& [name, value] : study.data) {
     if (name == key) base = value;
   }
@@ -54,6 +61,13 @@ Rows OneAtATime(const Study& study) {
 
 }  // namespace
 
+std::vector<std::string> LevelsOf(const PopulationDraw& draw, const std::vector<std::string>& of_factors) {
+  std::vector<std::string> levels = {fmt::format("{}", draw.number)};
+  levels.insert(levels.end(), draw.levels.begin(), draw.levels.end());
+  levels.insert(levels.end(), of_factors.begin(), of_factors.end());
+  return levels;
+}
+
 std::vector<Parameter> Parameters(FailureBounds& bounds) {
   return {Parameter::Real("max_rotation_error_deg", &bounds.max_rotation_error_deg, {0.0, 180.0}, "deg",
                           "a motion with a greater rotation error has failed"),
@@ -69,14 +83,67 @@ std::vector<std::pair<std::string, std::string*>> Parts(Ademp& ademp) {
           {"performance", &ademp.performance}};
 }
 
-std::vector<std::vector<std::string>> DesignRows(const Study& study) {
+std::vector<std::string> FactorNames(const Study& study) {
+  std::vector<std::string> names;
+  if (study.population) {
+    names.push_back(kDrawFactor);
+    for (const std::string& key : KeysOf(*study.population)) names.push_back(key);
+  }
+  for (const Factor& factor : study.factors) names.push_back(factor.key);
+  return names;
+}
+
+Rows FactorRows(const Study& study) {
   return study.design == Design::kFullFactorial ? AllCombinations(study.factors) : OneAtATime(study);
 }
 
+Rows DesignRows(const Study& study) {
+  const Rows of_factors = FactorRows(study);
+  if (!study.population) return of_factors;
+  Rows rows;
+  for (const PopulationDraw& draw : DrawPopulation(study)) {
+    if (!draw.outside_of.empty()) continue;
+    if (rows.size() + of_factors.size() > kMaxConditions)
+      throw InputError(
+          fmt::format("conditions: more than {} draws and combinations of levels", kMaxConditions));
+    for (const std::vector<std::string>& levels : of_factors) rows.push_back(LevelsOf(draw, levels));
+  }
+  return rows;
+}
+
+bool IsEstimatorOption(const std::string& factor) { return factor.find('.') != std::string::npos; }
+
 Settings SettingsOf(const Study& study, const std::vector<std::string>& levels) {
   Settings settings = study.data;
-  for (size_t f = 0; f < levels.size(); ++f) settings.emplace_back(study.factors[f].key, levels[f]);
+  const std::vector<std::string> names = FactorNames(study);
+  for (size_t f = 0; f < std::min(levels.size(), names.size()); ++f) {
+    if (names[f] == kDrawFactor || levels[f] == kNotDrawn || IsEstimatorOption(names[f])) continue;
+    settings.emplace_back(names[f], levels[f]);
+  }
   return settings;
+}
+
+std::vector<EstimatorSpec> EstimatorsOf(const Study& study, const std::vector<std::string>& levels) {
+  std::vector<EstimatorSpec> estimators = study.estimators;
+  const std::vector<std::string> names = FactorNames(study);
+  for (size_t f = 0; f < std::min(levels.size(), names.size()); ++f) {
+    if (!IsEstimatorOption(names[f])) continue;
+    const size_t dot = names[f].rfind('.');
+    for (EstimatorSpec& spec : estimators) {
+      if (spec.label == names[f].substr(0, dot)) SetOptions(&spec, {{names[f].substr(dot + 1), levels[f]}});
+    }
+  }
+  return estimators;
+}
+
+void RequireFixedOptions(const Study& study, const std::string& who) {
+  for (const Factor& factor : study.factors) {
+    if (!IsEstimatorOption(factor.key)) continue;
+    throw InputError(
+        fmt::format("factors: {}: {} takes no options of estimators as factors; choose one with --set "
+                    "{}={}",
+                    factor.key, who, factor.key, factor.levels.front()));
+  }
 }
 
 }  // namespace rcme

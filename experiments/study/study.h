@@ -8,6 +8,7 @@
 #include "experiments/data/data_source.h"
 #include "experiments/data/settings.h"
 #include "experiments/study/estimator_spec.h"
+#include "experiments/study/population.h"
 #include "experiments/study/tuning.h"
 
 namespace rcme {
@@ -22,7 +23,7 @@ std::vector<Parameter> Parameters(FailureBounds& bounds);
 inline constexpr size_t kMaxConditions = 100'000;  // of a study
 inline constexpr int kMaxRepeatsPerScene = 10'000;
 
-// One data setting and the values it takes.
+// One data setting, or one option of one estimator ("opencv_usac.threshold_sigma"), and the values it takes.
 struct Factor {
   std::string key;
   std::vector<std::string> levels;
@@ -55,6 +56,8 @@ struct Study {
   int repeats_per_scene = 1;
   Design design = Design::kFullFactorial;
   std::vector<Factor> factors;
+  // Not empty: every draw of it is a condition, or as many as the factors make of it.
+  std::optional<Population> population;
   std::vector<EstimatorSpec> estimators;
   FailureBounds failure;
   std::optional<Tuning> tuning;  // what `rcme tune` does with it
@@ -63,11 +66,27 @@ struct Study {
 // The parts of an Ademp with their keys, in order.
 std::vector<std::pair<std::string, std::string*>> Parts(Ademp& ademp);
 
-// One row per condition, one level per factor, the first factor slowest. Throws InputError: more than
-// kMaxConditions; a one-at-a-time design whose `data` lacks a factor's base value.
-std::vector<std::vector<std::string>> DesignRows(const Study& study);
+// What a row of the design has a level of: of a population kDrawFactor and its keys, then the factors.
+std::vector<std::string> FactorNames(const Study& study);
 
-// The settings of a condition: those of `data`, then its levels.
+// One row per condition, one level per factor, the first factor slowest; of a population those of the draws
+// that meet its restrictions. Throws InputError: more than kMaxConditions; a one-at-a-time design whose
+// `data` lacks a factor's base value.
+std::vector<std::vector<std::string>> DesignRows(const Study& study);
+// Those of the factors alone, and the levels of a draw with such a row.
+std::vector<std::vector<std::string>> FactorRows(const Study& study);
+std::vector<std::string> LevelsOf(const PopulationDraw& draw, const std::vector<std::string>& of_factors);
+
+// The settings of a condition: those of `data`, then its levels but for options of estimators.
 Settings SettingsOf(const Study& study, const std::vector<std::string>& levels);
+
+// Whether a factor is an option of an estimator: LABEL.OPTION.
+bool IsEstimatorOption(const std::string& factor);
+
+// The estimators of a condition: those of the study with the options that are levels of it.
+std::vector<EstimatorSpec> EstimatorsOf(const Study& study, const std::vector<std::string>& levels);
+
+// Throws InputError where options of estimators are factors; `who` cannot take them.
+void RequireFixedOptions(const Study& study, const std::string& who);
 
 }  // namespace rcme

@@ -13,6 +13,7 @@
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
+#include "experiments/study/population_file.h"
 #include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
 #include "parameters/plain_text.h"
@@ -100,9 +101,11 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
 
 // A study's settings with the first level of every factor: enough to know which keys there are.
 Settings FirstSettings(const Study& study) {
-  std::vector<std::string> levels;
-  for (const Factor& factor : study.factors) levels.push_back(factor.levels.front());
-  return SettingsOf(study, levels);
+  Settings settings = FirstSettingsOf(study);
+  for (const Factor& factor : study.factors) {
+    if (!IsEstimatorOption(factor.key)) settings.emplace_back(factor.key, factor.levels.front());
+  }
+  return settings;
 }
 
 // The value of a setting as its parameter writes it, so that equal values are equal texts.
@@ -112,24 +115,60 @@ std::string Canonical(Settings settings, const std::string& key, const std::stri
   return std::ranges::find(resolved, key, &Settings::value_type::first)->second;
 }
 
+// The levels of an option of an estimator, as the option writes them.
+void SettleOption(const Place& place, const YAML::Node& line, const Study& study, Factor* factor) {
+  const size_t dot = factor->key.rfind('.');
+  const std::string label = factor->key.substr(0, dot), option = factor->key.substr(dot + 1);
+  std::vector<std::string> labels;
+  for (const EstimatorSpec& spec : study.estimators) {
+    labels.push_back(spec.label);
+    if (spec.label != label) continue;
+    if (IsCommand(spec, option))
+      place.Fail(line, fmt::format("factors: {}: a command cannot vary; leave it out", factor->key));
+    for (std::string& level : factor->levels) {
+      EstimatorSpec varied = spec;
+      place.At(line, [&] {
+        SetOptions(&varied, {{option, level}});
+        Configure(varied)->Make();
+      });
+      level = std::ranges::find(varied.options, option, &Settings::value_type::first)->second;
+    }
+    return;
+  }
+  place.Fail(line,
+             fmt::format("factors: {}: the study has no estimator {}{}; its estimators: {}", factor->key,
+                         Quoted(label), DidYouMean(label, labels), fmt::join(labels, ", ")));
+}
+
+void RequireDifferentLevels(const Place& place, const YAML::Node& line, const Factor& factor,
+                            const std::vector<std::string>& given) {
+  std::set<std::string> seen;
+  for (size_t i = 0; i < given.size(); ++i) {
+    if (!seen.insert(factor.levels[i]).second)
+      place.Fail(line, fmt::format("factors: {}: level '{}' stands twice", factor.key, given[i]));
+  }
+}
+
 // Data settings are checked one by one, each with the study's choices, so that an error names its line; then
 // each level of each factor. All become canonical.
 void SettleData(const Place& place, const YAML::Node& root, Study* of) {
   Study& study = *of;
   place.At(root["factors"] ? root["factors"] : root,
-           [&] { DesignRows(study); });  // before the work per level
+           [&] { FactorRows(study); });  // before the work per level
   const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
     const YAML::Node map = root[block];
     return map && map.IsMap() && map[key] ? map[key] : root;
   };
   const Settings first = FirstSettings(study);
   const auto scene = std::ranges::find(first, "scene", &Settings::value_type::first);
-  if (scene == first.end()) place.Fail(root["data"], "data: key 'scene' is missing (see `rcme list scenes`)");
+  if (scene == first.end())
+    place.Fail(root["data"] ? root["data"] : root, "data: key 'scene' is missing (see `rcme list scenes`)");
   Settings choices;
   for (const auto& choice : first) {
     if (!IsChoice(choice.first)) continue;
     choices.push_back(choice);
-    place.At(line_of(root["data"][choice.first] ? "data" : "factors", choice.first), [&] {
+    const bool is_in_data = root["data"] && root["data"][choice.first];
+    place.At(line_of(is_in_data ? "data" : "factors", choice.first), [&] {
       ResolveSettings({*scene, choice});
     });
   }
@@ -139,17 +178,22 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
   }
   for (Factor& factor : study.factors) {
     const YAML::Node line = line_of("factors", factor.key);
-    std::set<std::string> seen;
+    const std::vector<std::string> given = factor.levels;
+    if (IsEstimatorOption(factor.key)) {
+      SettleOption(place, line, study, &factor);
+      RequireDifferentLevels(place, line, factor, given);
+      continue;
+    }
     for (std::string& level : factor.levels) {
       if (factor.key == "scene" && level == kMatchFilesScene)
         place.Fail(line,
                    "factors: scene: match_files is not a simulated scene; write a separate study for it");
-      const std::string given = level;
-      place.At(line, [&] { level = Canonical(IsChoice(factor.key) ? first : choices, factor.key, given); });
-      if (!seen.insert(level).second)
-        place.Fail(line, fmt::format("factors: {}: level '{}' stands twice", factor.key, given));
+      const std::string text = level;
+      place.At(line, [&] { level = Canonical(IsChoice(factor.key) ? first : choices, factor.key, text); });
     }
+    RequireDifferentLevels(place, line, factor, given);
   }
+  if (study.population) SettlePopulation(place, root["conditions"], &study);
 }
 
 Ademp ReadAdemp(const Place& place, const YAML::Node& node) {
@@ -172,8 +216,8 @@ Design ReadDesign(const Place& place, const YAML::Node& node) {
 // Every data parameter with its value; where a factor chooses a part of the simulation, so that the
 // parameters differ from condition to condition, only those that were given.
 Settings WrittenData(const Study& study) {
-  if (std::ranges::none_of(study.factors, IsChoice, &Factor::key)) return ResolveSettings(study.data);
-  return study.data;
+  const bool has_choice = study.population || std::ranges::any_of(study.factors, IsChoice, &Factor::key);
+  return has_choice ? study.data : ResolveSettings(study.data);
 }
 
 std::vector<std::string> DataKeys(const Study& study) {
@@ -202,11 +246,24 @@ void OverrideOption(const std::string& option, const std::string& value, Estimat
   Configure(*spec)->Make();  // throws if options contradict each other
 }
 
+// A key of the population takes one value, or `--set conditions.number=512`.
+void OverridePopulation(const std::string& key, const std::string& value, Population* population) {
+  FindParameter(
+      {PopulationDesignParameter(&population->design), PopulationNumberParameter(&population->number)}, key)
+      .SetFromText(value);
+}
+
 void OverrideData(const std::string& key, const std::string& value, Study* study) {
   const std::string canonical = Canonical(FirstSettings(*study), key, value);
   std::erase_if(study->data, [&](const auto& setting) { return setting.first == key; });
   study->data.emplace_back(key, canonical);
   std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
+  if (!study->population) return;
+  std::erase_if(study->population->keys, [&](const DrawnKey& drawn) {
+    return drawn.key == key || std::ranges::any_of(drawn.with, [&](const auto& choice) {
+             return choice.first == key && choice.second != canonical;
+           });
+  });
 }
 
 EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
@@ -300,6 +357,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
     if (key == "ademp") study.ademp = ReadAdemp(place, node);
     if (key == "design") study.design = ReadDesign(place, node);
     if (key == "factors") ReadFactors(place, node, &study);
+    if (key == "conditions") study.population = ReadPopulation(place, node);
     if (key == "estimators") ReadEstimators(place, node, &study);
     if (key == "failure") {
       for (const auto& [bound, value] : Entries(place, node, "failure", {})) {
@@ -309,10 +367,10 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
       }
     }
   }
-  if (!root["data"]) place.Fail(root, "study: key 'data' is missing");
+  if (!root["data"] && !root["conditions"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
   SeePathsFrom(folder, &study);
-  place.At(root["data"], [&] { study.data = WithCalibration(study.data); });
+  place.At(root["data"] ? root["data"] : root, [&] { study.data = WithCalibration(study.data); });
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
@@ -330,7 +388,10 @@ Study ParseStudy(const std::string& yaml, const std::string& path) { return Read
 
 void Override(Study* study, const std::string& key, const std::string& value) {
   const size_t dot = key.rfind('.');
+  if (study->population && key.starts_with("conditions."))
+    return OverridePopulation(key.substr(dot + 1), value, &*study->population);
   if (dot != std::string::npos) {
+    std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });
     return OverrideOption(key.substr(dot + 1), value, &LabelledEstimator(key.substr(0, dot), study));
   }
   if (IsIn(DataKeys(*study), key)) return OverrideData(key, value, study);
@@ -367,6 +428,10 @@ std::string ToYaml(const Study& study) {
   if (study.design != Design::kFullFactorial) {
     Design design = study.design;
     out << YAML::Key << "design" << YAML::Value << DesignParameter(&design).Value();
+  }
+  if (study.population) {
+    out << YAML::Key << "conditions" << YAML::Value;
+    WritePopulation(*study.population, &out);
   }
   if (!study.factors.empty()) {
     out << YAML::Key << "factors" << YAML::Value << YAML::BeginMap;

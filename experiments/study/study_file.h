@@ -10,6 +10,8 @@
 //   design: full_factorial            # or one_at_a_time; see study.h
 //   factors:
 //     outlier_ratio: [0.0, 0.2, 0.4]  # any data key, also cameras, motion, noise, outliers, scene
+//     rcme_rank_aware.mu: [3, 6]      # or an option of an estimator, by its label
+//   conditions: {design: sobol, number: 256, ranges: {sigma_px: {log: [0.1, 3]}}}   # see population_file.h
 //   estimators:
 //     - {name: standard}
 //     - {name: rcme, label: rcme_rank_aware, options: {reading: rank_aware}}
@@ -26,11 +28,11 @@
 
 namespace rcme {
 
-// Reads and validates a study, a path or the name of one that comes with the program (core/files/shared_files.h).
-// Every path in it, of estimator files, answers, a folder of pairs or a calibration, is seen from its own
-// folder; an estimator file may also be one that comes with the program, by its name. Throws InputError
-// with file, line, key and what is allowed for anything that is not: unknown or repeated keys, wrong types,
-// values out of range, empty factors, unknown scenes and estimators.
+// Reads and validates a study, a path or the name of one that comes with the program
+// (core/files/shared_files.h). Every path in it, of estimator files, answers, a folder of pairs or a
+// calibration, is seen from its own folder; an estimator file may also be one that comes with the program, by
+// its name. Throws InputError with file, line, key and what is allowed for anything that is not: unknown or
+// repeated keys, wrong types, values out of range, empty factors, unknown scenes and estimators.
 Study LoadStudy(const std::string& name);
 
 // The same from text; `path` is what the messages call it. The paths of its data are seen from the working
@@ -39,8 +41,9 @@ Study ParseStudy(const std::string& yaml, const std::string& path);
 
 // One `--set key=value`: a data key; a failure bound, of the study and of all estimators that have it; or an
 // option, of all estimators that have it (`mu`), or of the one with a label (`rcme.mu`), which may be named
-// like a data key. A factor that is set becomes that one level. Throws InputError that lists what there is, also where the options of an estimator then
-// contradict each other.
+// like a data key; or `conditions.number`, `conditions.design` of a population. A factor that is set, or a
+// key that is drawn, becomes that one level. Throws InputError that lists what there is, also where the
+// options of an estimator then contradict each other.
 void Override(Study* study, const std::string& key, const std::string& value);
 
 // The study with every parameter written out, defaults and the estimators of files included: ParseStudy gives

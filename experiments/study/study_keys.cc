@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/study/population_file.h"
 #include "experiments/study/study.h"
 
 namespace rcme {
@@ -24,8 +25,25 @@ const std::vector<StudyKey>& FixedKeys() {
        "what is simulated, or which folder of match files is read"},
       {"study", "design", "full_factorial", "one of: full_factorial, one_at_a_time",
        "all combinations of the factors' levels, or each factor alone, the others as in data"},
-      {"study", "factors", "none", "a map: a key of the data -> a list of levels",
+      {"study", "factors", "none",
+       "a map: a key of the data, or LABEL.OPTION of an estimator -> a list of levels",
        "what is varied; a condition is a combination of levels"},
+      {"study", "conditions", "none", "the keys of conditions",
+       "a population that the conditions are drawn from"},
+      {"conditions", "population", "none", "a population file, or a name of `rcme list populations`",
+       "ranges and restrictions to begin with"},
+      {"conditions", "ranges", "those of population",
+       "a map: a key of the data -> [from, to], {log: [from, to]}, "
+       "{any: [...]}, any, or names with what is drawn with each",
+       "what each key may be; takes the place of the population's"},
+      {"conditions", "given", "none", "KEY < NUMBER or KEY < KEY, also with <=, >, >=, or a list of such",
+       "what a draw has to meet to be a condition; one without the key is not restricted"},
+      {"population", "description", "", "text", "what it stands for"},
+      {"population", "source", "", "text", "where its ranges are from"},
+      {"population", "reasons", "none", "a map of texts", "why each range is as it is"},
+      {"population", "left_out", "none", "a map of texts", "keys of the data that are not drawn, and why"},
+      {"population", "ranges", "", "as in conditions", "what each key may be"},
+      {"population", "given", "none", "as in conditions", "what a draw has to meet to be a condition"},
       {"study", "estimators", "",
        fmt::format("a list of 1 to {} entries, each with the keys of estimator, or file", kMaxEstimators),
        "what is compared, on the same matches"},
@@ -68,6 +86,9 @@ std::vector<StudyKey> StudyKeys() {
     keys.push_back({"ademp", name, "", "text", "in the study's own words"});
   FailureBounds bounds;
   Add("failure", Parameters(bounds), &keys);
+  Population population;
+  Add("conditions",
+      {PopulationDesignParameter(&population.design), PopulationNumberParameter(&population.number)}, &keys);
   Tuning tuning;
   Add("tune", Parameters(tuning), &keys);
   return keys;

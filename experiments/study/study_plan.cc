@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
+#include "experiments/core/work/for_each_index.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"
@@ -14,17 +16,26 @@
 namespace rcme {
 namespace {
 
+// The settings of a condition, in words; of a population, which has many, their hash.
+std::string TextOfSettings(const Settings& settings, bool is_drawn) {
+  std::string text;
+  for (const auto& [key, value] : settings) text += fmt::format(" {} {},", key, value);
+  if (!is_drawn) return text;
+  Fnv1a hash;
+  hash.Add(text);
+  return fmt::format(" settings {:016x}", hash.value());
+}
+
 // Where a factor chooses a part of the simulation, ToYaml cannot write out the parameters of every choice.
 std::string ResolvedConditions(const StudyPlan& plan) {
-  const bool has_choice = std::ranges::any_of(plan.study.factors, IsChoice, &Factor::key);
+  const bool has_choice =
+      plan.study.population || std::ranges::any_of(plan.study.factors, IsChoice, &Factor::key);
   std::string text;
   for (const Condition& condition : plan.conditions) {
     if (!has_choice) continue;
-    text += fmt::format("# condition {}:", condition.index);
-    for (const auto& [key, value] : ResolveSettings(SettingsOf(plan.study, condition.levels))) {
-      text += fmt::format(" {} {},", key, value);
-    }
-    text += "\n";
+    const Settings settings = ResolveSettings(SettingsOf(plan.study, condition.levels));
+    text += fmt::format("# condition {}:{}\n", condition.index,
+                        TextOfSettings(settings, plan.study.population.has_value()));
   }
   return text;
 }
@@ -36,6 +47,7 @@ std::string Identity(const StudyPlan& plan) {
   same.ademp.reset();
   std::erase_if(same.data, [](const auto& setting) { return setting.first == "folder"; });  // its data count
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
+  if (same.population) identity += IdentityOf(*same.population, plan.refused);
   for (const Condition& condition : plan.conditions) {
     const std::string data = condition.source->Identity();
     if (!data.empty()) identity += fmt::format("# condition {}: {}\n", condition.index, data);
@@ -53,12 +65,110 @@ std::string WhatIsDrawn(const Study& study, const Settings& settings, const std:
   return text + pair_scene;
 }
 
+// The conditions of one row of the design, without their indices.
+struct RowConditions {
+  std::string implied_factor;
+  std::vector<Condition> conditions;
+};
+
+RowConditions ConditionsOf(const Study& study, const std::vector<std::string>& levels) {
+  const Settings settings = SettingsOf(study, levels);
+  DataSources made = MakeDataSources(settings);
+  RowConditions row{std::move(made.implied_factor), {}};
+  for (const auto& [level, source] : made.sources) {
+    Condition condition{0, levels, source, source->NumTrials(study.trials),
+                        HashToStreamKey(WhatIsDrawn(study, settings, level))};
+    if (!row.implied_factor.empty()) condition.levels.push_back(level);
+    row.conditions.push_back(std::move(condition));
+  }
+  return row;
+}
+
+void Append(RowConditions row, StudyPlan* plan) {
+  if (plan->conditions.empty() && !row.implied_factor.empty())
+    plan->factor_names.push_back(row.implied_factor);
+  for (Condition& condition : row.conditions) {
+    condition.index = static_cast<std::uint32_t>(plan->conditions.size());
+    plan->conditions.push_back(std::move(condition));
+  }
+}
+
+// The conditions of a draw with every row of the factors, or why there are none.
+struct DrawnConditions {
+  std::vector<RowConditions> rows;
+  RefusedDraw refused;  // no reason: none
+};
+
+DrawnConditions TryDraw(const StudyPlan& plan, const PopulationDraw& draw,
+                        const std::vector<std::vector<std::string>>& of_factors) {
+  DrawnConditions drawn{{}, {draw.number, !draw.outside_of.empty(), draw.outside_of}};
+  if (drawn.refused.is_outside_of_given) return drawn;
+  try {
+    for (const std::vector<std::string>& levels : of_factors) {
+      drawn.rows.push_back(ConditionsOf(plan.study, LevelsOf(draw, levels)));
+      for (const Condition& condition : drawn.rows.back().conditions) {
+        for (std::uint32_t trial = 0; trial < kPilotTrials; ++trial)
+          condition.source->Make(NameOfTrial(plan, condition, trial));
+      }
+    }
+  } catch (const InputError& error) {
+    drawn.rows.clear();
+    drawn.refused.reason = error.what();
+  }
+  return drawn;
+}
+
+void AppendPopulation(StudyPlan* plan) {
+  const std::vector<PopulationDraw> draws = DrawPopulation(plan->study);
+  const std::vector<std::vector<std::string>> of_factors = FactorRows(plan->study);
+  if (draws.size() * of_factors.size() > kMaxConditions)
+    throw InputError(
+        fmt::format("conditions: more than {} draws and combinations of levels", kMaxConditions));
+  std::vector<DrawnConditions> drawn(draws.size());
+  ForEachIndex(std::ssize(draws), 0, [&](std::int64_t i) {
+    const auto index = static_cast<size_t>(i);
+    drawn[index] = TryDraw(*plan, draws[index], of_factors);
+  });
+  for (DrawnConditions& of_draw : drawn) {
+    for (RowConditions& row : of_draw.rows) Append(std::move(row), plan);
+    if (!of_draw.refused.reason.empty()) plan->refused.push_back(std::move(of_draw.refused));
+  }
+  if (plan->conditions.empty()) {
+    throw InputError(fmt::format("conditions: none of {} draws is possible; the first: {}", draws.size(),
+                                 plan->refused.front().reason));
+  }
+}
+
+// Estimators whose options are factors: made once for all conditions with the same options.
+void MakeEstimatorsOfConditions(StudyPlan* plan) {
+  if (std::ranges::none_of(plan->study.factors, IsEstimatorOption, &Factor::key)) return;
+  std::map<Settings, std::vector<std::shared_ptr<const MotionEstimator>>> made;
+  for (Condition& condition : plan->conditions) {
+    Settings options;
+    for (size_t f = 0; f < plan->factor_names.size(); ++f) {
+      if (IsEstimatorOption(plan->factor_names[f]))
+        options.emplace_back(plan->factor_names[f], condition.levels[f]);
+    }
+    const auto [found, is_new] = made.try_emplace(options);
+    if (is_new) {
+      for (const EstimatorSpec& spec : EstimatorsOf(plan->study, condition.levels))
+        found->second.push_back(Make(spec));
+    }
+    condition.estimators = found->second;
+  }
+}
+
 }  // namespace
 
 std::int64_t StudyPlan::NumTrials() const {
   std::int64_t sum = 0;
   for (const Condition& condition : conditions) sum += condition.num_trials;
   return sum;
+}
+
+const std::vector<std::shared_ptr<const MotionEstimator>>& EstimatorsOf(const StudyPlan& plan,
+                                                                        const Condition& condition) {
+  return condition.estimators.empty() ? plan.estimators : condition.estimators;
 }
 
 StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
@@ -83,22 +193,16 @@ StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
   }
   StudyPlan plan;
   plan.study = study;
-  for (const Factor& factor : study.factors) plan.factor_names.push_back(factor.key);
-  for (const std::vector<std::string>& levels : DesignRows(study)) {
-    const Settings settings = SettingsOf(study, levels);
-    const DataSources made = MakeDataSources(settings);
-    const bool is_first = plan.conditions.empty();
-    if (is_first && !made.implied_factor.empty()) plan.factor_names.push_back(made.implied_factor);
-    for (const auto& [level, source] : made.sources) {
-      Condition condition{static_cast<std::uint32_t>(plan.conditions.size()), levels, source,
-                          source->NumTrials(study.trials),
-                          HashToStreamKey(WhatIsDrawn(study, settings, level))};
-      if (!made.implied_factor.empty()) condition.levels.push_back(level);
-      plan.conditions.push_back(std::move(condition));
-    }
+  plan.factor_names = FactorNames(study);
+  if (study.population) {
+    AppendPopulation(&plan);
+  } else {
+    for (const std::vector<std::string>& levels : DesignRows(study))
+      Append(ConditionsOf(study, levels), &plan);
   }
   if (estimators == PlanEstimators::kMade) {
     for (const EstimatorSpec& spec : study.estimators) plan.estimators.push_back(Make(spec));
+    MakeEstimatorsOfConditions(&plan);
   }
   plan.study_yaml = ToYaml(study);
   plan.identity = Identity(plan);

@@ -16,6 +16,8 @@ struct Condition {
   std::shared_ptr<const DataSource> source;
   int num_trials = 0;
   std::uint64_t stream_key = 0;  // of its random streams: what the condition is, whatever its index
+  // Those of the plan with the options that are levels of the condition; empty: the plan's own.
+  std::vector<std::shared_ptr<const MotionEstimator>> estimators = {};
 };
 
 // A study made ready to run: its conditions in a fixed order (first factor slowest), its estimators built.
@@ -23,12 +25,17 @@ struct StudyPlan {
   Study study;
   std::vector<std::string> factor_names;
   std::vector<Condition> conditions;
+  std::vector<RefusedDraw> refused;  // draws of the population that are no conditions
   std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // as study.estimators, or none
   std::string study_yaml;                                          // the study in full (study_file.h)
   std::string identity;  // equal for two runs that may share a result file
 
   std::int64_t NumTrials() const;
 };
+
+// The estimators that a condition's trials ask.
+const std::vector<std::shared_ptr<const MotionEstimator>>& EstimatorsOf(const StudyPlan& plan,
+                                                                        const Condition& condition);
 
 // Names the random streams of a trial, but for their purpose (data_source.h).
 StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
@@ -42,8 +49,13 @@ enum class PlanEstimators {
   kNotMade,  // only its problems are of interest: a command of a file needs no permission
 };
 
+// Trials that are drawn of each condition of a population to see whether the simulator refuses it.
+inline constexpr std::uint32_t kPilotTrials = 8;
+
 // Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions, a command that
-// nobody has allowed (command_permission.h).
+// nobody has allowed (command_permission.h). A draw of a population whose settings are impossible, or where
+// one of the first kPilotTrials trials cannot be drawn, is refused, in all combinations with the factors; an
+// error if none is left.
 StudyPlan MakePlan(const Study& study, PlanEstimators estimators = PlanEstimators::kMade);
 // The same for the study of a file, which the message then names.
 StudyPlan PlanOf(const Study& study, const std::string& path,

@@ -141,12 +141,13 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   TrialResult result;
   result.data = condition.source->Make(NameOfScene(plan, condition, trial));
   result.problem = Describe(result.data, condition, trial);
-  result.estimates.reserve(plan.estimators.size());
-  result.records.reserve(plan.estimators.size());
-  for (size_t e = 0; e < plan.estimators.size(); ++e) {
+  const auto& estimators = EstimatorsOf(plan, condition);
+  result.estimates.reserve(estimators.size());
+  result.records.reserve(estimators.size());
+  for (size_t e = 0; e < estimators.size(); ++e) {
     RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
     const double start = ThreadSeconds();
-    MotionEstimate estimate = plan.estimators[e]->Estimate(result.data.problem, sampling_rng);
+    MotionEstimate estimate = estimators[e]->Estimate(result.data.problem, sampling_rng);
     double seconds = ThreadSeconds() - start;
     if (estimate.seconds_elsewhere >= 0.0) seconds += estimate.seconds_elsewhere;
     result.estimates.push_back(Judged(std::move(estimate), result.data.problem.matches.size()));

@@ -74,6 +74,7 @@ void AddGroups(SettingPlan* plan) {
 }  // namespace
 
 SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning) {
+  RequireFixedOptions(study, "tuning");
   const EstimatorSpec& base = TunedEstimator(tuning, study.estimators);
   RequireAllowedCommands({base});
   SettingPlan plan;

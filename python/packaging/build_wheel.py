@@ -36,7 +36,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     files = {f"rcme/{file.name}": file.read_bytes() for file in sorted((folder / "python/rcme").iterdir())
              if file.name.endswith(PACKED)}
     files |= {f"rcme/share/{file.relative_to(ROOT)}": file.read_bytes()
-              for folder in ("studies", "estimator_files") for file in sorted((ROOT / folder).rglob("*.yaml"))}
+              for folder in ("studies", "estimator_files", "populations") for file in sorted((ROOT / folder).rglob("*.yaml"))}
     project = read_project()
     name = f"{project['name']}-{project['version']}-{tag()}.whl"
     write_wheel(pathlib.Path(wheel_directory) / name, files, project)

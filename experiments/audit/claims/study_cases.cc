@@ -19,6 +19,7 @@ constexpr const char* kNoMatchFiles =
 }  // namespace
 
 void RequireCases(const Study& study) {
+  RequireFixedOptions(study, "an audit or a map");
   const std::vector<std::vector<std::string>> rows = DesignRows(study);
   if (rows.size() > kMaxCaseConditions) {
     throw InputError(

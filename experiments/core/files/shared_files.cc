@@ -21,6 +21,8 @@ const char* NameOf(SharedFolder folder) {
       return "studies";
     case SharedFolder::kEstimators:
       return "estimator_files";
+    case SharedFolder::kPopulations:
+      return "populations";
     case SharedFolder::kPlots:
       break;
   }
@@ -28,7 +30,7 @@ const char* NameOf(SharedFolder folder) {
 }
 
 std::string ListOf(SharedFolder folder) {
-  return folder == SharedFolder::kStudies ? "rcme list studies" : "rcme list estimator_files";
+  return std::string("rcme list ") + NameOf(folder);
 }
 
 fs::path BesideProgram() {

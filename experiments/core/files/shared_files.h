@@ -17,7 +17,7 @@ std::string FindShare();
 // anything is looked for, from one thread.
 void UseShare(const std::string& folder);
 
-enum class SharedFolder { kStudies, kEstimators, kPlots };
+enum class SharedFolder { kStudies, kEstimators, kPopulations, kPlots };
 
 // Where its files lie. Empty: nowhere.
 std::string PathOf(SharedFolder folder);

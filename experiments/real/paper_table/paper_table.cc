@@ -63,7 +63,7 @@ class Members {
   const ImageNames& NamesOf(const Condition& condition, const StudyPlan& plan) {
     std::string folder;
     std::vector<std::string> levels = condition.levels;
-    levels.resize(plan.study.factors.size());
+    levels.resize(FactorNames(plan.study).size());
     for (const auto& [key, value] : SettingsOf(plan.study, levels)) {
       if (key == "folder") folder = value;
     }

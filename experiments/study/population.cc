@@ -1,0 +1,198 @@
+#include "experiments/study/population.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "experiments/data/make_data.h"
+#include "experiments/study/study.h"
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "parameters/plain_text.h"
+#include "parameters/text_lines.h"
+#include "stats/fnv1a.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char *kDrawsLine = "# draws: ", *kGivenWord = "outside of given: ",
+                     *kRefusedWord = "refused: ";
+
+// The last value of a key; null: there is none.
+const std::string* FindValue(const Settings& settings, const std::string& key) {
+  const auto found = std::find_if(settings.rbegin(), settings.rend(),
+                                  [&](const auto& setting) { return setting.first == key; });
+  return found == settings.rend() ? nullptr : &found->second;
+}
+
+bool IsWith(const DrawnKey& drawn, const Settings& settings) {
+  return std::ranges::all_of(drawn.with, [&](const auto& choice) {
+    const std::string* value = FindValue(settings, choice.first);
+    return value != nullptr && *value == choice.second;
+  });
+}
+
+// The value at u in [0, 1), in six digits.
+std::string ValueAt(const DrawnRange& range, bool is_whole, double u) {
+  if (range.kind == DrawnRange::Kind::kAnyOf)
+    return range.words[static_cast<size_t>(u * static_cast<double>(range.words.size()))];
+  const double to = range.to + (is_whole ? 1.0 : 0.0);
+  const double value = range.kind == DrawnRange::Kind::kUniform
+                           ? range.from + u * (to - range.from)
+                           : range.from * std::exp(u * std::log(to / range.from));
+  // Rounding may put the greatest u on `to`.
+  if (is_whole) return fmt::format("{:.0f}", std::min(std::floor(value), range.to));
+  return fmt::format("{:.6g}", value);
+}
+
+// A side of a restriction as a number; false: the draw has none.
+bool NumberOf(const Settings& resolved, const std::string& side, double* number) {
+  if (ParseReal(side, number)) return true;
+  const std::string* value = FindValue(resolved, side);
+  return value != nullptr && ParseReal(*value, number);
+}
+
+bool Meets(const Settings& resolved, const Restriction& restriction) {
+  double left = 0.0, right = 0.0;
+  if (!NumberOf(resolved, restriction.left, &left) || !NumberOf(resolved, restriction.right, &right))
+    return true;
+  if (restriction.comparison == "<") return left < right;
+  if (restriction.comparison == "<=") return left <= right;
+  if (restriction.comparison == ">") return left > right;
+  return left >= right;
+}
+
+// Draws are refused for one reason with different numbers: "refused: parallax_deg", and the rest of the
+// message.
+std::pair<std::string, std::string> KindOfReason(const std::string& reason) {
+  const size_t key_end = reason.starts_with(kRefusedWord)
+                             ? reason.find(": ", std::string_view(kRefusedWord).size())
+                             : std::string::npos;
+  if (key_end == std::string::npos) return {reason, ""};
+  return {reason.substr(0, key_end), reason.substr(key_end + 2)};
+}
+
+class Drawer {
+ public:
+  explicit Drawer(const Study& study)
+      : study_(study), population_(*study.population), keys_(KeysOf(population_)) {
+    std::vector<std::uint64_t> hashes;
+    for (const std::string& key : keys_) hashes.push_back(HashToStreamKey(key));
+    points_ = DrawPoints(population_.design, static_cast<size_t>(population_.number), hashes, study.seed,
+                         static_cast<std::uint32_t>(StreamPurpose::kPopulation));
+  }
+
+  PopulationDraw Draw(int number) {
+    const std::vector<double>& point = points_[static_cast<size_t>(number)];
+    Settings settings = study_.data;
+    for (const DrawnKey& drawn : population_.keys) {
+      if (!IsChoice(drawn.key) || !IsWith(drawn, settings)) continue;
+      settings.emplace_back(drawn.key, ValueAt(drawn.range, false, point[AxisOf(drawn.key)]));
+    }
+    const std::map<std::string, bool>& is_whole = KeysWith(settings);
+    const Settings resolved_choices = ResolveSettings(settings);
+    for (const auto& [key, drawn] : NumbersOf(resolved_choices, is_whole))
+      settings.emplace_back(key, ValueAt(drawn->range, is_whole.at(key), point[AxisOf(key)]));
+    const Settings resolved = ResolveSettings(settings);
+    PopulationDraw draw{number, {}, {}};
+    for (const std::string& key : keys_) {
+      const bool is_drawn = std::any_of(settings.begin() + std::ssize(study_.data), settings.end(),
+                                        [&](const auto& setting) { return setting.first == key; });
+      draw.levels.push_back(is_drawn ? *FindValue(resolved, key) : kNotDrawn);
+    }
+    for (const Restriction& restriction : population_.given) {
+      if (draw.outside_of.empty() && !Meets(resolved, restriction)) draw.outside_of = restriction.Text();
+    }
+    return draw;
+  }
+
+ private:
+  size_t AxisOf(const std::string& key) const {
+    return static_cast<size_t>(std::ranges::find(keys_, key) - keys_.begin());
+  }
+
+  // The keys that settings with these choices have, and whether they are whole numbers.
+  const std::map<std::string, bool>& KeysWith(const Settings& settings) {
+    std::string choices;
+    for (const auto& [key, value] : settings) choices += IsChoice(key) ? key + "=" + value + "\n" : "";
+    const auto [found, is_new] = keys_with_.try_emplace(choices);
+    if (is_new) {
+      for (const SettingHelp& help : DescribeSettings(settings))
+        found->second[help.name] = help.IsWholeNumber();
+    }
+    return found->second;
+  }
+
+  // Of each key that is no choice and is there, what it is drawn from: what stands deepest.
+  std::map<std::string, const DrawnKey*> NumbersOf(const Settings& resolved,
+                                                   const std::map<std::string, bool>& known) const {
+    std::map<std::string, const DrawnKey*> numbers;
+    for (const DrawnKey& drawn : population_.keys) {
+      if (IsChoice(drawn.key) || !known.contains(drawn.key) || !IsWith(drawn, resolved)) continue;
+      const DrawnKey*& best = numbers[drawn.key];
+      if (best == nullptr || drawn.with.size() >= best->with.size()) best = &drawn;
+    }
+    return numbers;
+  }
+
+  const Study& study_;
+  const Population& population_;
+  const std::vector<std::string> keys_;
+  std::vector<std::vector<double>> points_;
+  std::map<std::string, std::map<std::string, bool>> keys_with_;
+};
+
+}  // namespace
+
+std::vector<std::string> KeysOf(const Population& population) {
+  std::vector<std::string> keys;
+  for (const DrawnKey& drawn : population.keys) {
+    if (std::ranges::count(keys, drawn.key) == 0) keys.push_back(drawn.key);
+  }
+  return keys;
+}
+
+std::vector<PopulationDraw> DrawPopulation(const Study& study) {
+  Drawer drawer(study);
+  std::vector<PopulationDraw> draws;
+  for (int i = 0; i < study.population->number; ++i) draws.push_back(drawer.Draw(i));
+  return draws;
+}
+
+std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused) {
+  std::string text = fmt::format("{}{}\n", kDrawsLine, population.number);
+  for (const RefusedDraw& draw : refused) {
+    text += fmt::format("# draw {}: {}{}\n", draw.number,
+                        draw.is_outside_of_given ? kGivenWord : kRefusedWord, Printable(draw.reason));
+  }
+  return text;
+}
+
+std::string DescribePopulation(const std::string& identity) {
+  int num_draws = 0, num_refused = 0;
+  std::map<std::string, std::pair<int, std::string>> reasons;  // number of draws, an example
+  for (const std::string& line : SplitText(identity, '\n')) {
+    int number = 0, length = 0;
+    if (line.starts_with(kDrawsLine))
+      num_draws = std::atoi(line.c_str() + std::string_view(kDrawsLine).size());
+    if (std::sscanf(line.c_str(), "# draw %d: %n", &number, &length) != 1 || length == 0) continue;
+    ++num_refused;
+    const auto [kind, example] = KindOfReason(line.substr(static_cast<size_t>(length)));
+    const auto [found, is_new] = reasons.try_emplace(kind, 0, "");
+    ++found->second.first;
+    if (is_new && !example.empty()) found->second.second = fmt::format("; draw {}: {}", number, example);
+  }
+  if (num_draws == 0) return {};
+  std::vector<std::pair<int, std::string>> sorted;
+  for (const auto& [kind, count] : reasons) sorted.emplace_back(-count.first, kind + count.second);
+  std::ranges::sort(sorted);
+  std::string text =
+      fmt::format("Population: {} of {} draws are conditions", num_draws - num_refused, num_draws);
+  for (const auto& [count, reason] : sorted) text += fmt::format("\n  {} {}", -count, reason);
+  return text;
+}
+
+}  // namespace rcme

@@ -1,0 +1,82 @@
+// Conditions as a random sample of a population, instead of levels that somebody chose.
+//
+// A population says of each key of the data what it may be. Draw number i is a pure function of the study's
+// seed and i: a point of the unit cube with an axis for each key (stats/point_set.h), through the ranges. A
+// key that a scene or a law brings is drawn where that was drawn, and is absent elsewhere. Draws outside of
+// `given`, and those that the simulator refuses, keep their place in the sequence and are named
+// (StudyPlan::refused): the population is that of the draws that remain.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "parameters/settings.h"
+#include "stats/point_set.h"
+
+namespace rcme {
+
+struct Study;
+
+inline constexpr int kMaxDraws = 100'000;
+inline constexpr const char* kDrawFactor = "draw";  // the factor whose level is the number of the draw
+inline constexpr const char* kNotDrawn = "-";       // the level of a key that a draw does not have
+
+// What a key may be: a number, uniform between two or uniform in its logarithm, both ends included where it
+// is whole; or one of several words or numbers, each as likely.
+struct DrawnRange {
+  enum class Kind { kUniform, kLogUniform, kAnyOf };
+  Kind kind = Kind::kAnyOf;
+  double from = 0.0, to = 0.0;
+  std::vector<std::string> words;  // one: the key is fixed
+};
+
+struct DrawnKey {
+  std::string key;
+  // What it is drawn with, outermost first: {{"scene", "plane"}}; empty: wherever there is such a key.
+  Settings with;
+  DrawnRange range;
+};
+
+// "sigma_px < 2", "min_depth_m < max_depth_m": of two sides that are keys or numbers. A draw without one of
+// the keys, or with a word in its place, is not restricted.
+struct Restriction {
+  std::string left, comparison, right;
+  std::string Text() const { return left + " " + comparison + " " + right; }
+};
+
+struct Population {
+  PointSet design = PointSet::kSobol;
+  int number = 256;  // of draws
+  // A key, then what is drawn with its words, then the next: the order of their axes.
+  std::vector<DrawnKey> keys;
+  std::vector<Restriction> given;
+};
+
+// The keys, each once, in the order of their axes.
+std::vector<std::string> KeysOf(const Population& population);
+
+struct PopulationDraw {
+  int number = 0;
+  std::vector<std::string> levels;  // one per key of KeysOf; kNotDrawn
+  std::string outside_of;           // the restriction it does not meet; empty: none
+};
+
+// All of them, in order. Throws InputError if the study's data contradict what is drawn.
+std::vector<PopulationDraw> DrawPopulation(const Study& study);
+
+// Draws that are no conditions, and why.
+struct RefusedDraw {
+  int number = 0;
+  bool is_outside_of_given = false;
+  std::string reason;  // the restriction, or what the simulator said
+};
+
+// Lines of a run's identity for them, and what such an identity says, in words: how many draws there were,
+// how many are not among the conditions, and the reasons with an example of each, the most frequent first.
+// Empty: no population.
+std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused);
+std::string DescribePopulation(const std::string& identity);
+
+}  // namespace rcme
