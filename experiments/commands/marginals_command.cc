@@ -26,16 +26,18 @@ block `conditions`. All intervals hold together, so that you may look for the wo
 
 Examples:
   rcme marginals run.sqlite
-  rcme marginals run.sqlite --pairs --top 50
+  rcme marginals run.sqlite --estimator rcme_calibrated --pairs --top 50
   rcme marginals run.sqlite --format csv --out marginals.csv)");
   struct Arguments {
     std::string run, format = "table", out;
-    bool with_pairs = false;
+    MarginalOptions options;
     int num_shown = 20;
   };
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
-  command->add_flag("--pairs", arguments->with_pairs, "also levels of two factors together");
+  command->add_flag("--pairs", arguments->options.with_pairs, "also levels of two factors together");
+  command->add_option("--estimator", arguments->options.estimators, "only this one, by its label; repeatable")
+      ->allow_extra_args(false);
   command->add_option("--top", arguments->num_shown, "rows of the table's second part")
       ->transform(WholeNumberIn(1, 100'000))
       ->capture_default_str();
@@ -46,7 +48,7 @@ Examples:
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {
     const ResultStore run = ResultStore::OpenForReading(arguments->run);
-    const Marginals marginals = MeasureMarginals(run, arguments->with_pairs);
+    const Marginals marginals = MeasureMarginals(run, arguments->options);
     const std::string study = run.Description().study;
     PrintOrWrite(arguments->out,
                  arguments->format == "csv" ? MarginalsAsCsv(marginals)

@@ -1,6 +1,7 @@
 #include "experiments/statistics/marginals.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -171,6 +172,21 @@ Marginal Measure(const std::vector<Moments>& conditions, MarginalQuantity quanti
   return marginal;
 }
 
+std::vector<size_t> ChooseEstimators(const RunDescription& run, const std::vector<std::string>& labels) {
+  std::vector<size_t> chosen;
+  std::vector<std::string> known;
+  for (size_t e = 0; e < run.estimators.size(); ++e) {
+    known.push_back(run.estimators[e].label);
+    if (labels.empty() || std::ranges::count(labels, known.back()) > 0) chosen.push_back(e);
+  }
+  for (const std::string& label : labels) {
+    if (std::ranges::count(known, label) == 0)
+      throw InputError(
+          fmt::format("--estimator: the run has no '{}'; it has: {}", label, fmt::join(known, ", ")));
+  }
+  return chosen;
+}
+
 }  // namespace
 
 std::string Name(MarginalQuantity quantity) {
@@ -210,20 +226,20 @@ std::vector<Regime> ListRegimes(const RunDescription& run, bool with_pairs) {
   return regimes;
 }
 
-Marginals MeasureMarginals(const ResultStore& run, bool with_pairs) {
+Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& options) {
   const RunDescription description = run.Description();
   if (description.conditions.size() < kLeastConditions)
     throw InputError(fmt::format("marginals: the run has {} conditions; at least {} are needed",
                                  description.conditions.size(), kLeastConditions));
   const Values values = CollectValues(run, description);
-  const std::vector<Regime> regimes = ListRegimes(description, with_pairs);
+  const std::vector<Regime> regimes = ListRegimes(description, options.with_pairs);
   struct Question {
     size_t estimator, quantity;
     const Regime* regime;
     std::vector<Moments> conditions;
   };
   std::vector<Question> questions;
-  for (size_t e = 0; e < values.size(); ++e) {
+  for (const size_t e : ChooseEstimators(description, options.estimators)) {
     for (const Regime& regime : regimes) {
       for (size_t q = 0; q < kNumQuantities; ++q) {
         std::vector<Moments> conditions = Select(values[e][q], regime.has);

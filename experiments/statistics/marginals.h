@@ -21,8 +21,8 @@ enum class MarginalQuantity {
                       // claimed 0
   kSureFailed,        // the same of answers with a stated probability of at most kSureBelow
   kSureCoverage,      // truth within the 95 % region, of answers with a stated probability of at most
-                  // kCertainBelow, or of successes of an estimator that states none; claimed 0.95
-  kFailure  // share of the trials that failed; nothing is claimed
+                      // kCertainBelow, or of successes of an estimator that states none; claimed 0.95
+  kFailure            // share of the trials that failed; nothing is claimed
 };
 inline constexpr MarginalQuantity kMarginalQuantities[] = {
     MarginalQuantity::kFailedLessStated, MarginalQuantity::kSureFailed, MarginalQuantity::kSureCoverage,
@@ -58,7 +58,13 @@ struct Marginals {
   std::vector<Marginal> rows;  // the farthest from what is claimed first, then by regime as listed
 };
 
-// Throws InputError for weighted trials, and for a run of fewer than kLeastConditions conditions.
-Marginals MeasureMarginals(const ResultStore& run, bool with_pairs);
+struct MarginalOptions {
+  bool with_pairs = false;
+  std::vector<std::string> estimators;  // labels; empty: all
+};
+
+// Throws InputError for weighted trials, for a run of fewer than kLeastConditions conditions, and for a label
+// that it does not have.
+Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& options);
 
 }  // namespace rcme

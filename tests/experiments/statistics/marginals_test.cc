@@ -49,7 +49,7 @@ class MarginalsOfRun : public testing::Test {
       AddRecords(store, records);
     }
     store.Commit();
-    return MeasureMarginals(store, with_pairs);
+    return MeasureMarginals(store, {.with_pairs = with_pairs, .estimators = {}});
   }
 
   const TempFolder folder_;
@@ -86,7 +86,7 @@ TEST_F(MarginalsOfRun, OneOrTwoConditionsAreNoRegime) {
   const TempFolder folder;
   const StudyPlan plan = MakePlan(SmallStudy());
   const ResultStore store = ResultStore::OpenForRun(folder.Path("small.sqlite"), plan);
-  EXPECT_TRUE(ThrowsInputError([&] { MeasureMarginals(store, false); }, {"2 conditions; at least 5"}));
+  EXPECT_TRUE(ThrowsInputError([&] { MeasureMarginals(store, {}); }, {"2 conditions; at least 5"}));
 }
 
 }  // namespace
