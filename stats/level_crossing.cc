@@ -78,6 +78,11 @@ constexpr size_t kNumLevels = 1024;           // of the search, over [0, 1]
 constexpr std::int64_t kNumSteps = 40;        // of the search
 constexpr std::int64_t kNumFreshLevels = 16;  // of the second part
 
+// The part of number `i` of a total that is divided into `num_parts`, even to within one.
+std::int64_t EvenPart(std::int64_t total, std::int64_t i, std::int64_t num_parts) {
+  return total * (i + 1) / num_parts - total * i / num_parts;
+}
+
 double PlaceOfLevel(size_t level) { return (static_cast<double>(level) + 0.5) / kNumLevels; }
 
 // The levels of the second part, ascending: evenly over the posterior's central 99 %, widened by half its
@@ -185,12 +190,16 @@ Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials,
     asked->push_back({PlaceOfLevel(level), ask(PlaceOfLevel(level), number), number});
     search.Add(level, asked->back().num_events, number);
   };
-  const std::int64_t num_steps = std::min(kNumSteps, num_trials / 3), num_searched = num_trials / 3;
-  for (std::int64_t step = 0; step < num_steps; ++step)
-    ask_at(search.NextLevel(static_cast<size_t>(step)), num_searched / num_steps, &crossing.searched);
+  const std::int64_t num_searched = num_trials / 3, num_steps = std::min(kNumSteps, num_searched);
+  for (std::int64_t step = 0; step < num_steps; ++step) {
+    const size_t level = search.NextLevel(static_cast<size_t>(step));
+    ask_at(level, EvenPart(num_searched, step, num_steps), &crossing.searched);
+  }
   const std::vector<size_t> levels = ChooseFreshLevels(search);
-  const std::int64_t per_level = (num_trials - num_searched) / std::ssize(levels);
-  for (const size_t level : levels) ask_at(level, per_level, &crossing.fresh);
+  for (std::int64_t i = 0; i < std::ssize(levels); ++i) {
+    const std::int64_t number = EvenPart(num_trials - num_searched, i, std::ssize(levels));
+    ask_at(levels[static_cast<size_t>(i)], number, &crossing.fresh);
+  }
   crossing.estimate = search.Quantile(0.5) / kNumLevels;
   crossing.interval = FindCrossingInterval(crossing.fresh, rate, confidence);
   crossing.logistic_interval = FindLogisticInterval(crossing.fresh, rate, confidence);
