@@ -165,20 +165,14 @@ Rows ListEstimatorFiles() {
 
 void AddListCommand(CLI::App& app) {
   using Lister = std::function<Rows()>;
-  static const std::vector<std::pair<std::string, Lister>> kLists = {{"estimators", ListEstimators},
-                                                                     {"options", ListOptions},
-                                                                     {"scenes", ListScenes},
-                                                                     {"cameras", ListCameras},
-                                                                     {"motions", ListMotions},
-                                                                     {"noise", ListNoise},
-                                                                     {"outliers", ListOutliers},
-                                                                     {"keys", ListKeys},
-                                                                     {"settings", ListSettings},
-                                                                     {"quantities", ListQuantities},
-                                                                     {"claims", ListClaims},
-                                                                     {"studies", ListStudies},
-                                                                     {"populations", ListPopulations},
-                                                                     {"estimator_files", ListEstimatorFiles}};
+  static const std::vector<std::pair<std::string, Lister>> kLists = {
+      {"estimators", ListEstimators},   {"options", ListOptions},
+      {"scenes", ListScenes},           {"cameras", ListCameras},
+      {"motions", ListMotions},         {"noise", ListNoise},
+      {"outliers", ListOutliers},       {"keys", ListKeys},
+      {"settings", ListSettings},       {"quantities", ListQuantities},
+      {"claims", ListClaims},           {"studies", ListStudies},
+      {"populations", ListPopulations}, {"estimator_files", ListEstimatorFiles}};
   std::vector<std::string> names;
   for (const auto& [name, lister] : kLists) names.push_back(name);
   CLI::App* command = app.add_subcommand(
@@ -186,7 +180,8 @@ void AddListCommand(CLI::App& app) {
       "List what you can name: estimators, options, scenes, study keys, quantities, claims, studies, ...");
   auto what = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("table");
-  command->add_option("what", *what, "which list; default: all except studies, populations and estimator_files")
+  command
+      ->add_option("what", *what, "which list; default: all except studies, populations and estimator_files")
       ->check(OneOf(names));
   command->add_option("--format", *format, "table: columns for a terminal; markdown: as in docs/reference")
       ->check(OneOf({"table", "markdown"}))

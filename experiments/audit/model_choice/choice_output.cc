@@ -32,7 +32,7 @@ Cell CellOf(const ConfusionMatrix& matrix, size_t kind, size_t answer) {
 Table MakeMatrixTable(const std::string& criterion, const ConfusionMatrix& matrix) {
   Table table{{Column::Key(criterion), Column::Count("n")}};
   for (size_t answer = 0; answer < kNumAnswers; ++answer)
-    table.columns.push_back(Column::Estimated(AnswerName(answer), {100.0, "%", ".3g"}));
+    table.columns.push_back(Column::Estimated(AnswerName(answer), {100.0, "%", ".1f"}));
   for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
     if (CellOf(matrix, kind, 0).n == 0) continue;
     table.rows.push_back({Name(kTrueKinds[kind]), CellOf(matrix, kind, 0).n});

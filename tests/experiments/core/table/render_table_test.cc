@@ -40,7 +40,7 @@ TEST(RenderText, AlignsAndMarksWhatIsNotKnown) {
       "-------------  ---------  ----  ------------------------------------  -----------  -----------  "
       "-------\n"
       "0.3            ours       1200  12.34 % [10.10, 14.80] (n 7): covers  -1.5         [-0.5, 2]    yes\n"
-      "0.3            standard      9  -                                     inf                       no\n"
+      "0.3            standard      9  -                                     inf          [-inf, 1]    no\n"
       "0.5            ours          0                                        -\n");
 }
 
@@ -92,7 +92,8 @@ TEST(RenderText, BreaksATextWhereTheKeysLeaveLess) {
 
 TEST(FormatEstimate, SaysHowFarToTrustANumber) {
   EXPECT_EQ(FormatEstimate({.value = 1.234, .standard_error = 0.0456}, kSignificant), "1.23 +- 0.046");
-  EXPECT_EQ(FormatEstimate({.value = 1.234, .interval = {1.0, kInf}}, kSignificant), "1.23");
+  EXPECT_EQ(FormatEstimate({.value = 1.234, .interval = {1.0, kInf}}, kSignificant), "1.23 [1, inf]");
+  EXPECT_EQ(FormatEstimate({.value = 1.234, .interval = {-kInf, kInf}}, kSignificant), "1.23");
   EXPECT_EQ(FormatEstimate({.value = -kInf}, kSignificant), "-inf");
   EXPECT_EQ(FormatEstimate({.n = 3, .note = "covers"}, kPercent), "-");
   EXPECT_EQ(FormatEstimate({.value = 1.2e-6, .interval = {1e-6, 2e-6}, .standard_error = 1e-7}, kPercent),
@@ -149,7 +150,7 @@ TEST(RenderLatex, EscapesTextsAndPrintsLevelsWhereTheyChange) {
             "\\midrule\n"
             "0.3 & a\\_b \\& 50 \\% & 1200 & 12.34 [10.10, 14.80] ($n = 7$) & $-$1.5 & [$-$0.5, 2] & yes "
             "\\\\\n"
-            " & standard & 9 & -- & $\\infty$ &  & no \\\\\n"
+            " & standard & 9 & -- & $\\infty$ & [$-$$\\infty$, 1] & no \\\\\n"
             "\\addlinespace\n"
             "0.5 & ours & 0 &  & -- &  &  \\\\\n"
             "\\bottomrule\n\\end{tabular}\n");
