@@ -53,6 +53,7 @@ class Scale {
 StudyPlan PlanAt(const Study& study, const CrossingQuestion& question, const std::string& level) {
   Study at_level = study;
   Override(&at_level, question.setting, level);
+  at_level.common_scenes = false;
   return MakePlan(at_level);
 }
 
@@ -141,6 +142,18 @@ class Asker {
   std::map<std::string, std::int64_t> next_trials_;  // by level
 };
 
+void RequireIndependentTrials(const StudyPlan& plan) {
+  if (plan.study.repeats_per_scene > 1)
+    throw InputError(
+        "solve: repeats of a scene (repeats_per_scene) are not independent, as its intervals require");
+  for (const Condition& condition : plan.conditions) {
+    if (condition.source->SharedScene())
+      throw InputError(
+          "solve: scene: match_files: the pairs of a folder repeat, but its intervals require independent "
+          "trials; give a simulated scene");
+  }
+}
+
 // The place of the setting among the factors; their number if it is none.
 size_t FindFactor(const StudyPlan& plan, const std::string& setting) {
   return static_cast<size_t>(std::ranges::find(plan.factor_names, setting) - plan.factor_names.begin());
@@ -173,11 +186,9 @@ WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question) {
 
 CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& question, int num_threads,
                              KeptSteps* steps) {
-  if (study.repeats_per_scene > 1)
-    throw InputError(
-        "solve: repeats of a scene (repeats_per_scene) are not independent, as its intervals require");
   const Scale scale(question, IsWhole(study, question));
   const StudyPlan plan = PlanAt(study, question, scale.TextAt(0.5));
+  RequireIndependentTrials(plan);
   PlanAt(study, question, scale.TextAt(0.0));
   PlanAt(study, question, scale.TextAt(1.0));
   const size_t factor = FindFactor(plan, question.setting);

@@ -40,9 +40,10 @@ struct CrossingAnswer {
 // Steps: batches of trials at one level.
 WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question);
 
-// A pure function of study and question. Trials of one level are the same for all estimators. Throws
-// InputError for a setting that the study does not have or that is no number, for weighted trials, for scenes
-// that are repeated, and where the event needs a truth that is not known; Stopped.
+// A pure function of study and question. Every level has scenes of its own, whatever `common_scenes` says:
+// the intervals need independent trials. Trials of one level are the same for all estimators. Throws
+// InputError for a setting that the study does not have or that is no number, for real pairs, for weighted
+// trials, for scenes that are repeated, and where the event needs a truth that is not known; Stopped.
 CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& question, int num_threads,
                              KeptSteps* steps);
 

@@ -56,6 +56,25 @@ TEST_F(SolveProgram, GivesTheSameOnAnyNumberOfThreads) {
   }
 }
 
+// Trials of two levels that shared their scenes would not be independent.
+TEST_F(SolveProgram, EveryLevelHasScenesOfItsOwn) {
+  ASSERT_EQ(Call(few_).exit_code, 0);
+  const std::string apart = Written("crossings.json");
+  study_ = folder_.Write("common.yaml", SmallStudyYaml() + "common_scenes: true\n");
+  ASSERT_EQ(Call(few_).exit_code, 0);
+  EXPECT_EQ(Written("crossings.json"), apart);
+}
+
+TEST_F(SolveProgram, RealPairsAreRefused) {
+  const std::string exported = folder_.Path("exported");
+  ASSERT_EQ(RunRcme({"export", study_, "--trials", "2", "--out", exported}).exit_code, 0);
+  study_ = folder_.Write("pairs.yaml", "name: pairs\ndata: {scene: match_files, folder: '" + exported +
+                                           "/matches', sigma_px: 0.5}\nestimators:\n  - {name: standard}\n");
+  const ProgramResult result = Call({"--over", "sigma_px", "--from", "0.1", "--to", "2"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("the pairs of a folder repeat"), std::string::npos) << result.err;
+}
+
 TEST_F(SolveProgram, SettingsThatAreWholeNumbersAreAskedAsSuch) {
   const ProgramResult result = Call(
       {"--over", "num_matches", "--from", "10", "--to", "40", "--falling", "--at", "0.3", "--trials", "100"});
