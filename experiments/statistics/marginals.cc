@@ -55,8 +55,13 @@ double ClaimOf(MarginalQuantity quantity) {
   }
 }
 
+struct ConditionValues {
+  Moments moments;
+  std::int64_t num_failed = 0;  // of these trials
+};
+
 // By estimator, quantity and condition.
-using Values = std::vector<std::vector<std::vector<Moments>>>;
+using Values = std::vector<std::vector<std::vector<ConditionValues>>>;
 
 Values CollectValues(const ResultStore& run, const RunDescription& description) {
   const size_t num_estimators = description.estimators.size(), num_conditions = description.conditions.size();
@@ -68,12 +73,14 @@ Values CollectValues(const ResultStore& run, const RunDescription& description) 
     for (size_t e = 0; e < records.size(); ++e)
       if (StatedFailureProbability(records[e])) states[e] = true;
   });
-  Values values(num_estimators, {kNumQuantities, std::vector<Moments>(num_conditions)});
+  Values values(num_estimators, {kNumQuantities, std::vector<ConditionValues>(num_conditions)});
   run.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     for (size_t e = 0; e < records.size(); ++e) {
       for (size_t q = 0; q < kNumQuantities; ++q) {
         const auto value = ValueIn(records[e], description.failure, states[e], kMarginalQuantities[q]);
-        if (value) values[e][q][problem.condition].Add(*value);
+        if (!value) continue;
+        values[e][q][problem.condition].moments.Add(*value);
+        values[e][q][problem.condition].num_failed += HasFailed(records[e], description.failure);
       }
     }
   });
@@ -140,10 +147,11 @@ bool IsRegime(const std::vector<bool>& has) {
 }
 
 // Those in the regime; conditions without such trials do not count.
-std::vector<Moments> Select(const std::vector<Moments>& conditions, const std::vector<bool>& has) {
-  std::vector<Moments> selected;
+std::vector<ConditionValues> Select(const std::vector<ConditionValues>& conditions,
+                                    const std::vector<bool>& has) {
+  std::vector<ConditionValues> selected;
   for (size_t c = 0; c < conditions.size(); ++c)
-    if (has[c] && conditions[c].n() > 0) selected.push_back(conditions[c]);
+    if (has[c] && conditions[c].moments.n() > 0) selected.push_back(conditions[c]);
   return selected;
 }
 
@@ -151,18 +159,43 @@ bool IsShare(MarginalQuantity quantity) {
   return quantity == MarginalQuantity::kFailure || quantity == MarginalQuantity::kSureCoverage;
 }
 
-Marginal Measure(const std::vector<Moments>& conditions, MarginalQuantity quantity, double confidence) {
+// Of failed less stated. Where fewer than kLeastConditions conditions had a failure, or had none, the spread
+// of the conditions does not show what failures were not seen: the interval then also holds what that of the
+// failure rate allows (an estimator that states P = 0.001 and did not fail in 100 trials is not too
+// cautious).
+PopulationMean MeasureDifference(const std::vector<ConditionValues>& conditions, double confidence) {
+  std::vector<Moments> moments;
+  std::vector<ConditionCount> failures;
+  size_t num_with_failures = 0, num_with_others = 0;
+  for (const ConditionValues& one : conditions) {
+    moments.push_back(one.moments);
+    failures.push_back({one.num_failed, one.moments.n()});
+    num_with_failures += one.num_failed > 0;
+    num_with_others += one.num_failed < one.moments.n();
+  }
+  PopulationMean mean = MeasurePopulationMean(moments, ConditionWeights::kByTrials, confidence);
+  if (std::min(num_with_failures, num_with_others) < kLeastConditions) {
+    const PopulationRate rate = MeasurePopulationRate(failures, ConditionWeights::kByTrials, confidence);
+    const double stated = rate.value - mean.value;
+    mean.interval.lower = std::min(mean.interval.lower, rate.interval.lower - stated);
+    mean.interval.upper = std::max(mean.interval.upper, rate.interval.upper - stated);
+  }
+  return mean;
+}
+
+Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantity quantity,
+                 double confidence) {
   Marginal marginal;
   marginal.quantity = quantity;
   marginal.claimed = ClaimOf(quantity);
   if (IsShare(quantity)) {
     std::vector<ConditionCount> counts;
-    for (const Moments& one : conditions)
-      counts.push_back({std::llround(one.mean() * static_cast<double>(one.n())), one.n()});
+    for (const auto& [moments, num_failed] : conditions)
+      counts.push_back({std::llround(moments.mean() * static_cast<double>(moments.n())), moments.n()});
     const PopulationRate rate = MeasurePopulationRate(counts, ConditionWeights::kByTrials, confidence);
     marginal.value = rate.value, marginal.interval = rate.interval, marginal.n = rate.n;
   } else {
-    const PopulationMean mean = MeasurePopulationMean(conditions, ConditionWeights::kByTrials, confidence);
+    const PopulationMean mean = MeasureDifference(conditions, confidence);
     marginal.value = mean.value, marginal.interval = mean.interval, marginal.n = mean.n;
   }
   marginal.num_conditions = std::ssize(conditions);
@@ -236,13 +269,13 @@ Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& option
   struct Question {
     size_t estimator, quantity;
     const Regime* regime;
-    std::vector<Moments> conditions;
+    std::vector<ConditionValues> conditions;
   };
   std::vector<Question> questions;
   for (const size_t e : ChooseEstimators(description, options.estimators)) {
     for (const Regime& regime : regimes) {
       for (size_t q = 0; q < kNumQuantities; ++q) {
-        std::vector<Moments> conditions = Select(values[e][q], regime.has);
+        std::vector<ConditionValues> conditions = Select(values[e][q], regime.has);
         if (conditions.size() >= kLeastConditions)
           questions.push_back({e, q, &regime, std::move(conditions)});
       }

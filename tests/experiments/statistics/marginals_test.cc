@@ -34,7 +34,7 @@ Study WideStudy() {
 class MarginalsOfRun : public testing::Test {
  protected:
   template <typename Rate>
-  Marginals Measure(Rate rate, bool with_pairs = false) {
+  Marginals Measure(Rate rate, bool with_pairs = false, double stated = 0.2) {
     const StudyPlan plan = MakePlan(WideStudy());
     ResultStore store = ResultStore::OpenForRun(folder_.Path(fmt::format("{}.sqlite", number_++)), plan);
     RandomStream rng({1, number_, 0, 0});
@@ -43,7 +43,7 @@ class MarginalsOfRun : public testing::Test {
       for (std::uint32_t trial = 0; trial < 40; ++trial) {
         TrialRecord record = Motion(trial, rng.Uniform() < rate(condition) ? 90.0 : 0.1, 0.1, 4.0);
         record.condition = condition.index;
-        record.failure_probability = 0.2;
+        record.failure_probability = stated;
         records.push_back(record);
       }
       AddRecords(store, records);
@@ -80,6 +80,23 @@ TEST_F(MarginalsOfRun, TheWrongRegimeComesFirst) {
     EXPECT_TRUE(one.excess == 0.0 || one.regime.find("num_matches = 50") == std::string::npos) << one.regime;
   }
   EXPECT_NE(MarginalsAsTable("wide", marginals, 3).find("num_matches = 60"), std::string::npos);
+}
+
+// The spread over conditions is zero, but 0 failures of 1,920 trials do not show that they are rarer than
+// 1e-4.
+TEST_F(MarginalsOfRun, FailuresThatWereNotSeenAreAllowedFor) {
+  for (const Marginal& one : Measure([](const Condition&) { return 0.0; }, false, 1e-4).rows) {
+    if (one.quantity != MarginalQuantity::kFailedLessStated) continue;
+    EXPECT_EQ(one.excess, 0.0) << one.regime;
+    EXPECT_GT(one.interval.upper, 0.01) << one.regime;
+  }
+}
+
+// ... but they show that they are rarer than one in two.
+TEST_F(MarginalsOfRun, AnEstimatorThatIsFarTooCautiousIsNamed) {
+  const Marginals marginals = Measure([](const Condition&) { return 0.0; }, false, 0.5);
+  EXPECT_EQ(marginals.rows.front().quantity, MarginalQuantity::kFailedLessStated);
+  EXPECT_GT(marginals.rows.front().excess, 0.0);
 }
 
 TEST_F(MarginalsOfRun, OneOrTwoConditionsAreNoRegime) {
