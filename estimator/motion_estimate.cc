@@ -21,7 +21,8 @@ const std::string& StatusName(MotionStatus status) {
                                                  "unreadable_answer",
                                                  "invalid_input",
                                                  "invalid_motion",
-                                                 "invalid_covariance"};
+                                                 "invalid_covariance",
+                                                 "not_simulated"};
   return names[static_cast<size_t>(status)];
 }
 
@@ -44,7 +45,8 @@ const std::vector<MotionStatus>& AllStatuses() {
                                                 MotionStatus::kUnreadableAnswer,
                                                 MotionStatus::kInvalidInput,
                                                 MotionStatus::kInvalidMotion,
-                                                MotionStatus::kInvalidCovariance};
+                                                MotionStatus::kInvalidCovariance,
+                                                MotionStatus::kNotSimulated};
   return all;
 }
 

@@ -9,7 +9,7 @@
 
 namespace rcme {
 
-// How a call ended. Every call ends in one of these; only kOk carries a motion,
+// How a call ended, or why there was none. Every call ends in one of these; only kOk carries a motion,
 // kDirectionNotObservable a rotation.
 enum class MotionStatus {
   kOk,                      // a motion was found and refined
@@ -34,6 +34,8 @@ enum class MotionStatus {
   // Never an estimator's own: what the check of its answer makes of kOk.
   kInvalidMotion,      // not a rotation and a unit vector, or not finite
   kInvalidCovariance,  // not finite, symmetric and positive semidefinite
+  // Nobody's answer: there was nothing to ask.
+  kNotSimulated,  // the simulator could not make this trial of a condition that was drawn from a population
 };
 
 // The status as a word for files and programs ("ok", "no_candidate", ...), and back.

@@ -10,6 +10,7 @@
 #include "estimator/motion_problem.h"
 #include "experiments/data/settings.h"
 #include "experiments/data/truth_sd.h"
+#include "parameters/input_error.h"
 #include "simulator/scene.h"
 #include "simulator/severity/severity.h"
 #include "stats/random.h"
@@ -52,13 +53,19 @@ struct TrialData {
   std::vector<std::uint32_t> scene_point;  // per match, the one it is of or was of; empty: no scene
 };
 
+// The simulator cannot make a trial with these settings; the message says why.
+class NotSimulated : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 // All trials of one condition. Const and shared by threads.
 class DataSource {
  public:
   virtual ~DataSource() = default;
   // Trials the condition has when the study asks for `trials`.
   virtual int NumTrials(int trials) const = 0;
-  // A pure function of the name.
+  // A pure function of the name. Throws NotSimulated.
   virtual TrialData Make(const StreamName& trial_name) const = 0;
   // What else the data depend on (file contents), as text: part of the study's identity. Empty: nothing.
   virtual std::string Identity() const { return {}; }

@@ -141,10 +141,10 @@ bool IsChoice(const std::string& key) {
   return std::ranges::any_of(ChoiceKeys(), [&](const auto& choice) { return choice.first == key; });
 }
 
-DataSources MakeDataSources(const Settings& settings) {
+DataSources MakeDataSources(const Settings& settings, BaselineSearch search) {
   const Configured configured(settings);
   if (configured.simulated) {
-    configured.simulated->FixBaseline();
+    if (search == BaselineSearch::kNow) configured.simulated->FixBaseline();
     return {"", {{"", configured.simulated}}};
   }
   return {"pair_scene", LoadMatchFolder(configured.folder)};

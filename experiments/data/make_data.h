@@ -19,9 +19,12 @@ struct DataSources {
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;  // level, source
 };
 
+// When the baseline is found that gives a parallax, which takes some hundred scenes.
+enum class BaselineSearch { kNow, kWithFirstScene };
+
 // The sources for the settings of a condition, `scene` among them. Throws InputError that names key and
 // value.
-DataSources MakeDataSources(const Settings& settings);
+DataSources MakeDataSources(const Settings& settings, BaselineSearch search = BaselineSearch::kNow);
 
 // Every parameter of the scene with its value, `scene` first. Throws InputError that names key and value.
 Settings ResolveSettings(const Settings& settings);

@@ -60,12 +60,28 @@ std::vector<Parameter> SimulatedData::Parameters() {
   return all;
 }
 
-void SimulatedData::FixBaseline() {
-  // The same scenes whatever the study's seed.
-  scenes_.FixBaseline({0, 0, 0, static_cast<std::uint32_t>(StreamPurpose::kPilotScene)});
+void SimulatedData::FixBaseline() const {
+  std::call_once(baseline_once_, [this] {
+    try {
+      // The same scenes whatever the study's seed.
+      scenes_.FixBaseline({0, 0, 0, static_cast<std::uint32_t>(StreamPurpose::kPilotScene)});
+    } catch (const InputError& error) {
+      baseline_error_ = error.what();
+    }
+  });
+  if (!baseline_error_.empty()) throw NotSimulated(baseline_error_);
+}
+
+TrialData SimulatedData::Make(const StreamName& trial_name) const {
+  try {
+    return MakeFrom(DrawScene(trial_name), trial_name);
+  } catch (const InputError& error) {
+    throw NotSimulated(error.what());
+  }
 }
 
 std::string SimulatedData::Identity() const {
+  FixBaseline();
   const double baseline_m = scenes_.BaselineOfParallax();
   return std::isnan(baseline_m) ? "" : fmt::format("baseline_m {:.6g}", baseline_m);
 }
@@ -79,16 +95,19 @@ Settings SimulatedData::ChosenParts() const {
 }
 
 Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
+  FixBaseline();
   RandomStream scene_rng = StreamFor(trial_name, StreamPurpose::kScene);
   return scenes_.Generate(scene_rng);
 }
 
 Scene SimulatedData::DrawSceneOf(const Motion& motion, RandomStream& rng) const {
+  FixBaseline();
   return scenes_.GenerateWith(motion, rng);
 }
 
 std::optional<Scene> SimulatedData::DrawSceneNear(const Motion& motion, double step,
                                                   RandomStream& rng) const {
+  FixBaseline();
   const std::optional<Motion> near = scenes_.motion_model().DrawNear(motion, step, rng);
   if (!near) return std::nullopt;
   return scenes_.GenerateWith(*near, rng);

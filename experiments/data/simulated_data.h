@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <span>
+#include <string>
 
 #include "experiments/data/data_source.h"
 #include "simulator/calibration_error.h"
@@ -29,16 +31,15 @@ class SimulatedData : public DataSource {
   // Those that shape the scene: the others say what the images give of it.
   std::vector<Parameter> SceneParameters() { return scenes_.Parameters(); }
 
-  // To be called once all parameters are set; see SceneGenerator.
-  void FixBaseline();
+  // See SceneGenerator. The first scene does it where nobody has called it; no parameter is set afterwards.
+  // Throws NotSimulated, at every call, if no baseline gives the parallax.
+  void FixBaseline() const;
   // The baseline, where it was found from a parallax.
   std::string Identity() const override;
   Settings ChosenParts() const override;
 
   int NumTrials(int trials) const override { return trials; }
-  TrialData Make(const StreamName& trial_name) const override {
-    return MakeFrom(DrawScene(trial_name), trial_name);
-  }
+  TrialData Make(const StreamName& trial_name) const override;
 
   std::optional<Scene> SceneOf(const StreamName& trial_name) const override { return DrawScene(trial_name); }
 
@@ -63,7 +64,9 @@ class SimulatedData : public DataSource {
   TrialData Give(const Scene& scene, Observation observation) const;
 
   Choices choices_;  // none empty
-  SceneGenerator scenes_;
+  mutable SceneGenerator scenes_;  // FixBaseline
+  mutable std::once_flag baseline_once_;
+  mutable std::string baseline_error_;  // empty: none
   std::unique_ptr<NoiseModel> noise_;
   OutlierModel outliers_;
   CameraDefects defects_;

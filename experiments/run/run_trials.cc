@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/core/text/message.h"
-#include "experiments/run/refusal_watch.h"
+#include "experiments/run/outcome_watch.h"
 #include "experiments/run/store/result_store.h"
 
 namespace rcme {
@@ -58,16 +58,16 @@ RunReport RunTrials(const StudyPlan& plan, const Shard& shard, int num_threads, 
     if (!warning.empty()) PrintMessage("warning: {}\n", warning);
   }
   Progress progress("trials", trials.num_trials(), trials.num_trials() - trials.num_missing());
-  RefusalWatch refusals;
+  OutcomeWatch outcomes;
   FinishItems(trials.num_missing(), num_threads, &progress, keeper, [&](std::int64_t index) {
     const auto [condition, trial] = trials.At(index);
-    const TrialResult result = RunTrial(plan, *condition, trial);
+    const TrialResult result = RunTrialOfDraw(plan, *condition, trial);
     keeper->Keep(result);
-    refusals.Add(result.records);
+    outcomes.Add(result);
     return 1;
   });
   keeper->Flush();
-  refusals.WarnOfRefusals(plan.study.estimators);
+  outcomes.Warn(plan);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   return {trials.num_trials(), trials.num_missing(), elapsed.count()};
 }

@@ -30,12 +30,15 @@ double Excess(const PrecisionTarget& target, double rate, const Interval& interv
 CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64_t num_trials,
                    const UntilOptions& options, const ResultStore& store) {
   std::vector<std::int64_t> num_events(plan.estimators.size(), 0);
+  std::int64_t num_simulated = 0;
   store.ForEachTrial(
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
         if (problem.trial >= num_trials) return;
         if (problem.weight != 1.0)
           throw InputError(
               "--until: the trials of this study are weighted (tilted_to); give --trials instead");
+        if (!WasSimulated(records.front())) return;
+        ++num_simulated;
         for (size_t e = 0; e < records.size(); ++e) {
           if (options.event.needs_truth && !IsScored(records[e])) {
             throw InputError("--until: the truth of this study's pairs is not known; give --trials instead");
@@ -48,9 +51,10 @@ CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64
   worst.condition = condition.index;
   worst.num_trials = num_trials;
   double worst_excess = -1.0;
+  if (num_simulated == 0) num_events.clear();  // nothing to wait for
   for (size_t e = 0; e < num_events.size(); ++e) {
-    const double rate = static_cast<double>(num_events[e]) / static_cast<double>(num_trials);
-    const Interval interval = ConfidenceSequence(num_events[e], num_trials);
+    const double rate = static_cast<double>(num_events[e]) / static_cast<double>(num_simulated);
+    const Interval interval = ConfidenceSequence(num_events[e], num_simulated);
     const double excess = Excess(options.target, rate, interval);
     if (excess <= worst_excess) continue;
     worst_excess = excess;

@@ -39,7 +39,7 @@ std::optional<double> ValueIn(const TrialRecord& record, const FailureBounds& bo
                                                 : std::nullopt;
     }
     case MarginalQuantity::kFailure:
-      return IsScored(record) || HasRefused(record) ? std::optional<double>(has_failed) : std::nullopt;
+      return IsScored(record) ? std::optional<double>(has_failed) : std::nullopt;
   }
   return std::nullopt;
 }

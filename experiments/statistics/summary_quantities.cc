@@ -17,6 +17,9 @@ std::optional<double> If(bool is_of_interest, double value) {
 
 std::optional<double> Yes(bool value) { return value ? 1.0 : 0.0; }
 
+constexpr const char* kNotSimulatedDoc =
+    "the simulator could not make the trial of a draw (only where that happened; no other quantity counts it)";
+
 bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
 
 bool IsSure(const TrialRecord& r) {
@@ -71,6 +74,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       StatusRate(MotionStatus::kUnreadableAnswer, "an estimator outside the program gave what is no answer"),
       StatusRate(MotionStatus::kInvalidMotion, "a failure: not a rotation and a unit vector, or not finite"),
       StatusRate(MotionStatus::kInvalidCovariance, "a failure: not finite, symmetric, positive semidefinite"),
+      StatusRate(MotionStatus::kNotSimulated, kNotSimulatedDoc),
       {"kappa_flag", kRate, "the paper's failure flag n*_I / n_I <= kappa, of returned motions",
        [](R r, B) { return If(IsOk(r), r.failed_by_kappa); }},
       {"nees_coverage", kRate,
@@ -131,6 +135,14 @@ bool IsOfOutside(const std::string& quantity) {
          quantity == StatusName(MotionStatus::kUnreadableAnswer);
 }
 
+void LeaveOutNotSimulated(TrialQuantity* quantity) {
+  if (quantity->name == StatusName(MotionStatus::kNotSimulated)) return;
+  quantity->contribution = [of_simulated = std::move(quantity->contribution)](
+                               const TrialRecord& r, const FailureBounds& b) -> std::optional<double> {
+    return WasSimulated(r) ? of_simulated(r, b) : std::nullopt;
+  };
+}
+
 // No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
 // problem and not the estimator is to blame.
 bool IsImpossible(const ProblemRecord& problem, const FailureBounds& bounds) {
@@ -147,6 +159,7 @@ const std::vector<TrialQuantity>& TrialQuantities() {
       quantities.push_back(QuantityOf(score, SummaryRow::Kind::kScore));
     for (const TrialMeasure& error : TrialErrors())
       quantities.push_back(QuantityOf(error, SummaryRow::Kind::kMedian));
+    for (TrialQuantity& quantity : quantities) LeaveOutNotSimulated(&quantity);
     return quantities;
   }();
   return all;
@@ -185,6 +198,11 @@ void LeaveOutRows(bool with_times, Summary* summary) {
   const bool has_silence = std::ranges::any_of(
       rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity) && row.value > 0.0; });
   if (!has_silence) std::erase_if(rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity); });
+  const std::string& not_simulated = StatusName(MotionStatus::kNotSimulated);
+  const bool has_not_simulated = std::ranges::any_of(
+      rows, [&](const SummaryRow& row) { return row.quantity == not_simulated && row.value > 0.0; });
+  if (!has_not_simulated)
+    std::erase_if(rows, [&](const SummaryRow& row) { return row.quantity == not_simulated; });
   if (!with_times) std::erase_if(rows, [](const SummaryRow& row) { return IsOfTimes(row.quantity); });
 }
 

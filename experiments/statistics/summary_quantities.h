@@ -29,8 +29,9 @@ const std::vector<ProblemQuantity>& ProblemQuantities();
 // Of what is not the same when a run is made again.
 bool IsOfTimes(const std::string& quantity);
 
-// Takes away the rows of times, unless asked for, of probabilities, where no estimator states any, and of
-// what only estimators outside the program do (timed_out, ...), where none did.
+// Takes away the rows of times, unless asked for, of probabilities, where no estimator states any, of what
+// only estimators outside the program do (timed_out, ...), where none did, and of trials that were not
+// simulated, where all were.
 void LeaveOutRows(bool with_times, Summary* summary);
 
 }  // namespace rcme

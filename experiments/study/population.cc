@@ -18,7 +18,7 @@
 namespace rcme {
 namespace {
 
-constexpr const char *kDrawsLine = "# draws: ", *kGivenWord = "outside of given: ",
+constexpr const char *kDrawsLine = "# draws: ", *kChosenLine = "# chosen draws: ", *kGivenWord = "outside of given: ",
                      *kRefusedWord = "refused: ";
 
 // The last value of a key; null: there is none.
@@ -81,7 +81,7 @@ class Drawer {
       : study_(study), population_(*study.population), keys_(KeysOf(population_)) {
     std::vector<std::uint64_t> hashes;
     for (const std::string& key : keys_) hashes.push_back(HashToStreamKey(key));
-    points_ = DrawPoints(population_.design, static_cast<size_t>(population_.number), hashes, study.seed,
+    points_ = DrawPoints(population_.design, NumPoints(), hashes, study.seed,
                          static_cast<std::uint32_t>(StreamPurpose::kPopulation));
   }
 
@@ -110,6 +110,16 @@ class Drawer {
   }
 
  private:
+  size_t NumPoints() const {
+    const int last = population_.draws.empty() ? 0 : population_.draws.back();
+    if (last < population_.number) return static_cast<size_t>(population_.number);
+    if (population_.design == PointSet::kLatinHypercube)
+      throw InputError(fmt::format(
+          "conditions: draws: {} is not below number ({}), which all draws of latin_hypercube depend on", last,
+          population_.number));
+    return static_cast<size_t>(last) + 1;
+  }
+
   size_t AxisOf(const std::string& key) const {
     return static_cast<size_t>(std::ranges::find(keys_, key) - keys_.begin());
   }
@@ -158,12 +168,19 @@ std::vector<std::string> KeysOf(const Population& population) {
 std::vector<PopulationDraw> DrawPopulation(const Study& study) {
   Drawer drawer(study);
   std::vector<PopulationDraw> draws;
+  for (const int number : study.population->draws) draws.push_back(drawer.Draw(number));
+  if (!draws.empty()) return draws;
   for (int i = 0; i < study.population->number; ++i) draws.push_back(drawer.Draw(i));
   return draws;
 }
 
+int CountDraws(const Population& population) {
+  return population.draws.empty() ? population.number : static_cast<int>(population.draws.size());
+}
+
 std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused) {
-  std::string text = fmt::format("{}{}\n", kDrawsLine, population.number);
+  std::string text = fmt::format("{}{}\n", population.draws.empty() ? kDrawsLine : kChosenLine,
+                                 CountDraws(population));
   for (const RefusedDraw& draw : refused) {
     text += fmt::format("# draw {}: {}{}\n", draw.number,
                         draw.is_outside_of_given ? kGivenWord : kRefusedWord, Printable(draw.reason));
@@ -173,11 +190,15 @@ std::string IdentityOf(const Population& population, const std::vector<RefusedDr
 
 std::string DescribePopulation(const std::string& identity) {
   int num_draws = 0, num_refused = 0;
+  const char* what = "Population";
   std::map<std::string, std::pair<int, std::string>> reasons;  // number of draws, an example
   for (const std::string& line : SplitText(identity, '\n')) {
     int number = 0, length = 0;
-    if (line.starts_with(kDrawsLine))
-      num_draws = std::atoi(line.c_str() + std::string_view(kDrawsLine).size());
+    for (const char* beginning : {kDrawsLine, kChosenLine}) {
+      if (!line.starts_with(beginning)) continue;
+      num_draws = std::atoi(line.c_str() + std::string_view(beginning).size());
+      if (beginning == kChosenLine) what = "Chosen draws, no sample of the population";
+    }
     if (std::sscanf(line.c_str(), "# draw %d: %n", &number, &length) != 1 || length == 0) continue;
     ++num_refused;
     const auto [kind, example] = KindOfReason(line.substr(static_cast<size_t>(length)));
@@ -190,7 +211,7 @@ std::string DescribePopulation(const std::string& identity) {
   for (const auto& [kind, count] : reasons) sorted.emplace_back(-count.first, kind + count.second);
   std::ranges::sort(sorted);
   std::string text =
-      fmt::format("Population: {} of {} draws are conditions", num_draws - num_refused, num_draws);
+      fmt::format("{}: {} of {} draws are conditions", what, num_draws - num_refused, num_draws);
   for (const auto& [count, reason] : sorted) text += fmt::format("\n  {} {}", -count, reason);
   return text;
 }

@@ -48,7 +48,8 @@ struct Restriction {
 
 struct Population {
   PointSet design = PointSet::kSobol;
-  int number = 256;  // of draws
+  int number = 256;        // of draws
+  std::vector<int> draws;  // their numbers, ascending: chosen ones, no sample; none: 0, ..., number - 1
   // A key, then what is drawn with its words, then the next: the order of their axes.
   std::vector<DrawnKey> keys;
   std::vector<Restriction> given;
@@ -57,13 +58,17 @@ struct Population {
 // The keys, each once, in the order of their axes.
 std::vector<std::string> KeysOf(const Population& population);
 
+// Of the draws; a chosen one of sobol or random may be beyond Population::number.
+int CountDraws(const Population& population);
+
 struct PopulationDraw {
   int number = 0;
   std::vector<std::string> levels;  // one per key of KeysOf; kNotDrawn
   std::string outside_of;           // the restriction it does not meet; empty: none
 };
 
-// All of them, in order. Throws InputError if the study's data contradict what is drawn.
+// All of them, in order. Throws InputError if the study's data contradict what is drawn, or for a number that
+// the design does not have.
 std::vector<PopulationDraw> DrawPopulation(const Study& study);
 
 // Draws that are no conditions, and why.

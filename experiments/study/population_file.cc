@@ -51,10 +51,26 @@ bool IsNumber(const YAML::Node& node) {
 
 std::vector<std::string> Words(const Place& place, const YAML::Node& node, const std::string& key) {
   if (!node.IsSequence() || node.size() == 0)
-    place.Fail(node, fmt::format("{}: any: a list of at least one word or number is needed", key));
+    place.Fail(node, fmt::format("{}: a list of at least one word or number is needed", key));
   std::vector<std::string> words;
   for (const YAML::Node& word : node) words.push_back(Line(place, word, key));
   return words;
+}
+
+// Numbers of draws, ascending, each once.
+std::vector<int> ReadDraws(const Place& place, const YAML::Node& node) {
+  std::vector<int> draws;
+  for (const std::string& word : Words(place, node, "draws")) {
+    long long number = 0;
+    if (!ParseInteger(word, &number) || number < 0 || number >= kMaxDraws)
+      place.Fail(node, fmt::format("draws: {} is not allowed; give whole numbers in [0, {}]", Quoted(word),
+                                   kMaxDraws - 1));
+    draws.push_back(static_cast<int>(number));
+  }
+  std::ranges::sort(draws);
+  if (std::ranges::adjacent_find(draws) != draws.end())
+    place.Fail(node, fmt::format("draws: {} stands there twice", *std::ranges::adjacent_find(draws)));
+  return draws;
 }
 
 // Two numbers, the first less than the second.
@@ -359,6 +375,7 @@ Population ReadPopulation(const Place& place, const YAML::Node& node) {
       ReadRanges(place, value, key, {}, &keys);
       PutInPlace(keys, &population.keys);
     }
+    if (key == "draws") population.draws = ReadDraws(place, value);
     if (key == "given") {
       for (const Restriction& restriction : ReadGiven(place, value)) population.given.push_back(restriction);
     }
@@ -401,6 +418,8 @@ void WritePopulation(const Population& given, YAML::Emitter* out) {
   *out << YAML::BeginMap;
   *out << YAML::Key << "design" << YAML::Value << PopulationDesignParameter(&population.design).Value();
   *out << YAML::Key << "number" << YAML::Value << population.number;
+  if (!population.draws.empty())
+    *out << YAML::Key << "draws" << YAML::Value << YAML::Flow << population.draws;
   *out << YAML::Key << "ranges" << YAML::Value;
   WriteRanges(population.keys, {}, out);
   if (!population.given.empty()) {

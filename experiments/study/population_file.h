@@ -4,6 +4,7 @@
 //     population: hand_held_indoor     # optional: a file, or the name of one that comes with the program
 //     design: sobol                    # or latin_hypercube, random (stats/point_set.h)
 //     number: 256                      # of draws
+//     draws: [3, 300]                  # optional: these alone; of sobol and random also beyond `number`
 //     ranges:                          # beside those of the file, or in their place
 //       outlier_ratio: [0, 0.8]        # two numbers: uniform from the first to the second
 //       sigma_px: {log: [0.1, 3]}      # uniform in its logarithm; outside of braces also: log [0.1, 3]

@@ -32,6 +32,9 @@ const std::vector<StudyKey>& FixedKeys() {
        "a population that the conditions are drawn from"},
       {"conditions", "population", "none", "a population file, or a name of `rcme list populations`",
        "ranges and restrictions to begin with"},
+      {"conditions", "draws", "0 to number - 1",
+       fmt::format("a list of whole numbers in [0, {}]; of latin_hypercube below number", kMaxDraws - 1),
+       "the numbers of the draws, where they are chosen: they are no sample of the population"},
       {"conditions", "ranges", "those of population",
        "a map: a key of the data -> [from, to], {log: [from, to]}, "
        "{any: [...]}, any, or names with what is drawn with each",

@@ -49,6 +49,8 @@ std::string Identity(const StudyPlan& plan) {
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
   if (same.population) identity += IdentityOf(*same.population, plan.refused);
   for (const Condition& condition : plan.conditions) {
+    // Those of draws are not looked for here: the settings decide them.
+    if (same.population && !condition.source->ChosenParts().empty()) continue;
     const std::string data = condition.source->Identity();
     if (!data.empty()) identity += fmt::format("# condition {}: {}\n", condition.index, data);
   }
@@ -73,7 +75,8 @@ struct RowConditions {
 
 RowConditions ConditionsOf(const Study& study, const std::vector<std::string>& levels) {
   const Settings settings = SettingsOf(study, levels);
-  DataSources made = MakeDataSources(settings);
+  DataSources made = MakeDataSources(
+      settings, study.population ? BaselineSearch::kWithFirstScene : BaselineSearch::kNow);
   RowConditions row{std::move(made.implied_factor), {}};
   for (const auto& [level, source] : made.sources) {
     Condition condition{0, levels, source, source->NumTrials(study.trials),
@@ -104,13 +107,8 @@ DrawnConditions TryDraw(const StudyPlan& plan, const PopulationDraw& draw,
   DrawnConditions drawn{{}, {draw.number, !draw.outside_of.empty(), draw.outside_of}};
   if (drawn.refused.is_outside_of_given) return drawn;
   try {
-    for (const std::vector<std::string>& levels : of_factors) {
+    for (const std::vector<std::string>& levels : of_factors)
       drawn.rows.push_back(ConditionsOf(plan.study, LevelsOf(draw, levels)));
-      for (const Condition& condition : drawn.rows.back().conditions) {
-        for (std::uint32_t trial = 0; trial < kPilotTrials; ++trial)
-          condition.source->Make(NameOfTrial(plan, condition, trial));
-      }
-    }
   } catch (const InputError& error) {
     drawn.rows.clear();
     drawn.refused.reason = error.what();

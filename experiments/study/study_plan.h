@@ -49,13 +49,10 @@ enum class PlanEstimators {
   kNotMade,  // only its problems are of interest: a command of a file needs no permission
 };
 
-// Trials that are drawn of each condition of a population to see whether the simulator refuses it.
-inline constexpr std::uint32_t kPilotTrials = 8;
-
 // Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions, a command that
-// nobody has allowed (command_permission.h). A draw of a population whose settings are impossible, or where
-// one of the first kPilotTrials trials cannot be drawn, is refused, in all combinations with the factors; an
-// error if none is left.
+// nobody has allowed (command_permission.h). A draw of a population whose settings are impossible is refused,
+// in all combinations with the factors; an error if none is left. Whether its trials can be simulated shows
+// when they are made.
 StudyPlan MakePlan(const Study& study, PlanEstimators estimators = PlanEstimators::kMade);
 // The same for the study of a file, which the message then names.
 StudyPlan PlanOf(const Study& study, const std::string& path,

@@ -110,11 +110,14 @@ bool IsInvalid(const TrialRecord& record) {
   return record.status == MotionStatus::kInvalidMotion || record.status == MotionStatus::kInvalidCovariance;
 }
 
+bool WasSimulated(const TrialRecord& record) { return record.status != MotionStatus::kNotSimulated; }
+
 bool HasRefused(const TrialRecord& record) {
-  return record.status != MotionStatus::kOk && !IsInvalid(record);
+  return record.status != MotionStatus::kOk && !IsInvalid(record) && WasSimulated(record);
 }
 
 bool IsScored(const TrialRecord& record) {
+  if (!WasSimulated(record)) return false;
   return record.status != MotionStatus::kOk || !std::isnan(record.rotation_error_deg);
 }
 
@@ -157,6 +160,25 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
     record.estimator = static_cast<std::uint32_t>(e);
     result.records.push_back(record);
   }
+  return result;
+}
+
+TrialResult RunTrialOfDraw(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
+  TrialResult result;
+  try {
+    return RunTrial(plan, condition, trial);
+  } catch (const NotSimulated& error) {
+    if (!plan.study.population) throw;
+    result.why_not_simulated = error.what();
+  }
+  result.problem = Describe(result.data, condition, trial);
+  MotionEstimate nothing;
+  nothing.status = MotionStatus::kNotSimulated;
+  TrialRecord record = ScoreJudged(nothing, result.data, 0.0);
+  record.condition = condition.index;
+  record.trial = trial;
+  for (; record.estimator < EstimatorsOf(plan, condition).size(); ++record.estimator)
+    result.records.push_back(record);
   return result;
 }
 

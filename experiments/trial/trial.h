@@ -42,9 +42,12 @@ struct ProblemRecord {
 
 // An answer that is no motion or comes with no covariance (answer_check.h): a failure, whatever the truth is.
 bool IsInvalid(const TrialRecord& record);
+// There was a problem to be solved: the simulator could make the trial.
+bool WasSimulated(const TrialRecord& record);
 // No motion: neither a success nor a failure.
 bool HasRefused(const TrialRecord& record);
-// False for a returned motion whose truth is not known: it has neither failed nor succeeded.
+// False for a returned motion whose truth is not known, and for a trial that was not simulated: neither has
+// failed or succeeded.
 bool IsScored(const TrialRecord& record);
 // An invalid answer, or a returned motion beyond a bound. False where no motion was returned, or no truth is
 // known.
@@ -61,10 +64,15 @@ struct TrialResult {
   ProblemRecord problem;
   std::vector<MotionEstimate> estimates;  // one per estimator of the plan, judged
   std::vector<TrialRecord> records;
+  std::string why_not_simulated = {};  // empty: it was
 };
 
 // One trial, a pure function of (study, condition, trial): every estimator on the same problem, with the same
-// stream of samples.
+// stream of samples. Throws NotSimulated (data_source.h).
 TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
+
+// The same, where the condition is a draw of a population and the trial cannot be simulated: records that say
+// so (kNotSimulated), and no data and no estimates.
+TrialResult RunTrialOfDraw(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);
 
 }  // namespace rcme

@@ -11,7 +11,13 @@ namespace rcme {
 struct TrialEvent {
   std::string name, doc;
   bool (*has_happened)(const TrialRecord&, const FailureBounds&);
-  bool needs_truth;  // says nothing of a trial that is not scored
+  bool needs_truth;
+
+  // Whether the record says if it has happened: not of a trial that was not simulated, nor, if it needs the
+  // truth, of one that is not scored.
+  bool IsOf(const TrialRecord& record) const {
+    return needs_truth ? IsScored(record) : WasSimulated(record);
+  }
 };
 const std::vector<TrialEvent>& TrialEvents();
 std::vector<std::string> TrialEventNames();

@@ -7,6 +7,7 @@
 
 namespace rcme {
 
+// kNotScored: the truth is not known, or the trial was not simulated.
 enum class TrialOutcome { kSuccess, kFailure, kRefusal, kNotScored };
 
 TrialOutcome OutcomeOf(const TrialRecord& record, const FailureBounds& bounds);
@@ -14,8 +15,8 @@ TrialOutcome OutcomeOf(const TrialRecord& record, const FailureBounds& bounds);
 // "success", "failure", "refusal", "not_scored".
 const char* Name(TrialOutcome outcome);
 
-// The same with the reason, where there is one: the status in the place of "refusal", and of "failure" where
-// the answer is not valid.
+// The same with the reason, where there is one: the status in the place of "refusal", of "failure" where
+// the answer is not valid, and of "not_scored" where there was no problem.
 std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds);
 
 }  // namespace rcme

@@ -44,6 +44,7 @@ std::vector<std::string> AdviceFor(const MotionEstimate& estimate, const Estimat
   std::vector<std::string> advice;
   switch (estimate.status) {
     case MotionStatus::kOk:
+    case MotionStatus::kNotSimulated:
       break;
     case MotionStatus::kNoCandidate:
       AddMoreSamples(spec, &advice);

@@ -1,0 +1,64 @@
+#include "experiments/run/outcome_watch.h"
+
+#include <fmt/format.h>
+
+#include "experiments/core/text/message.h"
+
+namespace rcme {
+
+void OutcomeWatch::Add(const TrialResult& result) {
+  const std::lock_guard lock(mutex_);
+  refusals_.resize(result.records.size());
+  if (!result.why_not_simulated.empty()) {
+    ++num_not_simulated_;
+    NotSimulatedTrials& of_condition = not_simulated_[result.problem.condition];
+    const std::uint32_t trial = result.problem.trial;
+    if (of_condition.count == 0 || trial < of_condition.first)
+      of_condition = {of_condition.count, trial, result.why_not_simulated};
+    ++of_condition.count;
+    return;
+  }
+  ++num_simulated_;
+  for (size_t e = 0; e < result.records.size(); ++e) {
+    if (HasRefused(result.records[e])) ++refusals_[e][result.records[e].status];
+  }
+}
+
+void OutcomeWatch::Warn(const StudyPlan& plan) const {
+  const std::lock_guard lock(mutex_);
+  WarnOfRefusals(plan);
+  WarnOfNotSimulated(plan);
+}
+
+void OutcomeWatch::WarnOfRefusals(const StudyPlan& plan) const {
+  if (num_simulated_ == 0) return;
+  for (size_t e = 0; e < refusals_.size(); ++e) {
+    std::int64_t num_refused = 0;
+    std::vector<std::string> counts;
+    for (const auto& [status, count] : refusals_[e]) {
+      num_refused += count;
+      counts.push_back(fmt::format("{} {}", StatusName(status), count));
+    }
+    if (num_refused < num_simulated_) continue;
+    PrintMessage(
+        "warning: {} refused every one of the {} trials run now ({}); rcme replay FILE --condition 0 --trial "
+        "0 "
+        "shows why\n",
+        plan.study.estimators.at(e).label, num_simulated_, fmt::join(counts, ", "));
+  }
+}
+
+void OutcomeWatch::WarnOfNotSimulated(const StudyPlan& plan) const {
+  if (not_simulated_.empty()) return;
+  size_t num_whole = 0;
+  for (const auto& [condition, trials] : not_simulated_)
+    num_whole += trials.count == plan.conditions.at(condition).num_trials;
+  const auto& [condition, example] = *not_simulated_.begin();
+  PrintMessage(
+      "warning: {} of the {} trials run now could not be simulated: in {} of {} conditions, in {} of them all. "
+      "They are kept as {}, and no other rate counts them. Condition {}, trial {}: {}\n",
+      num_not_simulated_, num_not_simulated_ + num_simulated_, not_simulated_.size(), plan.conditions.size(),
+      num_whole, StatusName(MotionStatus::kNotSimulated), condition, example.first, example.why);
+}
+
+}  // namespace rcme
