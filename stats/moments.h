@@ -10,6 +10,16 @@ namespace rcme {
 // infinite (both infinities: NaN) and the variance NaN.
 class Moments {
  public:
+  Moments() = default;
+  // Those of `n` numbers with this mean and variance.
+  static Moments FromStatistics(std::int64_t n, double mean, double variance) {
+    Moments moments;
+    moments.n_ = n;
+    if (n > 0) moments.mean_ = mean;
+    if (n > 1) moments.sum_squares_ = variance * static_cast<double>(n - 1);
+    return moments;
+  }
+
   void Add(double x) {
     ++n_;
     const double step = x - mean_;

@@ -78,6 +78,22 @@ const StreamMedian::Cell& StreamMedian::CellOf(std::int64_t rank) const {
   return at->second;
 }
 
+std::int64_t StreamMedian::CountUpTo(double x) const {
+  std::int64_t count = 0;
+  const double cut_off = CutOff(x);
+  for (const auto& [number, cell] : cells_) {
+    if (cell.least <= x || number == cut_off) count += cell.count;
+  }
+  return count;
+}
+
+Interval StreamMedian::IntervalOfQuantiles(double from, double to) const {
+  if (n_ == 0) return {kNaN, kNaN};
+  const double n = static_cast<double>(n_);
+  return {from <= 0.0 ? -kInfinity : CellOf(static_cast<std::int64_t>(std::ceil(from * n))).least,
+          to >= 1.0 ? kInfinity : CellOf(static_cast<std::int64_t>(std::floor(to * n)) + 1).greatest};
+}
+
 double StreamMedian::median() const {
   return n_ > 0 ? CellOf((n_ + 1) / 2).least : std::numeric_limits<double>::quiet_NaN();
 }

@@ -26,6 +26,12 @@ class StreamMedian {
   // statistic is far enough out.
   Interval interval(double confidence = 0.95) const;
 
+  // How many are not above `x`, or in its cell.
+  std::int64_t CountUpTo(double x) const;
+  // From the quantile of level `from` to that of level `to`, the ends those of their cells; infinite for a
+  // level beyond (0, 1). NaN without numbers.
+  Interval IntervalOfQuantiles(double from, double to) const;
+
   // All of it: "count:least:greatest", in the order of the numbers, separated by spaces.
   std::string Text() const;
   // Throws std::invalid_argument for any other text.

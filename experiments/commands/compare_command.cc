@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "experiments/statistics/comparison_output.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/statistics/comparison_output.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -69,7 +69,8 @@ Examples:
       ->allow_extra_args(false)
       ->capture_default_str();
   command->add_flag("--pooled", arguments->is_pooled,
-                    "all conditions together, every trial with the same weight");
+                    "all conditions together, every trial with the same weight; intervals are for the "
+                    "population where the conditions are draws of one, else for these very conditions");
   command->add_flag("--anytime", arguments->options.is_anytime_valid,
                     "intervals and p-values that stay valid however often you look");
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")

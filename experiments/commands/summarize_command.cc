@@ -2,15 +2,15 @@
 
 #include <memory>
 
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
 #include "experiments/statistics/forecast_output.h"
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_latex.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/statistics/trial_table.h"
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
-#include "experiments/commands/commands.h"
-#include "experiments/commands/number_option.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -119,8 +119,10 @@ Examples:
   command->add_flag("--times", arguments->with_times,
                     "add the time per call; without it equal studies give equal bytes");
   command
-      ->add_flag("--pooled", arguments->is_pooled,
-                 "all conditions together, every trial with the same weight")
+      ->add_flag(
+          "--pooled", arguments->is_pooled,
+          "all conditions together, every trial with the same weight; intervals are for the population "
+          "where the conditions are draws of one, else for these very conditions")
       ->excludes("--raw");
   command
       ->add_option("--fifths-of", arguments->fifths_of,

@@ -63,7 +63,7 @@ class SimulatedData : public DataSource {
  private:
   TrialData Give(const Scene& scene, Observation observation) const;
 
-  Choices choices_;  // none empty
+  Choices choices_;                // none empty
   mutable SceneGenerator scenes_;  // FixBaseline
   mutable std::once_flag baseline_once_;
   mutable std::string baseline_error_;  // empty: none

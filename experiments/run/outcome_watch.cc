@@ -55,7 +55,8 @@ void OutcomeWatch::WarnOfNotSimulated(const StudyPlan& plan) const {
     num_whole += trials.count == plan.conditions.at(condition).num_trials;
   const auto& [condition, example] = *not_simulated_.begin();
   PrintMessage(
-      "warning: {} of the {} trials run now could not be simulated: in {} of {} conditions, in {} of them all. "
+      "warning: {} of the {} trials run now could not be simulated: in {} of {} conditions, in {} of them "
+      "all. "
       "They are kept as {}, and no other rate counts them. Condition {}, trial {}: {}\n",
       num_not_simulated_, num_not_simulated_ + num_simulated_, not_simulated_.size(), plan.conditions.size(),
       num_whole, StatusName(MotionStatus::kNotSimulated), condition, example.first, example.why);

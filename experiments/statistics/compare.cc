@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "experiments/statistics/compared_pairs.h"
+#include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scenes_of_run.h"
 #include "parameters/input_error.h"
 #include "parameters/suggestion.h"
 #include "stats/multiple_testing.h"
-#include "stats/score_mean.h"
-#include "stats/stream_median.h"
 
 namespace rcme {
 namespace {
@@ -24,90 +24,6 @@ size_t IndexOf(const std::string& label, const RunDescription& run) {
   throw InputError(fmt::format("--against: study '{}' has no estimator '{}'{}; allowed: {}", run.study, label,
                                DidYouMean(label, labels), fmt::join(labels, ", ")));
 }
-
-// The pairs of one group, estimator and thing compared, growing trial by trial.
-class Pairs {
- public:
-  Pairs(ComparedKind kind, bool has_repeats) : kind_(kind), has_repeats_(has_repeats) {}
-
-  void Add(double first, double second, bool is_first_of_scene) {
-    if (kind_ == ComparedKind::kEvent) counts_.Add(first != 0.0, second != 0.0);
-    if (kind_ != ComparedKind::kError) {
-      scene_.Add(first - second);
-    } else if (is_first_of_scene) {
-      counts_.Add(first > second, second > first);
-      error_difference_.Add(first == second ? 0.0 : first - second);  // two infinite errors are equal
-    }
-  }
-
-  void EndScene() {
-    const std::optional<double> mean = scene_.Take();
-    if (mean && IsByMeans()) mean_difference_.Add(*mean);
-  }
-
-  // What a row says of them.
-  void Fill(bool is_anytime_valid, ComparisonRow* row) const {
-    row->kind = kind_;
-    row->is_anytime_valid = is_anytime_valid || IsByMeans();
-    row->is_of_scenes = has_repeats_;
-    row->counts = counts_;
-    if (IsByMeans()) {
-      FillMeans(row);
-    } else if (kind_ == ComparedKind::kEvent) {
-      FillEvent(row);
-    } else {
-      FillError(row);
-    }
-    if (row->n == 0) row->p_value = std::nan("");
-    row->holm_p_value = row->p_value;
-  }
-
- private:
-  bool IsByMeans() const {
-    return kind_ == ComparedKind::kScore || (kind_ == ComparedKind::kEvent && has_repeats_);
-  }
-
-  double PValueOfCounts(bool is_anytime_valid) const {
-    return is_anytime_valid ? AnytimeMcNemarPValue(counts_) : McNemarExactPValue(counts_);
-  }
-
-  void FillEvent(ComparisonRow* row) const {
-    row->n = counts_.n();
-    row->difference = row->n > 0 ? counts_.RiskDifference() : std::nan("");
-    row->p_value = PValueOfCounts(row->is_anytime_valid);
-    row->interval = row->is_anytime_valid ? AnytimeRiskDifferenceInterval() : RiskDifferenceInterval(counts_);
-  }
-  void FillMeans(ComparisonRow* row) const {
-    row->n = mean_difference_.n();
-    row->difference = mean_difference_.mean();
-    row->p_value = mean_difference_.PValue(0.0);
-    row->interval = mean_difference_.Sequence();
-  }
-  // The sign test: McNemar's of "greater than the other". Its median's interval is of a fixed number of
-  // trials.
-  void FillError(ComparisonRow* row) const {
-    row->n = error_difference_.n();
-    row->difference = error_difference_.median();
-    row->p_value = PValueOfCounts(row->is_anytime_valid);
-    row->interval = row->is_anytime_valid || row->n == 0 ? Interval{std::nan(""), std::nan("")}
-                                                         : error_difference_.interval();
-  }
-
-  Interval AnytimeRiskDifferenceInterval() const {
-    ScoreMean difference({-1.0, 1.0});
-    difference.Add(1.0, counts_.first_only);
-    difference.Add(-1.0, counts_.second_only);
-    difference.Add(0.0, counts_.both + counts_.neither);
-    return difference.Sequence();
-  }
-
-  ComparedKind kind_;
-  bool has_repeats_;
-  PairedCounts counts_;
-  SceneMean scene_;                         // so far
-  ScoreMean mean_difference_{{-1.0, 1.0}};  // of the means of scenes
-  StreamMedian error_difference_;
-};
 
 // The pairs of every group, estimator and thing compared; of the reference with itself too, which no one
 // reads.
@@ -144,8 +60,14 @@ class AllPairs {
     for (size_t i = IndexOfCell(group_, 0, 0); i < IndexOfCell(group_ + 1, 0, 0); ++i) cells_[i].EndScene();
   }
 
-  const Pairs& Of(size_t group, size_t estimator, size_t compared) const {
+  const ComparedPairs& Of(size_t group, size_t estimator, size_t compared) const {
     return cells_[IndexOfCell(group, estimator, compared)];
+  }
+  std::vector<ComparedPairs> OfAllGroups(size_t estimator, size_t compared) const {
+    std::vector<ComparedPairs> all;
+    for (size_t group = 0; group < groups_.levels.size(); ++group)
+      all.push_back(Of(group, estimator, compared));
+    return all;
   }
   std::int64_t num_trials() const { return num_trials_; }
   bool is_weighted() const { return is_weighted_; }
@@ -160,7 +82,7 @@ class AllPairs {
   size_t group_ = 0;  // of the last trial
   size_t reference_, num_estimators_;
   std::vector<Compared> compared_;
-  std::vector<Pairs> cells_;
+  std::vector<ComparedPairs> cells_;
   std::int64_t num_trials_ = 0;
   bool is_weighted_ = false;
 };
@@ -187,7 +109,11 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
   const std::vector<DescribedEstimator>& estimators = run.estimators;
   const size_t reference_index = IndexOf(reference, run);
   const std::vector<Compared> compared = ComparedByName(options.compared);
-  const TrialGroups groups = options.pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(run);
+  const bool is_anytime_valid = options.is_anytime_valid || !run.stopping_rule.empty();
+  const bool is_pooled = options.pooling == Pooling::kPooled;
+  const bool is_of_population = is_pooled && !is_anytime_valid && HasPopulationIntervals(run);
+  const TrialGroups groups =
+      is_of_population ? GroupByDraw(run) : (is_pooled ? OneGroup() : GroupByCondition(run));
   AllPairs pairs(run, groups, reference_index, compared);
   ForEachTrialByScene(
       store, run.repeats_per_scene,
@@ -197,7 +123,7 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
       [&](std::uint32_t) { pairs.EndScene(); });
   Comparison comparison{run.study,
                         estimators[reference_index].label,
-                        groups.factor_names,
+                        is_pooled ? std::vector<std::string>() : groups.factor_names,
                         compared,
                         {},
                         pairs.num_trials(),
@@ -207,17 +133,21 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
     comparison.caution = "trials are weighted (tilted_to), so this comparison has no counts of them";
     return comparison;
   }
-  const bool is_anytime_valid = options.is_anytime_valid || !run.stopping_rule.empty();
-  for (std::uint32_t c = 0; c < groups.levels.size(); ++c) {
+  const std::size_t num_conditions = is_pooled ? 1 : groups.levels.size();
+  for (std::uint32_t c = 0; c < num_conditions; ++c) {
     for (size_t e = 0; e < estimators.size(); ++e) {
       if (e == reference_index) continue;
       for (size_t v = 0; v < compared.size(); ++v) {
         ComparisonRow row;
         row.condition = c;
-        row.levels = groups.levels[c];
+        if (!is_pooled) row.levels = groups.levels[c];
         row.estimator = estimators[e].label;
         row.event = compared[v].name;
-        pairs.Of(c, e, v).Fill(is_anytime_valid, &row);
+        if (is_of_population) {
+          ComparedPairs::FillOfPopulation(pairs.OfAllGroups(e, v), &row);
+        } else {
+          pairs.Of(c, e, v).Fill(is_anytime_valid, &row);
+        }
         comparison.rows.push_back(std::move(row));
       }
     }

@@ -17,9 +17,9 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/store/result_store.h"
 #include "experiments/statistics/compared.h"
 #include "experiments/statistics/trial_groups.h"
-#include "experiments/run/store/result_store.h"
 #include "stats/intervals.h"
 #include "stats/paired.h"
 
@@ -39,13 +39,14 @@ struct ComparisonRow {
   ComparedKind kind = ComparedKind::kEvent;
   std::string event;  // name of the event, score or error
   bool is_anytime_valid = false;
-  bool is_of_scenes = false;  // of repeated scenes: n counts them, `counts` their trials
-  std::int64_t n = 0;         // trials in which both count
-  PairedCounts counts;        // first: the estimator, second: the reference; of events
-  double difference = 0.0;    // estimator minus reference; NaN where n is 0
-  Interval interval;          // of the difference: 95 %; NaN where there is none
-  double p_value = 0.0;       // of no difference; NaN where n is 0
-  double holm_p_value = 0.0;  // the same, adjusted for all rows of the comparison that have trials
+  bool is_of_population = false;  // interval and p (compared_pairs.h)
+  bool is_of_scenes = false;      // of repeated scenes: n counts them, `counts` their trials
+  std::int64_t n = 0;             // trials in which both count
+  PairedCounts counts;            // first: the estimator, second: the reference; of events
+  double difference = 0.0;        // estimator minus reference; NaN where n is 0
+  Interval interval;              // of the difference: 95 %; NaN where there is none
+  double p_value = 0.0;           // of no difference; NaN where n is 0
+  double holm_p_value = 0.0;      // the same, adjusted for all rows of the comparison that have trials
 };
 
 struct Comparison {
@@ -57,7 +58,8 @@ struct Comparison {
   std::string caution;  // why there are no rows; empty: no reason
 };
 
-// Pooled: all trials of all conditions as if they were of one, which has no levels.
+// Pooled: all trials of all conditions as if they were of one, which has no levels. Where the conditions are
+// a sample of a population, intervals and p-values are of that (compared_pairs.h).
 //
 // One pass over the raw trials, in memory that does not grow with them. `reference` is a label of the study;
 // empty: its first. Throws InputError if the study has no such label, or ComparedByName does.

@@ -33,7 +33,14 @@ Method MethodOf(ComparedKind kind, bool is_anytime_valid) {
   if (is_error) return {"sign", "order_statistics", "exact sign test", "distribution-free 95 % interval"};
   return {"mcnemar", "tango", "McNemar's exact test of equal rates", "Tango's 95 % interval"};
 }
+Method MethodOfPopulation(ComparedKind kind) {
+  return {"population", "population",
+          fmt::format("least level at which that interval{} leaves out 0",
+                      kind == ComparedKind::kError ? ", of the share greater less the share less," : ""),
+          "95 % interval of the population, over its draws"};
+}
 Method MethodOf(const ComparisonRow& row) {
+  if (row.is_of_population) return MethodOfPopulation(row.kind);
   const bool is_by_means = row.is_of_scenes && row.kind == ComparedKind::kEvent;
   return MethodOf(is_by_means ? ComparedKind::kScore : row.kind, row.is_anytime_valid);
 }

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/statistics/trial_groups.h"
+#include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
@@ -18,7 +20,7 @@ namespace {
 struct Answer {
   double stated = 0.0;        // NaN: none
   double inlier_share = 0.0;  // of the matches
-  std::int64_t scene = 0;
+  std::int64_t cluster = 0;
   size_t group = 0;
   bool refused = false, failed = false, is_in_even_half = false;
 };
@@ -66,14 +68,18 @@ std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDe
                                            const Groups& groups) {
   std::vector<std::vector<Answer>> answers(run.estimators.size());
   const std::int64_t scenes_apart = HasCommonScenes(run) ? 0 : std::int64_t{1} << 32;
+  const bool is_of_population = IsSampleOfPopulation(run.identity);
+  const TrialGroups draws = is_of_population ? GroupByDraw(run) : TrialGroups();
   bool is_weighted = false;
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     is_weighted = is_weighted || problem.weight != 1.0;
     const std::int64_t scene = problem.trial / static_cast<std::uint32_t>(run.repeats_per_scene);
+    const std::int64_t cluster = is_of_population ? static_cast<std::int64_t>(draws.group_of(problem))
+                                                  : scene + scenes_apart * problem.condition;
     for (size_t e = 0; e < records.size(); ++e) {
       if (!IsScored(records[e])) continue;
       answers[e].push_back(AnswerOf(records[e], run.failure));
-      answers[e].back().scene = scene + scenes_apart * problem.condition;
+      answers[e].back().cluster = cluster;
       answers[e].back().group = groups.of_condition[problem.condition];
       answers[e].back().is_in_even_half = scene % 2 == 0;
     }
@@ -144,16 +150,16 @@ std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, 
                                                   : ProbabilitiesFromInliers(answers[e]);
     const size_t first = all.size();
     for (const std::string& group : groups.names)
-      all.push_back({run.estimators[e].label, group, source, {}, {}, 0});
+      all.push_back({run.estimators[e].label, group, source, IsSampleOfPopulation(run.identity), {}, {}, 0});
     for (size_t i = 0; i < answers[e].size(); ++i) {
       const Answer& answer = answers[e][i];
       FailureForecasts& of_group = all[first + answer.group];
       if (answer.refused) {
-        of_group.refused_scenes.push_back(answer.scene);
+        of_group.refused_clusters.push_back(answer.cluster);
       } else if (std::isnan(probabilities[i])) {
         ++of_group.num_without;
       } else {
-        of_group.forecasts.push_back({probabilities[i], answer.failed, answer.scene});
+        of_group.forecasts.push_back({probabilities[i], answer.failed, answer.cluster});
       }
     }
   }
@@ -161,14 +167,16 @@ std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, 
 }
 
 void AddForecastsOfRun(std::vector<FailureForecasts> run, std::vector<FailureForecasts>* all) {
-  std::int64_t next_scene = 0;
+  std::int64_t next_cluster = 0;
   for (const FailureForecasts& known : *all) {
-    for (const Forecast& forecast : known.forecasts) next_scene = std::max(next_scene, forecast.cluster + 1);
-    for (const std::int64_t scene : known.refused_scenes) next_scene = std::max(next_scene, scene + 1);
+    for (const Forecast& forecast : known.forecasts)
+      next_cluster = std::max(next_cluster, forecast.cluster + 1);
+    for (const std::int64_t cluster : known.refused_clusters)
+      next_cluster = std::max(next_cluster, cluster + 1);
   }
   for (FailureForecasts& added : run) {
-    for (Forecast& forecast : added.forecasts) forecast.cluster += next_scene;
-    for (std::int64_t& scene : added.refused_scenes) scene += next_scene;
+    for (Forecast& forecast : added.forecasts) forecast.cluster += next_cluster;
+    for (std::int64_t& cluster : added.refused_clusters) cluster += next_cluster;
     const auto same = std::ranges::find_if(*all, [&](const FailureForecasts& known) {
       return known.estimator == added.estimator && known.group == added.group;
     });
@@ -176,13 +184,17 @@ void AddForecastsOfRun(std::vector<FailureForecasts> run, std::vector<FailureFor
       all->push_back(std::move(added));
       continue;
     }
+    if (same->is_of_population != added.is_of_population) {
+      throw InputError(
+          "the draws of a population and other conditions cannot be pooled; give their runs one at a time");
+    }
     if (same->source != added.source) {
       throw InputError(fmt::format("{}: its probabilities of failure are {} in one run and {} in another",
                                    added.estimator, Name(same->source), Name(added.source)));
     }
     same->forecasts.insert(same->forecasts.end(), added.forecasts.begin(), added.forecasts.end());
-    same->refused_scenes.insert(same->refused_scenes.end(), added.refused_scenes.begin(),
-                                added.refused_scenes.end());
+    same->refused_clusters.insert(same->refused_clusters.end(), added.refused_clusters.begin(),
+                                  added.refused_clusters.end());
     same->num_without += added.num_without;
   }
 }

@@ -35,8 +35,10 @@ struct FailureForecasts {
   std::string estimator;  // label
   std::string group;      // a level of the factor; empty: all trials
   ForecastSource source = ForecastSource::kStated;
-  std::vector<Forecast> forecasts;           // of its answers; a cluster is a scene
-  std::vector<std::int64_t> refused_scenes;  // one per refusal
+  // Whether a cluster is a draw of the population that the run's draws are a sample of; else it is a scene.
+  bool is_of_population = false;
+  std::vector<Forecast> forecasts;             // of its answers
+  std::vector<std::int64_t> refused_clusters;  // one per refusal
   // Answers that have no probability: they are in none of the numbers.
   std::int64_t num_without = 0;
 };
@@ -46,8 +48,9 @@ struct FailureForecasts {
 // trial and estimator. Throws InputError on a factor that the run does not have.
 std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, const std::string& by = {});
 
-// Adds those of another run: to the same estimator and group, or as new ones. No scene of one run is a scene
-// of the other. Throws InputError where the source of an estimator's probabilities differs between the runs.
+// Adds those of another run: to the same estimator and group, or as new ones. No cluster of one run is one of
+// the other. Throws InputError where the source of an estimator's probabilities differs between the runs, or
+// what a cluster is.
 void AddForecastsOfRun(std::vector<FailureForecasts> run, std::vector<FailureForecasts>* all);
 
 }  // namespace rcme

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "stats/constants.h"
+#include "stats/population_rate.h"
 #include "stats/random.h"
 #include "stats/risk_coverage_area.h"
 
@@ -13,7 +15,7 @@ namespace {
 
 constexpr int kNumHistogramBins = 20;
 // Of the outcomes that are drawn here; the streams of trials have other purposes (data_source.h).
-constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200;
+constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200, kPurposeOfDrawnConditions = 201;
 
 double MeanProbability(const std::vector<Forecast>& forecasts) {
   double sum = 0.0;
@@ -38,7 +40,7 @@ std::vector<ClusteredOutcome> OutcomesOf(const FailureForecasts& of) {
   std::vector<ClusteredOutcome> outcomes;
   for (const Forecast& forecast : of.forecasts)
     outcomes.push_back({-forecast.probability, forecast.happened, forecast.cluster});
-  for (const std::int64_t scene : of.refused_scenes)
+  for (const std::int64_t scene : of.refused_clusters)
     outcomes.push_back({-std::numeric_limits<double>::infinity(), true, scene});
   return outcomes;
 }
@@ -51,12 +53,44 @@ void MeasureRiskCoverage(const FailureForecasts& of, ForecastMeasures* measures)
   measures->risk_coverage = RiskCoverageCurve(std::move(scored));
 }
 
-void CountSure(const std::vector<Forecast>& forecasts, ForecastMeasures* measures) {
-  for (const Forecast& forecast : forecasts) {
-    if (forecast.probability > kSureBelow) continue;
-    ++measures->num_sure;
-    measures->num_sure_failed += forecast.happened ? 1 : 0;
+// Events among trials, in all and by cluster.
+class ClusterCounts {
+ public:
+  void Add(std::int64_t cluster, bool has_happened) {
+    ConditionCount& counts = of_cluster_[cluster];
+    ++counts.num_trials;
+    counts.num_events += has_happened;
+    ++n_;
+    num_events_ += has_happened;
   }
+  std::int64_t n() const { return n_; }
+  std::int64_t num_events() const { return num_events_; }
+  Interval FindInterval(bool is_of_population) const {
+    if (!is_of_population) return ExactBinomialInterval(num_events_, n_);
+    std::vector<ConditionCount> counts;
+    for (const auto& [cluster, of_cluster] : of_cluster_) counts.push_back(of_cluster);
+    return MeasurePopulationRate(counts, ConditionWeights::kByTrials).interval;
+  }
+
+ private:
+  std::map<std::int64_t, ConditionCount> of_cluster_;
+  std::int64_t n_ = 0, num_events_ = 0;
+};
+
+void CountRates(const FailureForecasts& of, ForecastMeasures* measures) {
+  ClusterCounts failed, sure, sure_failed;
+  for (const Forecast& forecast : of.forecasts) {
+    const bool is_sure = forecast.probability <= kSureBelow;
+    failed.Add(forecast.cluster, forecast.happened);
+    sure.Add(forecast.cluster, is_sure);
+    if (is_sure) sure_failed.Add(forecast.cluster, forecast.happened);
+  }
+  for (const std::int64_t cluster : of.refused_clusters) sure.Add(cluster, false);
+  if (of.is_of_population) measures->failure.interval = failed.FindInterval(true);
+  measures->num_sure = sure.num_events();
+  measures->num_sure_failed = sure_failed.num_events();
+  measures->sure_interval = sure.FindInterval(of.is_of_population);
+  measures->sure_failed_interval = sure_failed.FindInterval(of.is_of_population);
 }
 
 std::vector<std::int64_t> HistogramOf(const std::vector<Forecast>& forecasts) {
@@ -69,9 +103,18 @@ std::vector<std::int64_t> HistogramOf(const std::vector<Forecast>& forecasts) {
   return counts;
 }
 
+// What right probabilities would give: the trials of a scene are drawn together, those of a condition are
+// independent.
+std::vector<Forecast> WithScenes(const FailureForecasts& of) {
+  std::vector<Forecast> forecasts = of.forecasts;
+  for (size_t i = 0; of.is_of_population && i < forecasts.size(); ++i)
+    forecasts[i].cluster = static_cast<std::int64_t>(i);
+  return forecasts;
+}
+
 // The same stream for all: samples of equal forecasts are equal.
-void MeasureCalibration(const std::vector<Forecast>& forecasts, std::uint64_t seed,
-                        ForecastMeasures* measures) {
+void MeasureCalibration(const FailureForecasts& of, std::uint64_t seed, ForecastMeasures* measures) {
+  const std::vector<Forecast> forecasts = WithScenes(of);
   RandomStream rng({.seed = seed, .purpose = kPurposeOfDrawnOutcomes});
   measures->parts = DecomposeBrierScore(forecasts);
   measures->curve = ReliabilityCurve(forecasts);
@@ -81,7 +124,13 @@ void MeasureCalibration(const std::vector<Forecast>& forecasts, std::uint64_t se
                                                            kNumCalibrationBins, kNumCalibrationSamples, rng);
   measures->error_of_equal_mass = MeasureCalibrationError(forecasts, Binning::kEqualMass, kNumCalibrationBins,
                                                           kNumCalibrationSamples, rng);
-  measures->line = FitCalibrationLine(forecasts);
+  measures->line = FitCalibrationLine(of.forecasts);
+  if (!of.is_of_population) return;
+  RandomStream samples({.seed = seed, .purpose = kPurposeOfDrawnConditions});
+  const BootstrapOptions options{.chance_bias = ChanceBias::kUpwards};
+  measures->interval_of_equal_width = MeasurePopulationCalibrationError(of.forecasts, Binning::kEqualWidth,
+                                                                        kNumCalibrationBins, options, samples)
+                                          .interval;
 }
 
 }  // namespace
@@ -104,8 +153,9 @@ ForecastMeasures MeasureForecasts(const FailureForecasts& of, std::uint64_t seed
   measures.estimator = of.estimator;
   measures.group = of.group;
   measures.source = of.source;
+  measures.is_of_population = of.is_of_population;
   measures.n = std::ssize(of.forecasts);
-  measures.num_refused = std::ssize(of.refused_scenes);
+  measures.num_refused = std::ssize(of.refused_clusters);
   measures.num_without = of.num_without;
   if (measures.n == 0) return measures;
   measures.mean_probability = MeanProbability(of.forecasts);
@@ -114,9 +164,9 @@ ForecastMeasures MeasureForecasts(const FailureForecasts& of, std::uint64_t seed
   measures.log_score = MeasureLogScore(of.forecasts);
   measures.histogram = HistogramOf(of.forecasts);
   measures.area = AreaOf(of.forecasts, measures.failure);
-  MeasureCalibration(of.forecasts, seed, &measures);
+  MeasureCalibration(of, seed, &measures);
   MeasureRiskCoverage(of, &measures);
-  CountSure(of.forecasts, &measures);
+  CountRates(of, &measures);
   return measures;
 }
 

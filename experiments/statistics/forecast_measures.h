@@ -10,6 +10,7 @@
 #include "stats/calibration_error.h"
 #include "stats/calibration_line.h"
 #include "stats/clustered_estimate.h"
+#include "stats/constants.h"
 #include "stats/reliability.h"
 #include "stats/thresholds.h"
 
@@ -18,11 +19,13 @@ namespace rcme {
 inline constexpr int kNumCalibrationBins = 10;
 inline constexpr int kNumCalibrationSamples = 399;
 
-// Of one estimator in one group, over its answers; intervals by scenes. Without an answer that has a
-// probability only the counts are meant.
+// Of one estimator in one group, over its answers; intervals by scenes, or, where the conditions are draws of
+// a population, of that population and by draws. Without an answer that has a probability only the counts are
+// meant.
 struct ForecastMeasures {
   std::string estimator, group;
   ForecastSource source = ForecastSource::kStated;
+  bool is_of_population = false;
   std::int64_t n = 0, num_refused = 0, num_without = 0;
   double mean_probability = 0.0;
   ClusteredEstimate failure;           // share of the n answers that failed
@@ -31,8 +34,9 @@ struct ForecastMeasures {
   CalibrationCheck check;              // likewise, with the band at BandProbabilities()
   std::vector<ReliabilityStep> curve;  // likewise
   MeasuredCalibrationError error_of_equal_width, error_of_equal_mass;  // in kNumCalibrationBins bins
-  std::vector<CalibrationBin> bins;                                    // of equal width
-  std::vector<std::int64_t> histogram;  // of the probabilities: HistogramEdges()
+  Interval interval_of_equal_width = {kNaN, kNaN};  // of the population's error; NaN: by scenes there is none
+  std::vector<CalibrationBin> bins;                 // of equal width
+  std::vector<std::int64_t> histogram;              // of the probabilities: HistogramEdges()
   CalibrationLine line;
   // P(a failure has the greater probability): NaN where nothing failed, or everything.
   AreaUnderCurve area;
@@ -42,12 +46,11 @@ struct ForecastMeasures {
   // Of the answers with a probability of at most kSureBelow, those that failed; and how many those answers
   // are.
   std::int64_t num_sure = 0, num_sure_failed = 0;
+  // Of num_sure_failed among num_sure, and of num_sure among all trials: of the population
+  // (population_rate.h) or exact; the latter of repeated scenes too narrow.
+  Interval sure_failed_interval, sure_interval;
 
   std::int64_t num_trials() const { return n + num_refused; }
-  // Exact, of num_sure_failed among num_sure; and of num_sure among all trials. Of repeated scenes too
-  // narrow.
-  Interval sure_failed_interval() const { return ExactBinomialInterval(num_sure_failed, num_sure); }
-  Interval sure_interval() const { return ExactBinomialInterval(num_sure, num_trials()); }
 };
 
 // 0 to 1, closer where probabilities are small.

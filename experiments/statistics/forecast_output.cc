@@ -23,15 +23,21 @@ Estimate Rate(std::int64_t count, std::int64_t n, const Interval& interval) {
   return {static_cast<double>(count) / static_cast<double>(n), interval};
 }
 
+bool IsOfPopulation(const std::vector<ForecastMeasures>& measures) {
+  return !measures.empty() && measures.front().is_of_population;
+}
+
 // Without an answer only the counts are there.
 Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
   const NumberFormat four{1.0, "", ".4f"}, three{1.0, "", ".3f"}, two{1.0, "", ".2f"};
+  const bool is_of_population = IsOfPopulation(measures);
   Table table;
   if (!by.empty()) table.AddColumns({Column::Key(by)});
   table.AddColumns(
       {Column::Key("estimator"), Column::Key("P from"), Column::Count("n"), Column::Count("refused"),
        Column::Number("mean P", four), Column::Estimated("failed", four), Column::Estimated("Brier", four),
-       Column::Number("ECE", four), Column::Number("if right", four), Column::Number("p", {1.0, "", ".2g"}),
+       is_of_population ? Column::Estimated("ECE", four) : Column::Number("ECE", four),
+       Column::Number("if right", four), Column::Number("p", {1.0, "", ".2g"}),
        Column::Estimated("slope", two), Column::Estimated("AUC", three), Column::Estimated("AURC", four),
        Column::Estimated(fmt::format("failed at P <= {}", kSureBelow), kPercent),
        Column::Estimated("kept", kPercent)});
@@ -41,11 +47,13 @@ Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std:
     row.insert(row.end(), {m.estimator, Name(m.source), m.n, m.num_refused});
     const MeasuredCalibrationError& error = m.error_of_equal_width;
     if (m.n > 0)
-      row.insert(row.end(), {m.mean_probability, WithInterval(m.failure), WithInterval(m.brier), error.value,
+      row.insert(row.end(), {m.mean_probability, WithInterval(m.failure), WithInterval(m.brier),
+                             is_of_population ? Value(Estimate{error.value, m.interval_of_equal_width})
+                                              : Value(error.value),
                              error.mean_if_calibrated, error.p_value, WithInterval(m.line.slope),
                              Estimate{m.area.value, m.area.interval}, WithInterval(m.risk_coverage_area),
-                             Rate(m.num_sure_failed, m.num_sure, m.sure_failed_interval()),
-                             Rate(m.num_sure, m.num_trials(), m.sure_interval())});
+                             Rate(m.num_sure_failed, m.num_sure, m.sure_failed_interval),
+                             Rate(m.num_sure, m.num_trials(), m.sure_interval)});
     row.resize(table.columns.size());
   }
   return table;
@@ -65,6 +73,13 @@ Json AsJson(const MeasuredCalibrationError& error) {
           {"mean_if_calibrated", JsonNumber(error.mean_if_calibrated)},
           {"upper_if_calibrated", JsonNumber(error.upper_if_calibrated)},
           {"p_value", JsonNumber(error.p_value)}};
+}
+
+// With an interval where there is one.
+Json ErrorAsJson(const ForecastMeasures& m) {
+  Json json = AsJson(m.error_of_equal_width);
+  if (m.is_of_population) json["interval"] = AsJson(m.interval_of_equal_width);
+  return json;
 }
 
 Json RateAsJson(std::int64_t count, std::int64_t n, const Interval& interval) {
@@ -116,6 +131,7 @@ Json RiskCoverageAsJson(const ForecastMeasures& m) {
 Json EntryOf(const ForecastMeasures& m) {
   Json entry = {{"estimator", m.estimator}, {"group", m.group},        {"source", Name(m.source)}, {"n", m.n},
                 {"refused", m.num_refused}, {"without", m.num_without}};
+  if (m.is_of_population) entry["intervals_of"] = "population";
   if (m.n == 0) return entry;
   entry.update(Json{{"mean_probability", m.mean_probability},
                     {"failure", AsJson(m.failure)},
@@ -126,14 +142,14 @@ Json EntryOf(const ForecastMeasures& m) {
                     {"miscalibration_p_value", m.check.p_value},
                     {"discrimination", m.parts.discrimination},
                     {"uncertainty", m.parts.uncertainty},
-                    {"calibration_error", AsJson(m.error_of_equal_width)},
+                    {"calibration_error", ErrorAsJson(m)},
                     {"calibration_error_equal_mass", AsJson(m.error_of_equal_mass)},
                     {"calibration_intercept", AsJson(m.line.intercept)},
                     {"calibration_slope", AsJson(m.line.slope)},
                     {"area_under_curve", AsJson(m.area.value, m.area.standard_error, m.area.interval)},
                     {"risk_coverage_area", AsJson(m.risk_coverage_area)},
-                    {"sure_failed", RateAsJson(m.num_sure_failed, m.num_sure, m.sure_failed_interval())},
-                    {"sure", RateAsJson(m.num_sure, m.num_trials(), m.sure_interval())},
+                    {"sure_failed", RateAsJson(m.num_sure_failed, m.num_sure, m.sure_failed_interval)},
+                    {"sure", RateAsJson(m.num_sure, m.num_trials(), m.sure_interval)},
                     {"curve", CurveAsJson(m)},
                     {"band", BandAsJson(m)},
                     {"bins", BinsAsJson(m)},
@@ -145,17 +161,20 @@ Json EntryOf(const ForecastMeasures& m) {
 }  // namespace
 
 std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
+  const bool is_of_population = IsOfPopulation(measures);
   std::string text =
       "Probability of failure P, of the answers whose truth is known\n\n" +
       RenderText(MakeMeasureTable(measures, by)) + "\n" +
       FormatParagraph(fmt::format(
-          "failed, Brier (mean (P - y)^2), slope (1: right, below: too sure), AUC, AURC: 95 % intervals, the "
-          "trials of a scene as one cluster. ECE: {} bins of equal width; if right: its mean if P were "
-          "right; "
-          "p: the share of samples of such that reach it. AURC: mean failure rate over all shares of trials "
-          "answered, surest first, a refusal as the last and a failure; kept: trials at P <= {}, of all; "
-          "exact intervals.",
-          kNumCalibrationBins, kSureBelow));
+          "failed, Brier (mean (P - y)^2), slope (1: right, below: too sure), AUC, AURC: 95 % intervals, {}. "
+          "ECE: {} bins of equal width; if right: its mean if P were right; p: the share of samples of such "
+          "that reach it. AURC: mean failure rate over all shares of trials answered, surest first, a "
+          "refusal "
+          "as the last and a failure; kept: trials at P <= {}, of all; {} intervals.",
+          is_of_population
+              ? "for the population that the conditions are a sample of, the trials of a draw as one cluster"
+              : "the trials of a scene as one cluster",
+          kNumCalibrationBins, kSureBelow, is_of_population ? "such" : "exact"));
   if (std::ranges::find(measures, ForecastSource::kInlierShare, &ForecastMeasures::source) !=
       measures.end()) {
     text += FormatParagraph(

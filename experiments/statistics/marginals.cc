@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include "experiments/statistics/failure_forecasts.h"
+#include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
@@ -146,13 +148,30 @@ bool IsRegime(const std::vector<bool>& has) {
   return number >= kLeastConditions && number < has.size();
 }
 
-// Those in the regime; conditions without such trials do not count.
+// Those in the regime, the conditions of a draw as one; without such trials they do not count. `draws`: of
+// each condition.
 std::vector<ConditionValues> Select(const std::vector<ConditionValues>& conditions,
-                                    const std::vector<bool>& has) {
+                                    const std::vector<bool>& has, const std::vector<size_t>& draws) {
+  std::map<size_t, ConditionValues> of_draw;
+  for (size_t c = 0; c < conditions.size(); ++c) {
+    if (!has[c] || conditions[c].moments.n() == 0) continue;
+    of_draw[draws[c]].moments.Merge(conditions[c].moments);
+    of_draw[draws[c]].num_failed += conditions[c].num_failed;
+  }
   std::vector<ConditionValues> selected;
-  for (size_t c = 0; c < conditions.size(); ++c)
-    if (has[c] && conditions[c].moments.n() > 0) selected.push_back(conditions[c]);
+  for (const auto& [draw, values] : of_draw) selected.push_back(values);
   return selected;
+}
+
+// Of each condition its draw, where there are draws, else itself.
+std::vector<size_t> NumberDraws(const RunDescription& run) {
+  const bool has_draws = !run.factors.empty() && run.factors.front() == kDrawFactor;
+  const TrialGroups groups = has_draws ? GroupByDraw(run) : GroupByCondition(run);
+  std::vector<size_t> draws;
+  ProblemRecord any_of;
+  for (; any_of.condition < run.conditions.size(); ++any_of.condition)
+    draws.push_back(groups.group_of(any_of));
+  return draws;
 }
 
 bool IsShare(MarginalQuantity quantity) {
@@ -265,6 +284,7 @@ Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& option
     throw InputError(fmt::format("marginals: the run has {} conditions; at least {} are needed",
                                  description.conditions.size(), kLeastConditions));
   const Values values = CollectValues(run, description);
+  const std::vector<size_t> draws = NumberDraws(description);
   const std::vector<Regime> regimes = ListRegimes(description, options.with_pairs);
   struct Question {
     size_t estimator, quantity;
@@ -275,7 +295,7 @@ Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& option
   for (const size_t e : ChooseEstimators(description, options.estimators)) {
     for (const Regime& regime : regimes) {
       for (size_t q = 0; q < kNumQuantities; ++q) {
-        std::vector<ConditionValues> conditions = Select(values[e][q], regime.has);
+        std::vector<ConditionValues> conditions = Select(values[e][q], regime.has, draws);
         if (conditions.size() >= kLeastConditions)
           questions.push_back({e, q, &regime, std::move(conditions)});
       }

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/statistics/summary_cell.h"
-#include "experiments/run/store/result_file.h"
 #include "experiments/core/work/shard.h"
+#include "experiments/run/store/result_file.h"
+#include "experiments/statistics/summary_cell.h"
 
 namespace rcme {
 

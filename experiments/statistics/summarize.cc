@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scene_split.h"
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/summary_cell.h"
@@ -17,6 +18,18 @@ void AppendHelp(const std::vector<Quantity<Record>>& quantities, std::vector<Qua
     rows->push_back({q.name, KindName(q.kind), q.doc});
   }
 }
+
+// Cells of counts.
+std::vector<SummaryCell> CollectDraws(const ResultStore& store, const RunDescription& run) {
+  const TrialGroups groups = GroupByDraw(run);
+  std::vector<SummaryCell> draws(groups.levels.size(), SummaryCell(run.estimators.size()));
+  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    draws[groups.group_of(problem)].Add(problem, records, run.failure);
+  });
+  return draws;
+}
+
+bool IsWeighted(const SummaryCell& cell) { return cell.of_problems().is_weighted; }
 
 }  // namespace
 
@@ -53,8 +66,12 @@ std::string KindName(SummaryRow::Kind kind) {
 }
 
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
-  return Summarize(store, with_times,
-                   pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(store.Description()));
+  const RunDescription run = store.Description();
+  if (pooling == Pooling::kPooled && HasPopulationIntervals(run)) {
+    const std::vector<SummaryCell> draws = CollectDraws(store, run);
+    if (std::ranges::none_of(draws, IsWeighted)) return SummarizePopulation(run, draws, with_times);
+  }
+  return Summarize(store, with_times, pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(run));
 }
 
 std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {

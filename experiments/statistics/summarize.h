@@ -8,6 +8,7 @@
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/trial_groups.h"
+#include "stats/constants.h"
 #include "stats/intervals.h"
 
 namespace rcme {
@@ -18,7 +19,8 @@ enum class IntervalKind {
   kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
   kWeighted,      // of weighted trials, with the cautious upper end (stats/weighted_rate.h)
   kBetting,       // of scores: a confidence sequence, whatever the number of trials depended on
-  kLogStudent     // of shares (stats/variance_split.h)
+  kLogStudent,    // of shares (stats/variance_split.h)
+  kPopulation     // of the population that the conditions are a sample of (population_summary.h)
 };
 
 // One number of one estimator in one condition, never without what says how far to trust it.
@@ -41,7 +43,11 @@ struct SummaryRow {
   Interval interval;            // all but means: 95 %; NaN where a median's would not hold
   double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of; of repeated scenes: scenes
-  bool is_of_split = false;     // what the scene and what the sampler decides (scene_split.h)
+  // Of pooled draws of a population: the interval for these very conditions, each tried for ever, and how
+  // many independent trials would tell as much of the population (Kish's effective n).
+  Interval of_these_conditions = {kNaN, kNaN};
+  double effective_n = kNaN;
+  bool is_of_split = false;  // what the scene and what the sampler decides (scene_split.h)
   std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
 };
 
@@ -57,9 +63,10 @@ struct Summary {
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
   int repeats_per_scene = 1;
-  std::string truth_quality;     // truth_quality.h
-  std::string population;        // DescribePopulation of study/population.h
-  std::int64_t num_retried = 0;  // trials that were run again (RunDescription::retried_trials)
+  std::string truth_quality;      // truth_quality.h
+  bool is_of_population = false;  // its intervals are (population_summary.h)
+  std::string population;         // DescribePopulation of study/population.h
+  std::int64_t num_retried = 0;   // trials that were run again (RunDescription::retried_trials)
 };
 
 // Whether an estimator of the run states probabilities of failure.
@@ -84,7 +91,8 @@ const std::vector<QuantityHelp>& SummaryQuantities();
 // Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
 // one pass, in memory that does not grow with the trials. Times (which no two runs share) only if asked for.
 //
-// Pooled: all trials of all conditions as if they were of one, which has no levels.
+// Pooled: all trials of all conditions as if they were of one, which has no levels. Intervals are then of
+// these very conditions; where the conditions are a sample of a population, of that (population_summary.h).
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling = Pooling::kPerCondition);
 // The same with the trials put together otherwise.
 Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups);

@@ -1,6 +1,7 @@
 #include "experiments/statistics/summarize_counts.h"
 
 #include "experiments/run/store/parts.h"
+#include "experiments/statistics/population_summary.h"
 
 namespace rcme {
 
@@ -19,6 +20,16 @@ bool KeepsCounts(const std::string& path) {
 
 Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling pooling) {
   const RunDescription& run = counts.run;
+  if (pooling == Pooling::kPooled && HasPopulationIntervals(run)) {
+    const TrialGroups groups = GroupByDraw(run);
+    std::vector<SummaryCell> draws(groups.levels.size(), SummaryCell(run.estimators.size()));
+    ProblemRecord any_of;
+    for (const ConditionCounts& condition : counts.conditions) {
+      draws[groups.group_of(any_of)].Merge(condition.cell);
+      ++any_of.condition;
+    }
+    return SummarizePopulation(run, draws, with_times);
+  }
   if (pooling == Pooling::kPooled) {
     SummaryCell all(run.estimators.size());
     for (const ConditionCounts& condition : counts.conditions) all.Merge(condition.cell);

@@ -331,6 +331,7 @@ Summary SummarizeCells(const RunDescription& run, const TrialGroups& groups,
                   run.NumTrials(),
                   run.repeats_per_scene,
                   DescribeTruthQuality(run.identity),
+                  /*is_of_population=*/false,
                   DescribePopulation(run.identity),
                   run.retried_trials};
   for (const DescribedEstimator& estimator : run.estimators)

@@ -63,6 +63,8 @@ class SummaryCell {
   void Merge(const SummaryCell& other);
 
   std::int64_t num_trials() const { return num_trials_; }
+  const QuantitySums& of_estimator(size_t estimator) const { return estimators_[estimator]; }
+  const QuantitySums& of_problems() const { return problems_; }
   // The rows of a summary; `cell` holds what they share but for the estimator.
   void AppendRows(const RunDescription& run, SummaryRow cell, std::vector<SummaryRow>* rows) const;
 

@@ -25,6 +25,8 @@ std::string DescribeIntervalKind(IntervalKind kind) {
       return "anytime-valid 95 % (betting)";
     case IntervalKind::kLogStudent:
       return "approximate 95 % (Student on the logarithm)";
+    case IntervalKind::kPopulation:
+      return "95 % of the population, over its draws";
   }
   return "";
 }
@@ -58,6 +60,8 @@ std::string IntervalKindName(IntervalKind kind) {
       return "betting";
     case IntervalKind::kLogStudent:
       return "log_student";
+    case IntervalKind::kPopulation:
+      return "population";
   }
   return "";
 }
@@ -101,6 +105,14 @@ Table MakeRowTable(const Summary& summary) {
       {{"trials_to_decide", ColumnType::kNumber},
        [](R r) { return r.coverage_verdict ? Value(TrialsToDecide(*r.coverage_verdict)) : Value(); }}};
   columns.insert(columns.end(), others.begin(), others.end());
+  if (summary.is_of_population) {
+    columns.push_back({{"effective_n", ColumnType::kNumber}, [](R r) { return r.effective_n; }});
+    columns.push_back(
+        {{.name = "these_lower,these_upper",
+          .type = ColumnType::kInterval,
+          .json_name = "interval_of_these_conditions"},
+         [](R r) { return r.kind == SummaryRow::Kind::kMean ? Value() : Value(r.of_these_conditions); }});
+  }
   return MakeTable(columns, summary.rows);
 }
 
@@ -173,6 +185,22 @@ std::string FormatSplit(const Summary& summary) {
       DescribeFlips(summary));
 }
 
+// What intervals of a population are, with the effective number of trials of the rates of failure.
+std::string FormatPopulation(const Summary& summary) {
+  std::vector<double> effective;
+  for (const SummaryRow& row : summary.rows)
+    if (row.quantity == "failure" && std::isfinite(row.effective_n)) effective.push_back(row.effective_n);
+  std::string text =
+      "All intervals are 95 % of the population that the conditions are a sample of, so\n"
+      "are the standard errors of means. Trials of one condition are alike";
+  if (!effective.empty()) {
+    const auto [least, greatest] = std::ranges::minmax(effective);
+    text += fmt::format(":\n{:.0f} to {:.0f} independent trials would tell as much of the rates of failure",
+                        least, greatest);
+  }
+  return text + ".\n--format csv holds effective_n and the intervals of these very conditions.\n";
+}
+
 }  // namespace
 
 std::string SummaryAsTable(const Summary& summary) {
@@ -183,11 +211,13 @@ std::string SummaryAsTable(const Summary& summary) {
                                              "kappa_flag", "nees_coverage", "nees_median",
                                              "rotation_error_deg", "direction_error_deg", "time_ms"})));
   text += FormatAccuracy(summary) + FormatSplit(summary) + FormatSeverity(summary);
-  text += fmt::format(
-      "Rates: intervals {}.\n"
-      "Means of successes: +- Monte-Carlo standard error. Medians: distribution-free\n"
-      "95 % intervals. auc and maa: {}.\n",
-      IntervalKindsIn(summary), DescribeIntervalKind(IntervalKind::kBetting));
+  text += summary.is_of_population
+              ? FormatPopulation(summary)
+              : fmt::format(
+                    "Rates: intervals {}.\n"
+                    "Means of successes: +- Monte-Carlo standard error. Medians: distribution-free\n"
+                    "95 % intervals. auc and maa: {}.\n",
+                    IntervalKindsIn(summary), DescribeIntervalKind(IntervalKind::kBetting));
   if (summary.repeats_per_scene > 1) {
     text += fmt::format(
         "n counts scenes: rates, scores and means are of the means over a scene's\n"

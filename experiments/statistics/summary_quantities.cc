@@ -18,7 +18,8 @@ std::optional<double> If(bool is_of_interest, double value) {
 std::optional<double> Yes(bool value) { return value ? 1.0 : 0.0; }
 
 constexpr const char* kNotSimulatedDoc =
-    "the simulator could not make the trial of a draw (only where that happened; no other quantity counts it)";
+    "the simulator could not make the trial of a draw (only where that happened; no other quantity counts "
+    "it)";
 
 bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
 

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <stdexcept>
 
+#include "experiments/study/population.h"
 #include "experiments/trial/severity_columns.h"
 #include "parameters/input_error.h"
 
@@ -39,6 +42,22 @@ std::vector<double> Bounds(std::vector<double> values) {
 TrialGroups GroupByCondition(const RunDescription& run) {
   TrialGroups groups{run.factors, {}, [](const ProblemRecord& problem) { return size_t{problem.condition}; }};
   for (const auto& condition : run.conditions) groups.levels.push_back(condition.levels);
+  return groups;
+}
+
+TrialGroups GroupByDraw(const RunDescription& run) {
+  if (run.factors.empty() || run.factors.front() != kDrawFactor)
+    throw std::logic_error("the conditions are no draws");
+  TrialGroups groups{{kDrawFactor}, {}, {}};
+  std::map<std::string, size_t> number_of;  // by the draw
+  std::vector<size_t> of_condition;
+  for (const DescribedCondition& condition : run.conditions) {
+    const std::string& draw = condition.levels.front();
+    const auto [found, is_new] = number_of.try_emplace(draw, groups.levels.size());
+    if (is_new) groups.levels.push_back({draw});
+    of_condition.push_back(found->second);
+  }
+  groups.group_of = [of_condition](const ProblemRecord& problem) { return of_condition[problem.condition]; };
   return groups;
 }
 

@@ -20,6 +20,10 @@ enum class Pooling { kPerCondition, kPooled };
 TrialGroups GroupByCondition(const RunDescription& run);
 TrialGroups OneGroup();
 
+// The conditions of a draw of a population, whatever their levels of factors: they are alike, draws are not.
+// Throws std::logic_error for a run without draws.
+TrialGroups GroupByDraw(const RunDescription& run);
+
 // Five groups with equally many trials, those with the least value of a number of the problem first
 // (kSeverityColumns: "crb_direction_deg"); equal values are in one group, and the trials of which it is
 // unknown in a sixth. Reads the run once. Throws InputError if there is no such number, or it is unknown of

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "experiments/data/make_data.h"
@@ -18,8 +17,8 @@
 namespace rcme {
 namespace {
 
-constexpr const char *kDrawsLine = "# draws: ", *kChosenLine = "# chosen draws: ", *kGivenWord = "outside of given: ",
-                     *kRefusedWord = "refused: ";
+constexpr const char *kDrawsLine = "# draws: ", *kChosenLine = "# chosen draws: ", *kDrawLine = "# draw ",
+                     *kOutsideWord = ": outside of given: ";
 
 // The last value of a key; null: there is none.
 const std::string* FindValue(const Settings& settings, const std::string& key) {
@@ -65,16 +64,6 @@ bool Meets(const Settings& resolved, const Restriction& restriction) {
   return left >= right;
 }
 
-// Draws are refused for one reason with different numbers: "refused: parallax_deg", and the rest of the
-// message.
-std::pair<std::string, std::string> KindOfReason(const std::string& reason) {
-  const size_t key_end = reason.starts_with(kRefusedWord)
-                             ? reason.find(": ", std::string_view(kRefusedWord).size())
-                             : std::string::npos;
-  if (key_end == std::string::npos) return {reason, ""};
-  return {reason.substr(0, key_end), reason.substr(key_end + 2)};
-}
-
 class Drawer {
  public:
   explicit Drawer(const Study& study)
@@ -115,8 +104,8 @@ class Drawer {
     if (last < population_.number) return static_cast<size_t>(population_.number);
     if (population_.design == PointSet::kLatinHypercube)
       throw InputError(fmt::format(
-          "conditions: draws: {} is not below number ({}), which all draws of latin_hypercube depend on", last,
-          population_.number));
+          "conditions: draws: {} is not below number ({}), which all draws of latin_hypercube depend on",
+          last, population_.number));
     return static_cast<size_t>(last) + 1;
   }
 
@@ -179,40 +168,36 @@ int CountDraws(const Population& population) {
 }
 
 std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused) {
-  std::string text = fmt::format("{}{}\n", population.draws.empty() ? kDrawsLine : kChosenLine,
-                                 CountDraws(population));
-  for (const RefusedDraw& draw : refused) {
-    text += fmt::format("# draw {}: {}{}\n", draw.number,
-                        draw.is_outside_of_given ? kGivenWord : kRefusedWord, Printable(draw.reason));
-  }
+  std::string text =
+      fmt::format("{}{}\n", population.draws.empty() ? kDrawsLine : kChosenLine, CountDraws(population));
+  for (const RefusedDraw& draw : refused)
+    text += fmt::format("{}{}{}{}\n", kDrawLine, draw.number, kOutsideWord, draw.outside_of);
   return text;
+}
+
+bool IsSampleOfPopulation(const std::string& identity) {
+  return identity.find(std::string("\n") + kDrawsLine) != std::string::npos;
 }
 
 std::string DescribePopulation(const std::string& identity) {
   int num_draws = 0, num_refused = 0;
   const char* what = "Population";
-  std::map<std::string, std::pair<int, std::string>> reasons;  // number of draws, an example
+  std::map<std::string, int> num_outside;  // by restriction
   for (const std::string& line : SplitText(identity, '\n')) {
-    int number = 0, length = 0;
     for (const char* beginning : {kDrawsLine, kChosenLine}) {
       if (!line.starts_with(beginning)) continue;
       num_draws = std::atoi(line.c_str() + std::string_view(beginning).size());
       if (beginning == kChosenLine) what = "Chosen draws, no sample of the population";
     }
-    if (std::sscanf(line.c_str(), "# draw %d: %n", &number, &length) != 1 || length == 0) continue;
+    const size_t outside = line.find(kOutsideWord);
+    if (!line.starts_with(kDrawLine) || outside == std::string::npos) continue;
     ++num_refused;
-    const auto [kind, example] = KindOfReason(line.substr(static_cast<size_t>(length)));
-    const auto [found, is_new] = reasons.try_emplace(kind, 0, "");
-    ++found->second.first;
-    if (is_new && !example.empty()) found->second.second = fmt::format("; draw {}: {}", number, example);
+    ++num_outside[line.substr(outside + std::string_view(": ").size())];
   }
   if (num_draws == 0) return {};
-  std::vector<std::pair<int, std::string>> sorted;
-  for (const auto& [kind, count] : reasons) sorted.emplace_back(-count.first, kind + count.second);
-  std::ranges::sort(sorted);
   std::string text =
       fmt::format("{}: {} of {} draws are conditions", what, num_draws - num_refused, num_draws);
-  for (const auto& [count, reason] : sorted) text += fmt::format("\n  {} {}", -count, reason);
+  for (const auto& [restriction, count] : num_outside) text += fmt::format("\n  {} {}", count, restriction);
   return text;
 }
 

@@ -3,8 +3,9 @@
 // A population says of each key of the data what it may be. Draw number i is a pure function of the study's
 // seed and i: a point of the unit cube with an axis for each key (stats/point_set.h), through the ranges. A
 // key that a scene or a law brings is drawn where that was drawn, and is absent elsewhere. Draws outside of
-// `given`, and those that the simulator refuses, keep their place in the sequence and are named
-// (StudyPlan::refused): the population is that of the draws that remain.
+// `given` keep their place in the sequence and are named (StudyPlan::refused): the population is that of the
+// draws that remain. What the simulator cannot make of these is an outcome of their trials
+// (MotionStatus::kNotSimulated).
 #pragma once
 
 #include <optional>
@@ -71,11 +72,10 @@ struct PopulationDraw {
 // the design does not have.
 std::vector<PopulationDraw> DrawPopulation(const Study& study);
 
-// Draws that are no conditions, and why.
+// A draw that is no condition.
 struct RefusedDraw {
   int number = 0;
-  bool is_outside_of_given = false;
-  std::string reason;  // the restriction, or what the simulator said
+  std::string outside_of;  // the restriction it does not meet
 };
 
 // Lines of a run's identity for them, and what such an identity says, in words: how many draws there were,
@@ -83,5 +83,7 @@ struct RefusedDraw {
 // Empty: no population.
 std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused);
 std::string DescribePopulation(const std::string& identity);
+// Whether such an identity is of draws that are a sample of a population: of neither a grid nor chosen draws.
+bool IsSampleOfPopulation(const std::string& identity);
 
 }  // namespace rcme

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "experiments/core/work/for_each_index.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"
@@ -75,8 +74,8 @@ struct RowConditions {
 
 RowConditions ConditionsOf(const Study& study, const std::vector<std::string>& levels) {
   const Settings settings = SettingsOf(study, levels);
-  DataSources made = MakeDataSources(
-      settings, study.population ? BaselineSearch::kWithFirstScene : BaselineSearch::kNow);
+  DataSources made =
+      MakeDataSources(settings, study.population ? BaselineSearch::kWithFirstScene : BaselineSearch::kNow);
   RowConditions row{std::move(made.implied_factor), {}};
   for (const auto& [level, source] : made.sources) {
     Condition condition{0, levels, source, source->NumTrials(study.trials),
@@ -96,44 +95,23 @@ void Append(RowConditions row, StudyPlan* plan) {
   }
 }
 
-// The conditions of a draw with every row of the factors, or why there are none.
-struct DrawnConditions {
-  std::vector<RowConditions> rows;
-  RefusedDraw refused;  // no reason: none
-};
-
-DrawnConditions TryDraw(const StudyPlan& plan, const PopulationDraw& draw,
-                        const std::vector<std::vector<std::string>>& of_factors) {
-  DrawnConditions drawn{{}, {draw.number, !draw.outside_of.empty(), draw.outside_of}};
-  if (drawn.refused.is_outside_of_given) return drawn;
-  try {
-    for (const std::vector<std::string>& levels : of_factors)
-      drawn.rows.push_back(ConditionsOf(plan.study, LevelsOf(draw, levels)));
-  } catch (const InputError& error) {
-    drawn.rows.clear();
-    drawn.refused.reason = error.what();
-  }
-  return drawn;
-}
-
 void AppendPopulation(StudyPlan* plan) {
   const std::vector<PopulationDraw> draws = DrawPopulation(plan->study);
   const std::vector<std::vector<std::string>> of_factors = FactorRows(plan->study);
   if (draws.size() * of_factors.size() > kMaxConditions)
     throw InputError(
         fmt::format("conditions: more than {} draws and combinations of levels", kMaxConditions));
-  std::vector<DrawnConditions> drawn(draws.size());
-  ForEachIndex(std::ssize(draws), 0, [&](std::int64_t i) {
-    const auto index = static_cast<size_t>(i);
-    drawn[index] = TryDraw(*plan, draws[index], of_factors);
-  });
-  for (DrawnConditions& of_draw : drawn) {
-    for (RowConditions& row : of_draw.rows) Append(std::move(row), plan);
-    if (!of_draw.refused.reason.empty()) plan->refused.push_back(std::move(of_draw.refused));
+  for (const PopulationDraw& draw : draws) {
+    if (!draw.outside_of.empty()) {
+      plan->refused.push_back({draw.number, draw.outside_of});
+      continue;
+    }
+    for (const std::vector<std::string>& levels : of_factors)
+      Append(ConditionsOf(plan->study, LevelsOf(draw, levels)), plan);
   }
   if (plan->conditions.empty()) {
-    throw InputError(fmt::format("conditions: none of {} draws is possible; the first: {}", draws.size(),
-                                 plan->refused.front().reason));
+    throw InputError(fmt::format("conditions: none of {} draws meets what is given; the first: {}",
+                                 draws.size(), plan->refused.front().outside_of));
   }
 }
 

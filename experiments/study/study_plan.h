@@ -25,7 +25,7 @@ struct StudyPlan {
   Study study;
   std::vector<std::string> factor_names;
   std::vector<Condition> conditions;
-  std::vector<RefusedDraw> refused;  // draws of the population that are no conditions
+  std::vector<RefusedDraw> refused;  // draws outside of what is given: no conditions
   std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // as study.estimators, or none
   std::string study_yaml;                                          // the study in full (study_file.h)
   std::string identity;  // equal for two runs that may share a result file
@@ -50,9 +50,8 @@ enum class PlanEstimators {
 };
 
 // Throws InputError: impossible settings, an unreadable folder, more than 100,000 conditions, a command that
-// nobody has allowed (command_permission.h). A draw of a population whose settings are impossible is refused,
-// in all combinations with the factors; an error if none is left. Whether its trials can be simulated shows
-// when they are made.
+// nobody has allowed (command_permission.h), a population without a draw that meets what is given. Whether
+// the trials of a draw can be simulated shows when they are made.
 StudyPlan MakePlan(const Study& study, PlanEstimators estimators = PlanEstimators::kMade);
 // The same for the study of a file, which the message then names.
 StudyPlan PlanOf(const Study& study, const std::string& path,

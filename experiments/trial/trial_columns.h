@@ -6,9 +6,9 @@
 #include <string>
 #include <type_traits>
 
-#include "experiments/trial/trial.h"
-#include "experiments/trial/stored_column.h"
 #include "experiments/trial/severity_columns.h"
+#include "experiments/trial/stored_column.h"
+#include "experiments/trial/trial.h"
 
 namespace rcme {
 

@@ -78,7 +78,7 @@ TEST_F(FailureForecastsTest, StatedOnesAreOfScoredAnswers) {
   EXPECT_FALSE(stated.forecasts[1].happened);
   EXPECT_EQ(stated.forecasts[2].probability, 0.125);
   EXPECT_TRUE(stated.forecasts[2].happened) << "an answer that is not valid has failed";
-  EXPECT_EQ(stated.refused_scenes.size(), 1U);
+  EXPECT_EQ(stated.refused_clusters.size(), 1U);
   EXPECT_EQ(stated.num_without, 1);
   const FailureBounds bounds = study_.failure;
   EXPECT_EQ(BrierOfStated(records[0], bounds), 0.5625);
@@ -170,7 +170,7 @@ TEST_F(FailureForecastsTest, MeasuresOfRightProbabilities) {
   EXPECT_TRUE(m.area.interval.Contains((0.8 / 3.0 - 0.04) / 0.32));
   EXPECT_LT(m.area.standard_error, 0.02);
   EXPECT_NEAR(static_cast<double>(m.num_sure), 750.0, 4.0 * std::sqrt(750.0 * 0.75));
-  EXPECT_TRUE(m.sure_failed_interval().Contains(0.05));
+  EXPECT_TRUE(m.sure_failed_interval.Contains(0.05));
   EXPECT_NEAR(m.risk_coverage.back().coverage, 1.0, 1e-12);
   EXPECT_NEAR(m.risk_coverage.back().risk, (m.failure.value * 3000.0 + 300.0) / 3300.0, 1e-12)
       << "refusals are failures";
@@ -191,7 +191,7 @@ TEST(AddForecastsOfRun, KeepsTheScenesOfTwoRunsApart) {
   ASSERT_EQ(all.size(), 2U);
   ASSERT_EQ(all[0].forecasts.size(), 3U);
   EXPECT_EQ(all[0].forecasts[2].cluster, 6);
-  EXPECT_EQ(all[0].refused_scenes, (std::vector<std::int64_t>{5, 8}));
+  EXPECT_EQ(all[0].refused_clusters, (std::vector<std::int64_t>{5, 8}));
   EXPECT_EQ(all[0].num_without, 3);
   EXPECT_EQ(all[1].forecasts[0].cluster, 6);
 }

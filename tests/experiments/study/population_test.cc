@@ -145,27 +145,58 @@ TEST(Population, GivenKeepsThePlaces) {
   EXPECT_THAT(DescribePopulation(plan.identity), HasSubstr("outside of given: sigma_px < 1"));
 }
 
-// A plane that no camera sees: the simulator's refusal is counted and named, and the others keep their
-// numbers.
-TEST(Population, RefusedDrawsAreNamed) {
+// Half of the planes are too far to be seen: an outcome of their trials, for every estimator, that changes no
+// other.
+TEST(Population, TrialsThatCannotBeSimulatedAreAnOutcome) {
   const Study study = DrawnStudy(
-      "  number: 32\n  ranges: {scene: plane, plane_depth_m: {any: [5, 1e8]}, motion: sideways, baseline_m: "
-      "[0.1, "
-      "0.5], plane_tilt_deg: [0, 60], max_rotation_deg: {any: [1, 180]}}\n");
+      "  number: 16\n  ranges: {scene: plane, plane_depth_m: {any: [5, 1e8]}, motion: sideways, baseline_m: "
+      "[0.1, 0.5]}\n");
   const StudyPlan plan = MakePlan(study);
-  ASSERT_FALSE(plan.refused.empty());
-  EXPECT_EQ(plan.conditions.size() + plan.refused.size(), 32U);
-  std::set<std::string> numbers;
-  for (const Condition& condition : plan.conditions) numbers.insert(condition.levels.front());
-  for (const RefusedDraw& draw : plan.refused) {
-    EXPECT_FALSE(draw.is_outside_of_given);
-    EXPECT_FALSE(draw.reason.empty());
-    EXPECT_TRUE(numbers.insert(std::to_string(draw.number)).second);
-    EXPECT_THAT(plan.identity, HasSubstr("# draw " + std::to_string(draw.number) + ": refused: "));
+  ASSERT_EQ(plan.conditions.size(), 16U);
+  int num_far = 0;
+  for (const Condition& condition : plan.conditions) {
+    const TrialResult result = RunTrialOfDraw(plan, condition, 0);
+    const bool is_far = std::stod(condition.levels[2]) > 1e6;
+    num_far += is_far;
+    ASSERT_EQ(result.records.size(), plan.study.estimators.size());
+    EXPECT_EQ(!result.why_not_simulated.empty(), is_far);
+    EXPECT_EQ(result.records[0].condition, condition.index);
+    EXPECT_EQ(WasSimulated(result.records[0]), !is_far);
+    EXPECT_EQ(OutcomeInFull(result.records[0], study.failure) == "not_simulated", is_far);
+    if (!is_far) EXPECT_EQ(result.records[0].nees, RunTrial(plan, condition, 0).records[0].nees);
+    if (is_far) EXPECT_THROW(RunTrial(plan, condition, 0), NotSimulated);
   }
-  EXPECT_EQ(numbers.size(), 32U);
-  EXPECT_EQ(plan.factor_names.front(), kDrawFactor);
-  EXPECT_THAT(DescribePopulation(plan.identity), HasSubstr("of 32 draws are conditions\n  "));
+  EXPECT_GT(num_far, 0);
+  EXPECT_LT(num_far, 16);
+}
+
+// What an author has chosen is an error.
+TEST(Population, OfAGridATrialThatCannotBeSimulatedIsAnError) {
+  const StudyPlan plan = MakePlan(ParseStudy(
+      "data: {scene: plane, plane_depth_m: 1e8, motion: sideways}\nestimators: [{name: standard}]\n",
+      "study.yaml"));
+  EXPECT_THROW(RunTrialOfDraw(plan, plan.conditions[0], 0), NotSimulated);
+}
+
+TEST(Population, ChosenDrawsAreThoseOfTheSequence) {
+  for (const char* design : {"sobol", "random"}) {
+    const std::string text = std::string("  design: ") + design + "\n" + kSmall;
+    Study many = DrawnStudy(text);
+    Override(&many, "conditions.number", "300");
+    const std::vector<PopulationDraw> all = DrawPopulation(many);
+    const Study chosen = DrawnStudy(text + "  draws: [299, 5]\n");
+    const std::vector<PopulationDraw> draws = DrawPopulation(chosen);
+    ASSERT_EQ(draws.size(), 2U);
+    EXPECT_EQ(draws[0].number, 5);
+    EXPECT_EQ(draws[0].levels, all[5].levels);
+    EXPECT_EQ(draws[1].levels, all[299].levels);
+    EXPECT_EQ(ToYaml(ParseStudy(ToYaml(chosen), "study.yaml")), ToYaml(chosen));
+    EXPECT_THAT(DescribePopulation(MakePlan(chosen).identity), HasSubstr("no sample of the population"));
+  }
+  EXPECT_THROW(MakePlan(DrawnStudy(std::string("  design: latin_hypercube\n") + kSmall + "  draws: [99]\n")),
+               InputError);
+  EXPECT_THAT(MessageOf("  draws: [3, 3]\n  ranges: {scene: plane}\n"), HasSubstr("3 stands there twice"));
+  EXPECT_THAT(MessageOf("  draws: [-1]\n  ranges: {scene: plane}\n"), HasSubstr("'-1' is not allowed"));
 }
 
 TEST(Population, AnImpossibleOneIsAnError) {
@@ -275,15 +306,16 @@ TEST_P(ReadyMade, SaysWhyAndWhence) {
   for (const auto& [key, reason] : text.reasons) EXPECT_EQ(std::ranges::count(keys, key), 1) << key;
 }
 
-// Most draws are conditions, and their trials can be drawn beyond those that the plan looks at.
+// Most trials can be made.
 TEST_P(ReadyMade, CanBeSimulated) {
   const StudyPlan plan = MakePlan(StudyOfPopulation(GetParam(), 24), PlanEstimators::kNotMade);
-  EXPECT_GE(plan.conditions.size(), 18U) << DescribePopulation(plan.identity);
+  ASSERT_EQ(plan.conditions.size() + plan.refused.size(), 24U);
+  int num_made = 0;
   for (const Condition& condition : plan.conditions) {
-    for (std::uint32_t trial = 8; trial < 12; ++trial)
-      EXPECT_NO_THROW(condition.source->Make(NameOfTrial(plan, condition, trial)))
-          << condition.levels.front();
+    for (std::uint32_t trial = 0; trial < 2; ++trial)
+      num_made += RunTrialOfDraw(plan, condition, trial).why_not_simulated.empty();
   }
+  EXPECT_GE(num_made, 36);
 }
 
 INSTANTIATE_TEST_SUITE_P(Populations, ReadyMade,

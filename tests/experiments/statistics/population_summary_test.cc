@@ -1,0 +1,193 @@
+#include "experiments/statistics/population_summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "experiments/run/run_study.h"
+#include "experiments/statistics/compare.h"
+#include "experiments/statistics/count_study.h"
+#include "experiments/statistics/forecast_measures.h"
+#include "experiments/statistics/population_median.h"
+#include "experiments/statistics/summarize_counts.h"
+#include "experiments/statistics/summary_output.h"
+#include "experiments/study/study_file.h"
+#include "stats/population_mean.h"
+#include "stats/population_rate.h"
+#include "stats/random.h"
+#include "tests/test_support/add_records.h"
+#include "tests/test_support/summarized_run.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+// 12 draws, each with two levels of a factor: 24 conditions.
+Study DrawnStudy(const std::string& more = "") {
+  return ParseStudy(
+      "name: drawn\nseed: 3\ntrials: 5\n"
+      "conditions: {number: 12, " +
+          more +
+          "ranges: {scene: plane, sigma_px: {log: [0.2, 4]}, num_matches: [30, 60]}}\n"
+          "factors: {outlier_ratio: [0, 0.5]}\n"
+          "estimators: [{name: standard}, {name: msac}]\n",
+      "drawn.yaml");
+}
+
+// In the trials of draw d the first estimator fails with probability FailureOf(d) on every trial, the second
+// on half of these.
+double FailureOf(size_t draw) { return draw % 4 == 0 ? 0.9 : 0.1; }
+
+class PopulationSummary : public testing::Test {
+ protected:
+  PopulationSummary() {
+    const StudyPlan plan = MakePlan(study_);
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("run.sqlite"), plan);
+    RandomStream rng({1, 2, 0, 0});
+    for (const Condition& condition : plan.conditions) {
+      const size_t draw = condition.index / 2;
+      for (std::uint32_t trial = 0; trial < 5; ++trial) {
+        const bool fails = rng.Uniform() < FailureOf(draw), other_fails = fails && rng.Uniform() < 0.5;
+        std::vector<TrialRecord> records;
+        for (const bool has_failed : {fails, other_fails}) {
+          TrialRecord record = Motion(trial, has_failed ? 90.0 : 0.1, 0.1, 4.0);
+          record.condition = condition.index;
+          record.estimator = static_cast<std::uint32_t>(records.size());
+          record.failure_probability = 0.3;
+          records.push_back(record);
+        }
+        AddRecords(store, records);
+        counts_[draw].num_trials += 1;
+        counts_[draw].num_events += fails;
+        pairs_[draw].num_trials += 1;
+        pairs_[draw].num_second_only += fails && !other_fails;
+      }
+    }
+    store.Commit();
+  }
+
+  ResultStore Open() const { return ResultStore::OpenForReading(folder_.Path("run.sqlite")); }
+
+  const TempFolder folder_;
+  const Study study_ = DrawnStudy();
+  std::vector<ConditionCount> counts_ = std::vector<ConditionCount>(12);
+  std::vector<ConditionPair> pairs_ = std::vector<ConditionPair>(12);
+};
+
+// Of draws, not of conditions, whose two levels of the factor are alike.
+TEST_F(PopulationSummary, RatesHaveTheIntervalOverDraws) {
+  const Summary pooled = Summarize(Open(), false, Pooling::kPooled);
+  ASSERT_TRUE(pooled.is_of_population);
+  const PopulationRate expected = MeasurePopulationRate(counts_, ConditionWeights::kByTrials);
+  int num_checked = 0;
+  for (const SummaryRow& row : pooled.rows) {
+    EXPECT_EQ(row.interval_kind, IntervalKind::kPopulation) << row.quantity;
+    if (row.estimator != "standard" || row.quantity != "failure") continue;
+    ++num_checked;
+    EXPECT_EQ(row.n, 120);
+    EXPECT_DOUBLE_EQ(row.value, expected.value);
+    EXPECT_DOUBLE_EQ(row.interval.lower, expected.interval.lower);
+    EXPECT_DOUBLE_EQ(row.interval.upper, expected.interval.upper);
+    EXPECT_DOUBLE_EQ(row.effective_n, expected.effective_n);
+    EXPECT_LT(row.effective_n, 60.0);
+    EXPECT_LT(row.of_these_conditions.upper, row.interval.upper);
+  }
+  EXPECT_EQ(num_checked, 1);
+  EXPECT_FALSE(Summarize(Open(), false).is_of_population);  // a condition's own numbers
+}
+
+TEST_F(PopulationSummary, DifferencesHaveTheIntervalOverDraws) {
+  CompareOptions options;
+  options.pooling = Pooling::kPooled;
+  options.compared = {"failure", "auc_10_deg", "max_error_median_deg"};
+  const Comparison comparison = Compare(Open(), "", options);
+  ASSERT_EQ(comparison.rows.size(), 3U);
+  const PopulationDifference expected = MeasurePopulationDifference(pairs_, ConditionWeights::kByTrials);
+  const ComparisonRow& failure = comparison.rows[0];
+  EXPECT_TRUE(failure.is_of_population);
+  EXPECT_NEAR(failure.difference, expected.value, 1e-12);
+  EXPECT_DOUBLE_EQ(failure.interval.lower, expected.interval.lower);
+  EXPECT_DOUBLE_EQ(failure.interval.upper, expected.interval.upper);
+  for (const ComparisonRow& row : comparison.rows) {
+    SCOPED_TRACE(row.event);
+    EXPECT_EQ(row.n, 120);
+    EXPECT_GE(row.holm_p_value, row.p_value);
+    if (row.kind != ComparedKind::kError) EXPECT_EQ(row.p_value < 0.05, !row.interval.Contains(0.0));
+  }
+}
+
+TEST_F(PopulationSummary, ForecastsHaveClustersOfDraws) {
+  const ForecastMeasures measures = MeasureFailureForecasts(Open()).front();
+  ASSERT_TRUE(measures.is_of_population);
+  EXPECT_EQ(measures.brier.num_clusters, 12);
+  const PopulationRate expected = MeasurePopulationRate(counts_, ConditionWeights::kByTrials);
+  EXPECT_DOUBLE_EQ(measures.failure.interval.upper, expected.interval.upper);
+  EXPECT_LE(measures.interval_of_equal_width.lower, measures.error_of_equal_width.value);
+  EXPECT_GE(measures.interval_of_equal_width.upper, measures.error_of_equal_width.value);
+}
+
+// Chosen draws are no sample.
+TEST_F(PopulationSummary, ChosenDrawsHaveNone) {
+  const StudyPlan plan = MakePlan(DrawnStudy("draws: [1, 2, 3], "));
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("chosen.sqlite"), plan);
+    RunStudy(plan, 2, &store);
+  }
+  const ResultStore store = ResultStore::OpenForReading(folder_.Path("chosen.sqlite"));
+  EXPECT_FALSE(Summarize(store, false, Pooling::kPooled).is_of_population);
+}
+
+// Of kept counts the same numbers, also where trials were not simulated: planes too far to be seen.
+TEST(PopulationSummaryOfCounts, IsThatOfTheTrials) {
+  const Study study = ParseStudy(
+      "trials: 4\nconditions: {number: 10, ranges: {scene: plane, plane_depth_m: {any: [5, 1e8]}, motion: "
+      "sideways, sigma_px: {log: [0.2, 9]}, num_matches: 40}}\nestimators: [{name: standard}]\n",
+      "study.yaml");
+  const StudyPlan plan = MakePlan(study);
+  const TempFolder folder;
+  {
+    ResultStore store = ResultStore::OpenForRun(folder.Path("trials.sqlite"), plan);
+    RunStudy(plan, 2, &store);
+  }
+  CountStudy(plan, 2, folder.Path("counts.sqlite"), Shard{1, 1});
+  const Summary of_trials =
+      Summarize(ResultStore::OpenForReading(folder.Path("trials.sqlite")), false, Pooling::kPooled);
+  const Summary of_counts =
+      SummarizeCounts(OpenCounts(folder.Path("counts.sqlite")), false, Pooling::kPooled);
+  EXPECT_EQ(SummaryAsCsv(of_trials), SummaryAsCsv(of_counts));
+  const auto row = [&](const std::string& quantity) {
+    return *std::ranges::find(of_trials.rows, quantity, &SummaryRow::quantity);
+  };
+  EXPECT_EQ(row("not_simulated").n, 40);
+  EXPECT_GT(row("not_simulated").value, 0.0);
+  EXPECT_EQ(row("failure").n, std::llround(40 * (1.0 - row("not_simulated").value)));
+}
+
+// Numbers of 30 draws whose logarithms differ by as much between draws as within: the interval of the
+// population covers the median 1 in 400 samples as often as it says, that of independent numbers does not.
+TEST(PopulationMedianTest, CoversWhereDrawsDiffer) {
+  constexpr int kNumSamples = 400;
+  int num_covered = 0, num_covered_as_independent = 0;
+  for (std::uint32_t sample = 0; sample < kNumSamples; ++sample) {
+    RandomStream rng({7, sample, 0, 0});
+    std::vector<StreamMedian> draws(30);
+    for (StreamMedian& draw : draws) {
+      const double center = rng.Normal();
+      for (int i = 0; i < 40; ++i) draw.Add(std::exp(center + rng.Normal()));
+    }
+    std::vector<const StreamMedian*> pointers;
+    for (const StreamMedian& draw : draws) pointers.push_back(&draw);
+    const PopulationMedian median = MeasurePopulationMedian(pointers);
+    num_covered += median.interval.Contains(1.0);
+    num_covered_as_independent += median.of_these_conditions.Contains(1.0);
+  }
+  // At .95 more than 367 with probability .998; at .90 with .02.
+  EXPECT_GE(num_covered, 368);
+  EXPECT_LT(num_covered_as_independent, 250);
+}
+
+}  // namespace
+}  // namespace rcme
