@@ -156,6 +156,8 @@ def sections(run):
     """(findings and figures, the panel beside them, what follows), each [(part of the id, heading, content)]."""
     beside = [("severity", "Severity of the problems", severity_section(run))] if len(run.problems.rows) else []
     first = [("findings", "Findings", findings_section(run)), ("figures", "Figures", figures(run))]
+    if run.marginals is not None:
+        first.insert(0, ("marginals", "Where it is not what it claims", tables.marginals(run)))
     parts = [("results", "Results", results_section(run))]
     if run.reliability is not None:
         parts.append(("reliability", "Probability of failure", reliability_section(run)))

@@ -9,6 +9,8 @@
 #include "experiments/core/text/json_output.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/forecast_output.h"
+#include "experiments/statistics/marginals_output.h"
+#include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/report_findings.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/trial/trial_event.h"
@@ -105,6 +107,11 @@ Json RunAsJson(const std::string& path, const ResultStore& store) {
           {"events", events}};
 }
 
+// Whether regimes of a population can be told apart.
+bool HasMarginals(const RunDescription& run) {
+  return HasPopulationIntervals(run) && GroupByDraw(run).levels.size() >= kLeastConditions;
+}
+
 void WriteFiles(const std::string& run, const std::string& against, const std::string& folder) {
   const ResultStore store = ResultStore::OpenForReading(run);
   const Summary summary = Summarize(store, /*with_times=*/false);
@@ -122,6 +129,10 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   if (HasFailureProbabilities(summary)) {
     const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(store);
     WriteFileWhole(folder + "/reliability.json", ForecastsAsJson(summary.study, "", measures));
+  }
+  if (comparison.caution.empty() && HasMarginals(store.Description())) {
+    WriteFileWhole(folder + "/marginals.csv",
+                   MarginalsAsCsv(MeasureMarginals(store, {.with_pairs = false, .estimators = {}})));
   }
   if (!comparison.rows.empty()) WriteFileWhole(folder + "/comparison.csv", ComparisonAsCsv(comparison));
 }

@@ -74,8 +74,9 @@ def check_no_repetition(path, part, keys, at):
 
 
 # Of paired comparisons: what a file calls a test and an interval, in words.
-TESTS = {"mcnemar": "McNemar", "discordant_sequence": "anytime-valid", "betting": "betting"}
-DIFFERENCE_INTERVALS = {"tango": "Tango's 95 %", "betting": "anytime-valid 95 % (betting)"}
+OF_POPULATION = "95 % of the population, over its draws"
+TESTS = {"mcnemar": "McNemar", "discordant_sequence": "anytime-valid", "betting": "betting", "population": "population"}
+DIFFERENCE_INTERVALS = {"tango": "Tango's 95 %", "betting": "anytime-valid 95 % (betting)", "population": OF_POPULATION}
 
 
 def test_in_words(rows):
@@ -89,6 +90,7 @@ def difference_interval_in_words(rows):
 
 INTERVALS = {"exact": "exact 95 % (Clopper-Pearson)", "anytime_valid": "anytime-valid 95 % (confidence sequence)",
              "weighted": "weighted 95 % (Fay-Feuer, cautious upper end)", "betting": "anytime-valid 95 % (betting)",
+             "population": OF_POPULATION,
              "log_student": "approximate 95 % (Student on the logarithm)"}
 
 

@@ -1,12 +1,13 @@
 """Reads what `rcme report` writes for its page: a folder run_NNNN per run with run.json, summary.csv and, where there is
-more than one estimator, comparison.csv, where one states probabilities, reliability.json (experiments/statistics/report_data.h)."""
+more than one estimator, comparison.csv, where one states probabilities, reliability.json, where conditions are draws of a
+population, marginals.csv (experiments/statistics/report_data.h)."""
 
 import pathlib
 from dataclasses import dataclass
 
 from common.command_line import PlotError
 from common.json_file import read_object
-from common.summary_csv import Summary, numbers, read_comparison, read_summary
+from common.summary_csv import Summary, numbers, read_comparison, read_summary, read_table
 from reliability_figure.reliability_file import read_reliability
 
 FORMAT = "rcme report 1"
@@ -15,6 +16,8 @@ NEEDED = {  # key of run.json: its type
     "trials_planned": int, "until": str, "study_yaml": str, "reference": str, "factors": list, "estimators": list, "conditions": list,
     "failure_bounds": list, "quantities": list, "events": list,
 }
+MARGINAL_NUMBERS = ("value", "lower", "upper", "claimed", "excess")
+MARGINAL_COLUMNS = ("estimator", "regime", "quantity", *MARGINAL_NUMBERS, "num_conditions", "n")
 SCENE = "scene"  # the "estimator" of rows that describe the simulated problems themselves
 
 
@@ -27,6 +30,7 @@ class Run:
     whole_summary: Summary
     comparison: object  # Summary, or None where there is nothing to compare
     reliability: object = None  # Reliability, or None where no estimator states probabilities
+    marginals: object = None  # Table, or None where the conditions are no draws of a population
 
     def of_scene(self):
         """Which rows of the summary describe the problems; a study may also call an estimator so."""
@@ -75,8 +79,22 @@ def read_run(number, folder):
         check(comparison, ("risk_difference", "lower", "upper", p_value, "p_holm"), facts)
         comparison.path = "comparison.csv"  # from here on a message is part of the page
     summary.path = "summary.csv"
-    stated = folder / "reliability.json"
-    return Run(number, facts, summary, comparison, read_reliability(str(stated)) if stated.exists() else None)
+    return Run(number, facts, summary, comparison, read_stated(folder / "reliability.json"),
+               read_marginals(folder / "marginals.csv"))
+
+
+def read_stated(path):
+    return read_reliability(str(path)) if path.exists() else None
+
+
+def read_marginals(path):
+    """Their numbers as floats; the claim of a failure rate is NaN."""
+    if not path.exists():
+        return None
+    table = read_table(str(path), MARGINAL_COLUMNS, "rcme marginals RUN --format csv")
+    for column in MARGINAL_NUMBERS:
+        table.rows[column] = numbers(table, column, may_be_empty=True)
+    return table
 
 
 def read_runs(folder):

@@ -12,6 +12,7 @@ SHOWN = ("failure", "failure_or_refusal", "no_candidate", "other_refusal", "kapp
          "rotation_error_deg", "direction_error_deg", "auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg",
          "max_error_median_deg")  # of the results; all others stand in the table of every number
 PANEL = {"impossible": "impossible", "parallax_median_deg": "parallax", "homography_share": "plane", "crb_direction_deg": "bound"}
+WORST_MARGINALS = 12
 MANY_ROWS = 40  # a longer table is folded
 SIGNIFICANCE_LEVEL = 0.05
 DASH = "\u2013"
@@ -143,6 +144,24 @@ def reliability(run):
         "inliers stands in, recalibrated on the other half of the scenes of this run.",
         ["estimator", "P from", "n", "refused", "mean P", "failed", "Brier", "ECE", "slope", "AUC", "AURC",
          f"failed at P \u2264 {at_most}", f"trials at P \u2264 {at_most}"], [(None, lines)], class_="results")
+
+
+def marginals(run):
+    """The regimes in which an estimator is farthest from what is claimed, the first of them first."""
+    rows = run.marginals.rows
+    worst = rows[(rows.excess > 0) & (rows.regime != "all")]
+    lines = [[style.label_of(row.estimator), row.regime, row.quantity,
+              joined([f"{100 * row.value:.1f} %", Html("<br>"), small(f"[{100 * row.lower:.1f}, {100 * row.upper:.1f}]")]),
+              f"{100 * row.claimed:.0f} %", f"{row.num_conditions} ({int(row.n):,})"]
+             for row in worst.head(WORST_MARGINALS).itertuples()]
+    if not lines:
+        return element("p", "In no regime does an interval exclude what is claimed.")
+    return table(
+        f"The {len(lines)} of {len(worst)} regimes that are farthest from what is claimed, by the distance of the interval "
+        f"in its half widths. The {len(rows)} intervals hold together with 95 % for the population of conditions, so that "
+        "the worst may be looked for. P: stated probability of failure.",
+        ["estimator", "conditions with", "quantity", "value", "claimed", "conditions (trials)"], [(None, lines)],
+        num_names=2, class_="results")
 
 
 def severity(run):

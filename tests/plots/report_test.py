@@ -46,6 +46,22 @@ class Page(ReportTest):
             self.assertTrue(address.startswith(("data:", "#")), address)
         self.assertNotIn("url(", report.CSS)
 
+    def test_the_worst_regimes_of_a_population_come_first(self):
+        self.add_run()
+        self.assertNotIn("Where it is not what it claims", self.page())
+        (self.data / "run_0001" / "marginals.csv").write_text(
+            "estimator,regime,quantity,value,lower,upper,claimed,excess,num_conditions,n\n"
+            "mine,noise = laplace,coverage,0.4,0.31,0.52,0.95,3.2,17,93\n"
+            "standard,all,failure,0.2,0.1,0.3,,0,40,400\n"
+            "standard,noise = laplace,failure,0.2,0.1,0.3,,0,17,93\n")
+        page = self.page()
+        section = page[page.index("Where it is not what it claims</h3>"):page.index("Findings</h3>")]
+        self.assertIn("40.0 %", section)
+        self.assertIn("[31.0, 52.0]", section)
+        self.assertIn("17 (93)", section)
+        self.assertNotIn("[10.0, 30.0]", section)  # nothing is claimed of failures
+        self.assertIn("The 1 of 1 regimes", section)
+
     def test_every_number_of_the_summary_is_there(self):
         self.add_run()
         page = Structure(self.page())
