@@ -127,19 +127,20 @@ def again_section(run):
     facts, name = run.facts, file_name(run.facts["name"])
     here, reference = shlex.quote(facts["run"]), shlex.quote(facts["reference"])
     options, but = same_trials(run)
+    pooled = " --pooled" if run.is_of_population else ""
     return joined([
         element("p", "A trial is a function of (seed, condition, trial) alone: these commands give the same numbers, "
                 "whatever the number of threads. ", but, study_link(run), ", then:"),
         element("pre", code(f"rcme run {name}.yaml {options} --out {name}.sqlite\n"
-                            f"rcme summarize {name}.sqlite --format csv\n"
-                            f"rcme compare {name}.sqlite --against {reference} --format csv\n"
+                            f"rcme summarize {name}.sqlite{pooled} --format csv\n"
+                            f"rcme compare {name}.sqlite{pooled} --against {reference} --format csv\n"
                             f"rcme report {name}.sqlite --against {reference} --out {name}.html")),
         element("p", "The numbers of this page, out of the result file at hand:"),
-        listed(joined(["rates, means, intervals, n: ", code(f"rcme summarize {here} --format csv"),
+        listed(joined(["rates, means, intervals, n: ", code(f"rcme summarize {here}{pooled} --format csv"),
                        ", the row of that condition, estimator and quantity; the names are those below the headings and of ",
                        code("rcme list quantities")]),
                joined(["differences and p-values: ",
-                       code(f"rcme compare {here} --against {reference} --format csv")]),
+                       code(f"rcme compare {here}{pooled} --against {reference} --format csv")]),
                joined(["one trial with everything about it: ",
                        code(f"rcme replay {here} --condition C --trial T"),
                        ", with C of the table below and T from 0"])),

@@ -114,15 +114,20 @@ bool HasMarginals(const RunDescription& run) {
 
 void WriteFiles(const std::string& run, const std::string& against, const std::string& folder) {
   const ResultStore store = ResultStore::OpenForReading(run);
-  const Summary summary = Summarize(store, /*with_times=*/false);
+  const bool is_of_population = HasPopulationIntervals(store.Description());
+  const Pooling pooling = is_of_population ? Pooling::kPooled : Pooling::kPerCondition;
+  const Summary summary = Summarize(store, /*with_times=*/false, pooling);
   if (summary.num_trials_done == 0) {
     throw InputError(fmt::format("{}: holds no trial yet; `rcme run` with --out {} adds them", run, run));
   }
-  const Comparison comparison = Compare(store, against);
+  CompareOptions options;
+  options.pooling = pooling;
+  const Comparison comparison = Compare(store, against, options);
   Json json = RunAsJson(run, store);
   json["trials_done"] = summary.num_trials_done;
   json["reference"] = comparison.reference;
   json["caution"] = comparison.caution;
+  json["is_of_population"] = is_of_population;
   json["findings"] = FindingsOf(summary, comparison);
   WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));
   WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));

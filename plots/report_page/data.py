@@ -37,6 +37,11 @@ class Run:
         return (self.whole_summary.rows.estimator == SCENE) & (SCENE not in self.facts["estimators"])
 
     @property
+    def is_of_population(self):
+        """Whether the tables are of all conditions together, with intervals of the population they are drawn from."""
+        return bool(self.facts.get("is_of_population"))
+
+    @property
     def summary(self):
         return self.whole_summary.with_rows(self.whole_summary.rows[~self.of_scene()])
 

@@ -110,6 +110,9 @@ def is_full_factorial(rows, factors):
 
 def figures(run):
     """All figures of a run, by which factors vary and how."""
+    if run.is_of_population:
+        return element("p", "The conditions are draws of a population, no two of which share their levels. How a rate depends "
+                       "on them: ", code(f"rcme surface {shlex.quote(run.facts['run'])}"), ".", class_="note")
     rows = run.summary.rows
     varying = [factor for factor in run.summary.factors if rows[factor].nunique() > 1]
     if not varying:

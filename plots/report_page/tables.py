@@ -67,6 +67,8 @@ def replay_command(run, condition, trial):
 
 def trial_to_replay(run, condition, estimator):
     """The first failure or refusal of an estimator in a condition, else the first trial."""
+    if run.is_of_population:
+        return DASH
     first = run.facts["conditions"][condition]["first"][run.facts["estimators"].index(estimator)]
     for event in ("failure", "refusal"):
         if first[event] is not None:
@@ -76,6 +78,8 @@ def trial_to_replay(run, condition, estimator):
 
 def condition_heading(run, row, factors, with_replay=False):
     """'condition 4: outlier ratio = 0.4', and how to run one of its trials again."""
+    if run.is_of_population:
+        return f"all {len(run.facts['conditions'])} conditions, with intervals of the population that they are drawn from"
     levels = ", ".join(style.level_in_words(factor, row[factor]) for factor in factors)
     words = f"condition {row['condition']}" + (f": {levels}" if levels else "")
     return joined([words, element("span", replay_command(run, row["condition"], "T"), class_="aside")
@@ -108,7 +112,7 @@ def results(run):
                             *(cell(of.get(quantity), num_trials) for quantity in shown),
                             trial_to_replay(run, int(row["condition"]), row["estimator"])]))
     return table(
-        "Rates of each estimator in each condition, in per cent of its n trials with "
+        f"Rates of each estimator {'over all conditions' if run.is_of_population else 'in each condition'}, in per cent of its n trials with "
         f"{interval_in_words(run.summary.rows[run.summary.rows.kind == 'rate'])} intervals, scores with anytime-valid "
         "ones, medians with distribution-free ones, and means with their Monte-Carlo standard errors; n stands with a "
         "number that is not of all trials. "
