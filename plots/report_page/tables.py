@@ -112,8 +112,8 @@ def results(run):
                             *(cell(of.get(quantity), num_trials) for quantity in shown),
                             trial_to_replay(run, int(row["condition"]), row["estimator"])]))
     return table(
-        f"Rates of each estimator {'over all conditions' if run.is_of_population else 'in each condition'}, in per cent of its n trials with "
-        f"{interval_in_words(run.summary.rows[run.summary.rows.kind == 'rate'])} intervals, scores with anytime-valid "
+        f"Rates of each estimator {'over all conditions' if run.is_of_population else 'in each condition'}, in per cent of "
+        f"its n trials with {interval_in_words(run.summary.rows[run.summary.rows.kind == 'rate'])} intervals, scores with anytime-valid "
         "ones, medians with distribution-free ones, and means with their Monte-Carlo standard errors; n stands with a "
         "number that is not of all trials. "
         "T is a trial worth a look: the command beside the condition runs it again.",
