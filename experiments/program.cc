@@ -101,6 +101,7 @@ A first session:
   AddCheckCommand(app);
   AddMergeCommand(app);
   AddSolveCommand(app);
+  AddSurfaceCommand(app);
   app.group("Thresholds, efforts and answers made elsewhere");
   AddTuneCommand(app);
   AddTransferCommand(app);

@@ -34,6 +34,7 @@ void AddTransferCommand(CLI::App& app);
 void AddMapCommand(CLI::App& app);
 void AddRareCommand(CLI::App& app);
 void AddSolveCommand(CLI::App& app);
+void AddSurfaceCommand(CLI::App& app);
 void AddModelChoiceCommand(CLI::App& app);
 void AddValidateCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);

@@ -255,6 +255,16 @@ std::string Name(MarginalQuantity quantity) {
   return {};
 }
 
+std::vector<Moments> CollectConditionMoments(const ResultStore& run, size_t estimator,
+                                             MarginalQuantity quantity) {
+  const Values values = CollectValues(run, run.Description());
+  const auto place = std::ranges::find(kMarginalQuantities, quantity) - std::begin(kMarginalQuantities);
+  std::vector<Moments> moments;
+  for (const ConditionValues& one : values[estimator][static_cast<size_t>(place)])
+    moments.push_back(one.moments);
+  return moments;
+}
+
 std::vector<Regime> ListRegimes(const RunDescription& run, bool with_pairs) {
   std::vector<Regime> regimes = {{"", std::vector<bool>(run.conditions.size(), true)}};
   std::vector<Level> levels;

@@ -12,6 +12,7 @@
 
 #include "experiments/run/store/result_store.h"
 #include "stats/intervals.h"
+#include "stats/moments.h"
 
 namespace rcme {
 
@@ -57,6 +58,11 @@ struct Marginals {
   size_t num_intervals = 0;
   std::vector<Marginal> rows;  // the farthest from what is claimed first, then by regime as listed
 };
+
+// Of one estimator and quantity: what the trials of each condition say of it. Throws InputError for weighted
+// trials.
+std::vector<Moments> CollectConditionMoments(const ResultStore& run, size_t estimator,
+                                             MarginalQuantity quantity);
 
 struct MarginalOptions {
   bool with_pairs = false;

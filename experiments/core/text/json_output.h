@@ -20,6 +20,7 @@ inline constexpr const char* kRareFormat = "rcme rare 1";
 inline constexpr const char* kReliabilityFormat = "rcme reliability 1";
 inline constexpr const char* kReportFormat = "rcme report 1";
 inline constexpr const char* kSummaryFormat = "rcme summary 1";
+inline constexpr const char* kSurfaceDataFormat = "rcme surface data 1";
 inline constexpr const char* kTransferFormat = "rcme transfer 1";
 inline constexpr const char* kTrialFormat = "rcme trial 2";
 inline constexpr const char* kTuningFormat = "rcme tuning 1";

@@ -1,0 +1,191 @@
+#!/usr/bin/python3
+"""Tests of plots/surface_report.py and what it is made of; run as: /usr/bin/python3 tests/plots/surface_report_test.py"""
+
+import unittest
+
+from plot_test_case import PlotTestCase
+
+import numpy as np
+import pandas as pd
+import surface_report as script
+import yaml
+from known_surface import conditions, events, surface_file
+from scipy import stats
+from surface.cross_validation import count_masses, cross_validate, exact_interval, score_count, transform_histogram
+from surface.effects import WIDEST_BAND, measure_effects
+from surface.proposals import propose
+from surface.surface_data import read_surface_data
+
+NUMBER, TRIALS = 100, 20
+
+
+class SurfaceTestCase(PlotTestCase):
+    script, given = script, ["surface.json"]
+
+    def known(self, **more):
+        """The file of a surface that is known, with later draws."""
+        levels, logit = conditions(NUMBER, 1)
+        return surface_file(levels, events(logit, TRIALS, 0.4, 1), TRIALS, conditions(60, 2)[0], **more)
+
+    def noise(self):
+        levels, _ = conditions(NUMBER, 1)
+        return surface_file(levels, events(np.full(NUMBER, -1.0), TRIALS, 0.4, 2), TRIALS)
+
+    def data(self, value):
+        return read_surface_data(self.write(value))
+
+
+class PredictionTest(SurfaceTestCase):
+    def test_masses_of_counts_are_those_of_the_binomial_distribution_where_the_rate_is_known(self):
+        np.testing.assert_allclose(count_masses(20, 0.3, 1e-9), stats.binom(20, 1 / (1 + np.exp(-0.3))).pmf(range(21)), atol=1e-9)
+
+    def test_masses_of_counts_are_averaged_over_the_logit(self):
+        logits = np.linspace(-8, 8, 4001)
+        weights = stats.norm(0.5, 1.1).pdf(logits)
+        expected = np.average(stats.binom.pmf(7, 12, 1 / (1 + np.exp(-logits))), weights=weights)
+        self.assertAlmostEqual(count_masses(12, 0.5, 1.1)[7], expected, places=6)
+
+    def test_exact_intervals_are_clopper_and_pearsons(self):
+        np.testing.assert_allclose(exact_interval(5, 20), (0.08657, 0.49105), atol=1e-5)  # R: binom.test(5, 20)
+        self.assertEqual(exact_interval(0, 20)[0], 0)
+        self.assertEqual(exact_interval(20, 20)[1], 1)
+
+    def test_counts_from_the_prediction_fill_its_intervals_and_bins(self):
+        random = np.random.default_rng(1)
+        counts = random.binomial(15, 1 / (1 + np.exp(-random.normal(-1, 0.8, 3000))))
+        scored = pd.DataFrame([score_count(k, 15, -1, 0.8) for k in counts])
+        self.assertAlmostEqual(scored[3].mean(), scored[4].mean(), delta=0.015)
+        np.testing.assert_allclose(transform_histogram(scored[[5, 6]].to_numpy(float)), 0.1, atol=0.02)
+
+    def test_a_surface_predicts_better_than_a_constant_and_noise_does_not(self):
+        for value, beats in ((self.known(), True), (self.noise(), False)):
+            data = self.data(value)
+            check = cross_validate(data, data.fit())
+            self.assertEqual(check.beats_constant, beats)
+            share, low, high, expected = check.inside
+            self.assertTrue(low <= expected <= high, f"{share} of the held-out conditions inside, {expected} expected")
+
+
+class EffectsTest(SurfaceTestCase):
+    def test_curves_and_maps_are_those_of_the_known_surface(self):
+        data = self.data(self.known())
+        effects = measure_effects(data, data.fit())
+        curve = effects.curves[effects.curves.group == "outlier_ratio"]
+        self.assertTrue((curve.lower < curve.rate).all() and (curve.rate < curve.upper).all())
+        others, _ = conditions(2000, 3)
+        held = [low < known_mean(others, ratio) < high
+                for ratio, low, high in zip(curve.level.astype(float), curve.lower, curve.upper)]
+        self.assertGreater(np.mean(held), 0.6)  # bands of one curve hold or miss together
+        self.assertIn(("sigma_px", "outlier_ratio"), set(zip(effects.maps["first"], effects.maps["second"])))
+        self.assertTrue((effects.maps.is_known <= (effects.maps.upper - effects.maps.lower <= WIDEST_BAND)).all())
+
+    def test_a_corner_without_conditions_is_not_known(self):
+        levels, logit = conditions(200, 1, num_idle=0)
+        is_there = ~((levels.sigma_px.astype(float) > 0.8) & (levels.outlier_ratio.astype(float) > 0.4)).to_numpy()
+        levels, logit = levels[is_there].reset_index(drop=True), logit[is_there]
+        data = self.data(surface_file(levels, events(logit, TRIALS, 0.4, 1), TRIALS))
+        maps = measure_effects(data, data.fit()).maps
+        cells = maps[(maps["first"] == "sigma_px") & (maps["second"] == "outlier_ratio")]
+        is_corner = (cells.first_level.astype(float) > 1.5) & (cells.second_level.astype(float) > 0.62)
+        self.assertFalse(cells.is_known[is_corner].any())
+        self.assertGreater(cells.is_known[~is_corner].mean(), 0.6)
+
+
+def known_mean(levels, ratio):
+    """Mean rate of the known surface where all conditions have that outlier ratio; 0.4 is each condition's own deviation."""
+    log_sigma, dof = np.log(levels.sigma_px.astype(float)), levels.student_dof.replace("-", "6").astype(float)
+    logit = -1 + 1.2 * log_sigma + (3 + 1.5 * log_sigma) * (ratio - 0.4) + (levels.noise == "student_t") * (1 - 0.2 * (dof - 6))
+    return (1 / (1 + np.exp(-logit.to_numpy()[:, None] - 0.4 * stats.norm.ppf((np.arange(20) + 0.5) / 20)))).mean()
+
+
+class ProposalTest(SurfaceTestCase):
+    def test_the_least_known_are_chosen_and_one_choice_changes_the_next(self):
+        data = self.data(self.known())
+        model = data.fit()
+        chosen = propose(data, model, 8)
+        self.assertEqual(chosen.draw.nunique(), 8)
+        self.assertTrue((chosen.draw >= NUMBER).all())
+        self.assertTrue((np.diff(chosen.score) <= 1e-12).all())
+        least = propose(data, model, 60)
+        self.assertLess(least.score.iloc[-1], 0.7 * least.score.iloc[0])
+
+    def test_a_copy_of_a_chosen_condition_is_not_chosen_next(self):
+        value = self.known()
+        first = propose(self.data(value), self.data(value).fit(), 1).draw[0]
+        copy = next(candidate for candidate in value["candidates"] if candidate["draw"] == first)
+        value["candidates"].append(dict(copy, draw=900))
+        data = self.data(value)
+        chosen = propose(data, data.fit(), 2)
+        self.assertEqual(len({first, 900} & set(chosen.draw)), 1)
+
+    def test_with_a_level_the_least_decided_are_chosen(self):
+        data = self.data(self.known())
+        model = data.fit()
+        chosen = propose(data, model, 5, level=0.5)
+        mean, sd = model.predict(data.candidates[data.names], own=False)
+        self.assertTrue((chosen.score <= 0.5).all())
+        z = dict(zip(data.candidates.draw, np.abs(mean) / sd))
+        self.assertEqual(chosen.draw[0], min(z, key=z.get))
+
+
+class ScriptTest(SurfaceTestCase):
+    def out(self):
+        return self.folder / "out"
+
+    def written(self):
+        return sorted(path.name for path in self.out().iterdir())
+
+    def test_a_surface_is_reported_drawn_and_tabled(self):
+        code, out, err = self.run_script(self.write(self.known()), "--out", self.out(), "--propose", "4")
+        self.assertEqual(code, 0, err)
+        figures = [f"{name}.{kind}" for name in ("check", "indices", "curves", "maps") for kind in ("pdf", "png")]
+        tables = [f"{name}.csv" for name in ("cross_validation", "curves", "indices", "maps", "proposed")]
+        self.assertEqual(self.written(), sorted([*figures, *tables, "next.yaml", "report.txt"]))
+        report = (self.out() / "report.txt").read_text(encoding="utf-8")
+        self.assertLessEqual(max(map(len, report.splitlines())), 80)
+        for part in ("better than that", "All are random draws", "sigma_px", "first-order", "noise +"):
+            self.assertIn(part, report)
+        self.assertIn(report, out)
+        study = yaml.safe_load((self.out() / "next.yaml").read_text(encoding="utf-8"))
+        draws = sorted(pd.read_csv(self.out() / "proposed.csv").draw)
+        self.assertEqual(study["conditions"]["draws"], draws)
+        self.assertEqual(len(draws), 4)
+
+    def test_noise_gets_no_maps_and_what_stood_there_is_gone(self):
+        self.out().mkdir()
+        (self.out() / "maps.png").write_text("old", encoding="utf-8")
+        code, out, err = self.run_script(self.write(self.noise()), "--out", self.out(), "--no-figures")
+        self.assertEqual(code, 0, err)
+        self.assertIn("DOES NOT PREDICT BETTER", out)
+        self.assertEqual(self.written(), ["cross_validation.csv", "report.txt"])
+
+    def test_chosen_conditions_speak_for_no_population(self):
+        """A second run of proposed draws: the mean over the population is that of the first."""
+        value = self.known()
+        value["runs"].append({"path": "next.sqlite", "study": "known_next", "is_sample": False})
+        value["conditions"] += [dict(condition, run=1, draw=500 + i, mean=1.0, sd=0.0)
+                                for i, condition in enumerate(value["conditions"][:20])]
+        mean = f"{100 * np.mean([condition['mean'] for condition in value['conditions'][:NUMBER]]):.1f} %"
+        code, out, err = self.run_script(self.write(value), "--out", self.out(), "--no-figures")
+        self.assertEqual(code, 0, err)
+        self.assertIn(mean, " ".join(out.split()))
+        self.assertIn("the other 20 were chosen", " ".join(out.split()))
+        self.assertTrue((pd.read_csv(self.out() / "cross_validation.csv").run == 0).all())
+
+    def test_without_a_sample_the_report_says_so(self):
+        code, out, err = self.run_script(self.write(self.known(is_sample=False)), "--out", self.out(), "--no-figures")
+        self.assertEqual(code, 0, err)
+        self.assertIn("None of them is a random draw", " ".join(out.split()))
+
+    def test_what_is_wrong_is_named(self):
+        few = self.known()
+        few["conditions"] = few["conditions"][:19]
+        self.assert_refused(self.run_script(self.write(few), "--out", self.out()), "at least 20 conditions")
+        self.assert_refused(self.run_script(self.write("{}"), "--out", self.out()), "surface.json")
+        self.assert_refused(self.run_script(self.write(self.noise()), "--out", self.out(), "--propose", "3"), "--propose")
+        self.assert_refused(self.run_script(self.write(self.known()), "--out", self.out(), "--propose", "3", "--level", "1"),
+                            "--level 1")
+
+
+if __name__ == "__main__":
+    unittest.main()
