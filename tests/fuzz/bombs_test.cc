@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <zlib.h>
 
 #include <filesystem>
 
@@ -19,6 +18,7 @@
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/peak_memory.h"
+#include "tests/test_support/png.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -159,28 +159,6 @@ TEST(YamlBomb, TooManyCombinationsAreRefusedBeforeTheyAreBuilt) {
       {"bomb.yaml:", "factors: more than 100000 combinations of levels"}));
 }
 
-// A PNG of one colour: signature, IHDR, IDAT, IEND, each chunk with its CRC.
-std::string GreyPng(std::uint32_t width, std::uint32_t height) {
-  const auto big_endian = [](std::uint32_t x) {
-    return std::string{static_cast<char>(x >> 24), static_cast<char>(x >> 16), static_cast<char>(x >> 8),
-                       static_cast<char>(x)};
-  };
-  const auto chunk = [&](const std::string& type, const std::string& data) {
-    const std::string body = type + data;
-    const auto crc = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-    return big_endian(static_cast<std::uint32_t>(data.size())) + body +
-           big_endian(static_cast<std::uint32_t>(crc));
-  };
-  const std::string rows(static_cast<size_t>(height) * (width + 1), '\0');
-  std::string packed(compressBound(rows.size()), '\0');
-  uLongf size = packed.size();
-  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(rows.data()),
-           rows.size());
-  return "\x89PNG\r\n\x1A\n" +
-         chunk("IHDR", big_endian(width) + big_endian(height) + std::string("\x08\0\0\0\0", 5)) +
-         chunk("IDAT", packed.substr(0, size)) + chunk("IEND", "");
-}
-
 class ImageBomb : public testing::Test {
  protected:
   testing::AssertionResult IsRefused(const std::string& bytes, const std::vector<std::string>& fragments) {
@@ -199,7 +177,7 @@ class ImageBomb : public testing::Test {
 TEST_F(ImageBomb, TheHeaderIsReadBeforeTheImage) {
   using namespace std::string_literals;
   const std::string too_many = "px are too many; at most 268435456 are read";
-  std::string png = GreyPng(16, 16);
+  std::string png = GreyPng(16, std::vector<std::uint8_t>(256));
   png.replace(16, 8, "\0\0\x40\0\0\0\x40\1"s);
   EXPECT_TRUE(IsRefused(png, {"image: 16384 x 16385 " + too_many}));
   EXPECT_TRUE(IsRefused("\xFF\xD8\xFF\xE0\0\4ab\xFF\xFF\xC2\0\x0B\x08\xFF\xDC\xFF\xDB\1\1\x11\0"s,
@@ -224,7 +202,7 @@ TEST_F(ImageBomb, OtherFormatsAndDamagedImages) {
        {""s, "x"s, "GIF89a"s, "P7\nWIDTH 1"s, "II+\0\x08\0\0\0"s, "RIFF....WEBP"s}) {
     EXPECT_TRUE(IsRefused(bytes, {"image: is not a PNG, JPEG, TIFF, BMP or PNM image"})) << bytes;
   }
-  const std::string png = GreyPng(64, 64);
+  const std::string png = GreyPng(64, std::vector<std::uint8_t>(4096));
   for (const size_t size : {8u, 12u, 20u}) {
     EXPECT_TRUE(IsRefused(png.substr(0, size), {"image: the header of the PNG image is damaged"})) << size;
   }

@@ -9,8 +9,9 @@
 #include <fstream>
 #include <limits>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
+
+#include "tests/test_support/png.h"
 
 namespace rcme {
 namespace {
@@ -174,8 +175,9 @@ std::vector<std::uint8_t> RenderHall(const RenderedCamera& camera, const Rendere
 }
 
 void WriteImage(const std::string& path, const Camera& camera, std::vector<std::uint8_t> grey) {
-  if (!cv::imwrite(path, cv::Mat(camera.height, camera.width, CV_8UC1, grey.data())))
-    throw std::runtime_error("cannot write " + path);
+  std::ofstream file(path, std::ios::binary);
+  file << GreyPng(static_cast<std::uint32_t>(camera.width), grey);
+  if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
 void WriteKittiSequence(const std::string& folder, const std::string& name, int num_frames,

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "experiments/core/files/regular_file.h"
+#include "experiments/real/images/image_decoder.h"
 #include "experiments/real/images/image_header.h"
 #include "parameters/input_error.h"
 
@@ -92,8 +93,8 @@ GreyImage UnpackImage(std::string bytes, const std::string& path) {
   cv::Mat image;
   try {
     // As the sensor has it, which is what K is of: not turned as the camera was held.
-    image = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()),
-                         cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+    image = DecodeImage(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()),
+                        cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
     throw InputError(fmt::format("{}: the image is damaged ({})", path, error.err));
   }
