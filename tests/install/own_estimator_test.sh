@@ -19,8 +19,8 @@ own=$scratch/own/own_rcme
 "$own" list estimators | grep -q '^opencv '
 "$own" list studies | grep -q '^failure_vs_outliers '  # those of the installation that it was built with
 "$own" check-estimator opencv
-"$own" audit --only estimator.coverage.opencv --out "$scratch/audit" | grep '^estimator.coverage.opencv '
-grep -q '"id": "estimator.coverage.opencv"' "$scratch/audit/audit.json"
+"$own" audit --only estimator.sigma.opencv --out "$scratch/audit" | grep '^estimator.sigma.opencv '
+grep -q '"id": "estimator.sigma.opencv"' "$scratch/audit/audit.json"
 test -s "$scratch/audit/audit_estimator.png"
 
 "$own" run "$root/examples/own_estimator/failures.yaml" --trials 2 --out "$scratch/own.sqlite"
