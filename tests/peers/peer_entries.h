@@ -56,4 +56,19 @@ inline std::vector<EstimatorVariant> PeerVariants() {
   return all;
 }
 
+// What is done with a library's answer, as with any estimator's; the other options are of the library's call.
+inline bool IsOfTheAnswer(const std::string& option) {
+  return option == "covariance" || option == "model_choice" || option == "planar_scenes";
+}
+
+// Those of PeerVariants() that differ in the library's call.
+inline std::vector<EstimatorVariant> PeerLibraryCalls() {
+  std::vector<EstimatorVariant> calls = PeerVariants();
+  std::erase_if(calls, [](const EstimatorVariant& variant) {
+    return std::ranges::any_of(variant.options,
+                               [](const auto& option) { return IsOfTheAnswer(option.first); });
+  });
+  return calls;
+}
+
 }  // namespace rcme

@@ -32,6 +32,8 @@ bool IsNear(const MotionEstimate& estimate, const RelativePose& pose_true, doubl
 }
 
 class Peers : public testing::TestWithParam<EstimatorVariant> {};
+// For what lies in the library's call alone, whatever is done with its answer.
+class PeerLibraries : public testing::TestWithParam<EstimatorVariant> {};
 
 // Two cameras that differ in everything. The matches are exact; OpenCV's USAC holds them in single precision.
 TEST_P(Peers, FindTheMotionOfExactMatches) {
@@ -67,7 +69,7 @@ TEST_P(Peers, FindMostMotionsAmongWrongMatches) {
 // motion, before any refinement that would draw it to the noisy ones. Standard errors over 1,200 of them are
 // .013 and .006; where the normals of a match's two epipolar lines differ in length by the ratio of the focal
 // lengths, the deviation is up to 2 % wider. A distance that is off by a factor of 1.2 would be seen.
-TEST_P(Peers, TakeTheirThresholdInStandardDeviations) {
+TEST_P(PeerLibraries, TakeTheirThresholdInStandardDeviations) {
   const std::unique_ptr<EstimatorModel> model = FindEstimator(GetParam().estimator).make();
   const std::vector<Parameter> options = model->Parameters();
   if (std::ranges::count(options, "threshold_sigma", &Parameter::name) == 0) return;
@@ -139,7 +141,7 @@ TEST_P(Peers, GiveTheSameBytesOnEveryThread) {
 }
 
 // Where the samples are few and most matches wrong, another stream draws others.
-TEST_P(Peers, DrawTheirSamplesFromTheStream) {
+TEST_P(PeerLibraries, DrawTheirSamplesFromTheStream) {
   const MotionProblem problem = TwoCameraProblem(60, 0.5, 0.6, 0);
   const MotionEstimate first = Estimate(GetParam(), problem, 0);
   int num_others = 0;
@@ -151,6 +153,15 @@ TEST_P(Peers, DrawTheirSamplesFromTheStream) {
 
 INSTANTIATE_TEST_SUITE_P(All, Peers, testing::ValuesIn(PeerVariants()),
                          [](const auto& c) { return c.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, PeerLibraries, testing::ValuesIn(PeerLibraryCalls()),
+                         [](const auto& c) { return c.param.name; });
+
+TEST(PeerLibraryCalls, EveryPeerIsAmongTheCalls) {
+  std::map<std::string, int> num_calls;
+  for (const EstimatorVariant& variant : PeerLibraryCalls()) ++num_calls[variant.estimator];
+  EXPECT_EQ(num_calls.size(), PeerEntries().size());
+  EXPECT_GE(num_calls["opencv_usac"], 10);
+}
 
 double CpuSeconds(clockid_t clock) {
   timespec now{};
@@ -198,7 +209,7 @@ std::vector<std::vector<EstimatorVariant>> PeerCombinationsByLibraryCall() {
   for (const EstimatorVariant& variant : PeerCombinations()) {
     std::string call = variant.estimator;
     for (const auto& [name, word] : variant.options) {
-      if (name != "covariance" && name != "model_choice" && name != "planar_scenes") call += " " + word;
+      if (!IsOfTheAnswer(name)) call += " " + word;
     }
     groups[call].push_back(variant);
   }
