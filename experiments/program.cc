@@ -89,6 +89,7 @@ A first session:
   app.get_formatter()->column_width(34);
   app.require_subcommand(0, 1);            // of `rcme plot audit` the second word is no command
   app.group("Studies and their results");  // of the commands that follow
+  AddLockCommand(app);
   AddRunCommand(app);
   AddSummarizeCommand(app);
   AddCompareCommand(app);

@@ -41,7 +41,8 @@ def study_section(run):
     parts = [element("p", facts["description"])] if facts["description"] else []
     parts.append(definitions([
         ("result file", code(facts["run"])), ("seed", facts["seed"]), ("trials done", tables.trials_of(facts)),
-        ("conditions", len(facts["conditions"])), ("estimators", "; ".join(map(name_and_label, facts["estimators"]))),
+        ("conditions", len(facts["conditions"])),
+        ("decided before the run", "see above" if facts.get("preregistration") else "nothing: the study has no lock"), ("estimators", "; ".join(map(name_and_label, facts["estimators"]))),
         ("a failure is", f"a motion with {bounds}"), ("page made by", f"rcme {facts['rcme_version']}")]))
     if facts.get("ademp"):
         parts += [element("h4", "Aims, data, estimands, methods, performance"),
@@ -74,6 +75,28 @@ def findings_section(run):
     if not sentences:
         return element("p", "Nothing to say of failures: no trial has a known truth.", class_="note")
     return element("ul", *(element("li", sentence) for sentence in sentences), class_="findings")
+
+
+def decided_section(run):
+    """What was decided before the run, with its verdicts, and what was decided after."""
+    decided = run.facts["preregistration"]
+    if decided["locked"]:
+        lead = element("p", f"Locked at {decided['locked_at']} by {decided['program']}, before the run; SHA-256 ",
+                       code(decided["sha256"]), ".")
+    else:
+        lead = element("p", "The study states these hypotheses, but has no lock: nothing shows that they were written before "
+                       "the run.", class_="note")
+    parts = [lead]
+    if decided["hypotheses"]:
+        parts.append(tables.hypotheses(decided))
+    elif decided["locked"]:
+        parts.append(element("p", "It states no hypothesis."))
+    if decided["deviations"]:
+        parts += [element("p", "Decided after: the run departs from its lock."),
+                  element("ul", *(element("li", text) for text in decided["deviations"]))]
+        parts += [element("p", f"Reason: {reason}") for reason in decided["reasons"]]
+    parts.append(element("p", "Decided after: all else of this run on this page. It explores."))
+    return joined(parts)
 
 
 def severity_section(run):
@@ -159,6 +182,8 @@ def sections(run):
     first = [("findings", "Findings", findings_section(run)), ("figures", "Figures", figures(run))]
     if run.marginals is not None:
         first.insert(0, ("marginals", "Where it is not what it claims", tables.marginals(run)))
+    if run.facts.get("preregistration"):
+        first.insert(0, ("decided", "Decided before the run", decided_section(run)))
     parts = [("results", "Results", results_section(run))]
     if run.reliability is not None:
         parts.append(("reliability", "Probability of failure", reliability_section(run)))

@@ -10,6 +10,7 @@
 #include "experiments/core/text/columns.h"
 #include "experiments/run/store/new_trials.h"
 #include "experiments/run/store/salvage.h"
+#include "experiments/statistics/preregistration.h"
 #include "experiments/statistics/summarize_counts.h"
 #include "parameters/input_error.h"
 
@@ -79,6 +80,21 @@ void PrintSound(const std::string& run, const ResultStore& store) {
              origin.instruction_set.empty() ? "instruction set not noted" : origin.instruction_set);
 }
 
+// What the hash of its lock says of the run; throws where the hash is not that of the text.
+void PrintLock(const RunDescription& run, const std::string& path) {
+  if (run.lock.empty()) return;
+  const Preregistration lock = *DescribePreregistered(run, path);
+  fmt::print("{}: locked at {} by {}; the locked text has the SHA-256 {}\n", path, lock.locked_at,
+             lock.program, lock.sha256);
+  if (lock.deviations.empty()) fmt::print("  the run is as it was locked\n");
+  for (const std::string& deviation : lock.deviations) fmt::print("  not as locked: {}\n", deviation);
+  for (const std::string& reason : lock.reasons) fmt::print("  reason: {}\n", reason);
+  if (!lock.deviations.empty() && lock.reasons.empty())
+    throw InputError(path +
+                     ": departs from its lock without a reason, which `rcme run` does not allow: the "
+                     "file was changed");
+}
+
 // Reports, and saves what is asked for; throws the error again if that was nothing.
 void ReportDamage(const CheckArguments& arguments, const InputError& error) {
   std::optional<Study> study;
@@ -104,13 +120,16 @@ void ReportDamage(const CheckArguments& arguments, const InputError& error) {
 }
 
 void CheckCounts(const std::string& run) {
-  fmt::print("{}: sound: the counts of {} trials\n", run, OpenCounts(run).NumTrials());
+  const RunCounts counts = OpenCounts(run);
+  fmt::print("{}: sound: the counts of {} trials\n", run, counts.NumTrials());
+  PrintLock(counts.run, run);
 }
 
 void CheckTrials(const std::string& run) {
   const ResultStore store = ResultStore::OpenForReading(run);
   store.CheckTrials();
   PrintSound(run, store);
+  PrintLock(store.Description(), run);
 }
 
 void CheckFile(const CheckArguments& arguments) {
@@ -136,6 +155,9 @@ void AddCheckCommand(CLI::App& app) {
 the tables and their columns, the type and range of every number, one record per
 estimator in every trial, a checksum (CRC-32) per trial, and the number and checksum of
 the trials of each condition.
+
+Of a run with a lock (`rcme lock`) it verifies the hash of the locked text, and lists in
+what the run departs from it.
 
 This command reads damaged files too and names the damaged trials. --save-good writes
 the sound trials to a new file, whole or not at all. `rcme run` then computes the others:

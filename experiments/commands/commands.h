@@ -11,6 +11,7 @@ struct EndWith {
   int exit_code;
 };
 
+void AddLockCommand(CLI::App& app);
 void AddRunCommand(CLI::App& app);
 void AddAuditCommand(CLI::App& app);
 void AddSummarizeCommand(CLI::App& app);

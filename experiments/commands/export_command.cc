@@ -4,11 +4,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/lock_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
 #include "experiments/data/match_file.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -25,6 +26,7 @@ constexpr std::int64_t kMaxTrials = 1'000'000;
 struct ExportArguments {
   std::string study, out;
   StudyChanges changes;
+  LockArguments lock;
   std::int64_t trials = 0;  // the study's own
 };
 
@@ -63,7 +65,8 @@ void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_
 void Export(const ExportArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
-  const StudyPlan plan = PlanOf(study, arguments.study, PlanEstimators::kNotMade);
+  StudyPlan plan = PlanOf(study, arguments.study, PlanEstimators::kNotMade);
+  TakeLock(arguments.study, arguments.lock, "", &plan);
   if (plan.NumTrials() > kMaxTrials) {
     throw InputError(fmt::format("{}: {} trials are too many to export; at most {} are allowed (--trials)",
                                  arguments.study, plan.NumTrials(), kMaxTrials));
@@ -78,6 +81,7 @@ void Export(const ExportArguments& arguments) {
   problems.Finish();
   truths.Finish();
   WriteFileWhole((folder / "study.yaml").string(), plan.study_yaml);
+  if (!plan.lock.empty()) WriteFileWhole((folder / "study.lock").string(), plan.lock);
   PrintMessage(
       "done: {} problems in {}; next: answer them, then rcme import ANSWERS --study {} --label mine --out "
       "run.sqlite\n",
@@ -94,6 +98,7 @@ void AddExportCommand(CLI::App& app) {
   FOLDER/matches/ID.csv   the same problems as match files for `rcme estimate`
   FOLDER/truth.jsonl      the motion and the true matches by id; not for the estimator
   FOLDER/study.yaml       the study as it was exported, for `rcme import`
+  FOLDER/study.lock       its lock, if it has one (`rcme lock`)
 
 Example:
   rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
@@ -106,6 +111,7 @@ Example:
       ->required();
   command->add_option("-o,--out", arguments->out, "folder to write, created if missing")->required();
   AddStudyOptions(command, &arguments->changes);
+  AddLockOptions(command, &arguments->lock);
   command->add_option("--trials", arguments->trials, "trials per condition")
       ->transform(WholeNumberIn(1, 2'000'000'000));
   command->callback([arguments] { Export(*arguments); });

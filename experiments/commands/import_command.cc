@@ -1,13 +1,15 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "experiments/core/text/message.h"
-#include "experiments/core/work/stop_request.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/lock_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -21,6 +23,7 @@ struct ImportArguments {
   std::string study, out;
   int threads = 0;
   bool allow_process = false;
+  LockArguments lock;
 };
 
 EstimatorSpec SpecOfAnswers(const std::string& path, const std::string& label) {
@@ -57,7 +60,11 @@ void Import(const ImportArguments& arguments) {
       throw InputError(fmt::format("--label: the study has an estimator '{}' already; give another", label));
     study.estimators.push_back(SpecOfAnswers(arguments.answers[i], label));
   }
-  const StudyPlan plan = PlanOf(study, arguments.study);
+  StudyPlan plan = PlanOf(study, arguments.study);
+  LockArguments lock = arguments.lock;
+  if (lock.despite.empty() && !FindLock(arguments.study, lock).empty())
+    lock.despite = fmt::format("answers were imported: {}", fmt::join(arguments.labels, ", "));
+  TakeLock(arguments.study, lock, "", &plan);
   ResultStore store = ResultStore::OpenForRun(arguments.out, plan);
   const RunReport report = RunStudy(plan, arguments.threads, &store);
   for (size_t i = 0; i < arguments.answers.size(); ++i) {
@@ -97,6 +104,7 @@ Example:
       ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
       ->transform(WholeNumberIn(0, 1024));
   AddProcessOption(command, &arguments->allow_process);
+  AddLockOptions(command, &arguments->lock);
   command->callback([arguments] { Import(*arguments); });
 }
 

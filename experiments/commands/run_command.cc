@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/lock_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
@@ -25,6 +26,7 @@ namespace {
 struct RunArguments {
   std::string study, out;
   StudyChanges changes;
+  LockArguments lock;
   std::int64_t trials = 0, repeats_per_scene = 0;  // 0: the study's own
   int threads = 0;
   std::string keep = "all";
@@ -136,7 +138,9 @@ void Run(const RunArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.max_time);
   const Shard shard = arguments.shard.empty() ? Shard() : ParseShard(arguments.shard, ThisEnvironment());
-  const StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
+  StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
+  TakeLock(arguments.study, arguments.lock, arguments.until.empty() ? "" : "--until " + arguments.until,
+           &plan);
   const bool keeps_counts = arguments.keep == "counts";
   if (keeps_counts && !arguments.retry.empty())
     throw InputError(
@@ -178,6 +182,7 @@ void AddRunCommand(CLI::App& app) {
       ->required();
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
+  AddLockOptions(command, &arguments->lock);
   CLI::Option* trials =
       command
           ->add_option("--trials", arguments->trials, "trials per condition; a greater number extends a run")

@@ -136,16 +136,18 @@ Examples:
     if (arguments->raw.empty() && KeepsCounts(arguments->run)) {
       if (!arguments->fifths_of.empty())
         throw InputError(arguments->run + ": --fifths-of needs all trials, not counts (rcme run --keep all)");
-      const Summary summary = SummarizeCounts(OpenCounts(arguments->run), arguments->with_times, pooling);
+      const RunCounts counts = OpenCounts(arguments->run);
+      Summary summary = SummarizeCounts(counts, arguments->with_times, pooling);
+      summary.preregistration = DescribePreregistered(counts.run, arguments->run);
       WarnOfRefusals(summary);
       return PrintOrWrite(arguments->out, TextOf(summary, *arguments));
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
-    const Summary summary =
-        arguments->fifths_of.empty()
-            ? Summarize(store, arguments->with_times, pooling)
-            : Summarize(store, arguments->with_times, GroupByFifth(store, arguments->fifths_of));
+    Summary summary = arguments->fifths_of.empty() ? Summarize(store, arguments->with_times, pooling)
+                                                   : Summarize(store, arguments->with_times,
+                                                               GroupByFifth(store, arguments->fifths_of));
+    summary.preregistration = DecidePreregistered(store, arguments->run);
     WarnOfRefusals(summary);
     PrintOrWrite(arguments->out,
                  arguments->format == "table" ? Tables(store, summary) : TextOf(summary, *arguments));

@@ -11,6 +11,7 @@
 #include "experiments/statistics/forecast_output.h"
 #include "experiments/statistics/marginals_output.h"
 #include "experiments/statistics/population_summary.h"
+#include "experiments/statistics/preregistration.h"
 #include "experiments/statistics/report_findings.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/trial/trial_event.h"
@@ -129,6 +130,8 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["caution"] = comparison.caution;
   json["is_of_population"] = is_of_population;
   json["findings"] = FindingsOf(summary, comparison);
+  if (const auto preregistration = DecidePreregistered(store, run))
+    json["preregistration"] = PreregistrationAsJson(*preregistration);
   WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));
   WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));
   if (HasFailureProbabilities(summary)) {

@@ -7,6 +7,7 @@
 
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
+#include "experiments/statistics/preregistration.h"
 #include "experiments/statistics/trial_groups.h"
 #include "stats/constants.h"
 #include "stats/intervals.h"
@@ -67,6 +68,7 @@ struct Summary {
   bool is_of_population = false;  // its intervals are (population_summary.h)
   std::string population;         // DescribePopulation of study/population.h
   std::int64_t num_retried = 0;   // trials that were run again (RunDescription::retried_trials)
+  std::optional<Preregistration> preregistration;  // where somebody asked for it (preregistration.h)
 };
 
 // Whether an estimator of the run states probabilities of failure.

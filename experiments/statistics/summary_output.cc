@@ -204,7 +204,8 @@ std::string FormatPopulation(const Summary& summary) {
 }  // namespace
 
 std::string SummaryAsTable(const Summary& summary) {
-  std::string text = fmt::format(
+  std::string text = summary.preregistration ? PreregistrationAsText(*summary.preregistration) + "\n" : "";
+  text += fmt::format(
       "Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
       summary.num_trials_planned,
       RenderText(MakeQuantityTable(summary, {"failure", "failure_or_refusal", "no_candidate", "other_refusal",
@@ -258,6 +259,7 @@ std::string SummaryAsJson(const Summary& summary) {
   if (!summary.truth_quality.empty()) json["truth"] = summary.truth_quality;
   if (!summary.population.empty()) json["population"] = summary.population;
   if (summary.num_retried > 0) json["retried_trials"] = summary.num_retried;
+  if (summary.preregistration) json["preregistration"] = PreregistrationAsJson(*summary.preregistration);
   return JsonText(kSummaryFormat, json);
 }
 

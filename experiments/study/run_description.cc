@@ -43,6 +43,8 @@ RunDescription Describe(const StudyPlan& plan) {
   for (const EstimatorSpec& spec : plan.study.estimators) run.estimators.push_back(Describe(spec));
   run.study_yaml = plan.study_yaml;
   run.identity = plan.identity;
+  run.lock = plan.lock;
+  run.despite_lock = plan.despite_lock;
   return run;
 }
 

@@ -39,6 +39,9 @@ struct RunDescription {
   // Options of `rcme run` that alone gave `until_trials` trials in all; empty: none.
   std::string until_options;
   std::int64_t until_trials = 0;
+  // The text of the lock file (study_lock.h) that the run was begun with, empty: none; and why the study
+  // departs from it, a line each time that a run was begun or continued so.
+  std::string lock, despite_lock;
   std::int64_t retried_trials = 0;  // run again because an answer from outside the program was missing
   // Which shards of the study: "3/64" (core/work/shard.h), of several that were merged "1-3,7/64", "none/64"
   // if every one of them lacks trials; empty: all of it.

@@ -9,6 +9,7 @@
 #include "experiments/data/settings.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/study/population.h"
+#include "experiments/study/stated_hypothesis.h"
 #include "experiments/study/tuning.h"
 
 namespace rcme {
@@ -60,6 +61,7 @@ struct Study {
   std::optional<Population> population;
   std::vector<EstimatorSpec> estimators;
   FailureBounds failure;
+  std::vector<StatedHypothesis> hypotheses;  // what its run is expected to show; no run depends on them
   std::optional<Tuning> tuning;  // what `rcme tune` does with it
 };
 

@@ -196,6 +196,14 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
   if (study.population) SettlePopulation(place, root["conditions"], &study);
 }
 
+// What the hypotheses of a study may name, after its factors' levels are canonical.
+StatableNames NamesOf(const Study& study) {
+  StatableNames names;
+  for (const EstimatorSpec& spec : study.estimators) names.estimators.push_back(spec.label);
+  for (const Factor& factor : study.factors) names.factors.emplace_back(factor.key, factor.levels);
+  return names;
+}
+
 Ademp ReadAdemp(const Place& place, const YAML::Node& node) {
   Ademp ademp;
   const auto entries = Entries(place, node, "ademp", StudyKeysOf("ademp"));
@@ -373,6 +381,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   place.At(root["data"] ? root["data"] : root, [&] { study.data = WithCalibration(study.data); });
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
+  if (root["hypotheses"]) study.hypotheses = ReadHypotheses(place, root["hypotheses"], NamesOf(study));
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
   return study;
 }
@@ -449,6 +458,10 @@ std::string ToYaml(const Study& study) {
   out << YAML::Key << "failure" << YAML::Value << YAML::BeginMap;
   for (const Parameter& p : Parameters(bounds)) out << YAML::Key << p.name() << YAML::Value << p.Value();
   out << YAML::EndMap;
+  if (!study.hypotheses.empty()) {
+    out << YAML::Key << "hypotheses" << YAML::Value;
+    WriteHypotheses(study.hypotheses, &out);
+  }
   out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }

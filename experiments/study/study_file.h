@@ -17,6 +17,8 @@
 //     - {name: rcme, label: rcme_rank_aware, options: {reading: rank_aware}}
 //     - {file: tuned.yaml, label: other}  # of estimator_file.h, beside the study; the label is optional
 //   failure: {max_rotation_error_deg: 3, max_direction_error_deg: 15}
+//   hypotheses:                       # see stated_hypothesis.h
+//     - {quantity: failure, estimator: other, against: standard, direction: lower}
 //   tune: {estimator: rcme_rank_aware, options: {mu: [3, 6, 9]}}    # see tuning/tuning_file.h
 #pragma once
 
@@ -48,7 +50,7 @@ void Override(Study* study, const std::string& key, const std::string& value);
 
 // The study with every parameter written out, defaults and the estimators of files included: ParseStudy gives
 // the same study back but for its tuning, on which no run depends. Two runs may share a result file if this
-// text, trials and description aside, is the same.
+// text, its trials and words aside, is the same.
 std::string ToYaml(const Study& study);
 
 }  // namespace rcme

@@ -1,8 +1,10 @@
 #include "experiments/study/study_keys.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "experiments/study/population_file.h"
+#include "experiments/study/stated_hypothesis.h"
 #include "experiments/study/study.h"
 
 namespace rcme {
@@ -51,6 +53,22 @@ const std::vector<StudyKey>& FixedKeys() {
        fmt::format("a list of 1 to {} entries, each with the keys of estimator, or file", kMaxEstimators),
        "what is compared, on the same matches"},
       {"study", "failure", "", "the keys of failure", "when a motion counts as failed"},
+      {"study", "hypotheses", "none",
+       fmt::format("a list of 1 to {} entries, each with the keys of hypothesis", kMaxHypotheses),
+       "what the run is expected to show, decided by intervals that hold together (`rcme lock`)"},
+      {"hypothesis", "quantity", "", fmt::format("one of: {}", fmt::join(StatableQuantities(), ", ")),
+       "a rate or score of the summary"},
+      {"hypothesis", "estimator", "", "a label of the study", "whose"},
+      {"hypothesis", "at_least", "none", "a number in [0, 1]", "the value is not below it"},
+      {"hypothesis", "at_most", "none", "a number in [0, 1]", "the value is not above it"},
+      {"hypothesis", "against", "none", "another label of the study",
+       "the estimator it is compared with, on the same trials; needs direction"},
+      {"hypothesis", "direction", "none", "one of: lower, higher, not_lower, not_higher",
+       "how the value compares with that of against"},
+      {"hypothesis", "margin", "0", "a number in [0, 1]; greater than 0 for not_lower and not_higher",
+       "lower and higher: by more than this; not_lower and not_higher: by less than this"},
+      {"hypothesis", "where", "all conditions", "a map: a factor -> one of its levels",
+       "the conditions that the hypothesis is of"},
       {"study", "tune", "none", "the keys of tune", "what `rcme tune` and `rcme transfer` do with the study"},
       {"estimator", "name", "", "a name of `rcme list estimators`",
        "the estimator; or process, or answers, or file (in a study)"},

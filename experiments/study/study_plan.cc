@@ -44,6 +44,7 @@ std::string Identity(const StudyPlan& plan) {
   same.trials = 1;  // more trials extend a run
   same.description.clear();
   same.ademp.reset();
+  same.hypotheses.clear();
   std::erase_if(same.data, [](const auto& setting) { return setting.first == "folder"; });  // its data count
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
   if (same.population) identity += IdentityOf(*same.population, plan.refused);

@@ -29,6 +29,8 @@ struct StudyPlan {
   std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // as study.estimators, or none
   std::string study_yaml;                                          // the study in full (study_file.h)
   std::string identity;  // equal for two runs that may share a result file
+  // The text of its lock file (study_lock.h), empty: none; and why the study departs from it.
+  std::string lock, despite_lock;
 
   std::int64_t NumTrials() const;
 };

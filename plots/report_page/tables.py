@@ -230,6 +230,21 @@ def comparison(run, event):
                  by_condition(lines, lambda row: condition_heading(run, row, run.comparison.factors)))
 
 
+def hypotheses(decided):
+    """What was stated before the run, a row each."""
+    rows = []
+    for one in decided["hypotheses"]:
+        value = DASH
+        if one["n"] and one["value"] is not None:
+            lower, upper = one["interval"]
+            value = joined([f"{100 * one['value']:.2f} %", Html("<br>"), small(f"[{100 * lower:.2f}, {100 * upper:.2f}]")])
+        why = [Html("<br>"), small(one["why_open"])] if one["why_open"] else []
+        rows.append([one["hypothesis"], value, f"{one['n']:,}", joined([element("strong", one["verdict"]), *why])])
+    caption = (f"All {len(rows)} intervals together hold with {100 * decided['confidence']:.0f} %, each with "
+               f"{100 * decided['confidence_each']:.2f} %; they are of the trials that were asked for beforehand.")
+    return table(caption, ["hypothesis", "value", "n", "verdict"], [(None, rows)])
+
+
 def every_number(run):
     """The summary as it is: a row per condition, estimator and quantity."""
     summary = run.whole_summary

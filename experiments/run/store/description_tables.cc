@@ -66,6 +66,8 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
       {"until_options", run.until_options},
       {"until_trials", std::to_string(run.until_trials)},
       {"retried_trials", std::to_string(run.retried_trials)},
+      {"lock", run.lock},
+      {"despite_lock", run.despite_lock},
       {"shard", run.shard},
       {"keep", run.keeps_counts ? "counts" : "all"},
       {"program", run.origin.program},
@@ -140,7 +142,7 @@ void CheckTexts(const RunDescription& run) {
     if (FindNotPlain(text) != std::string::npos)
       throw Damage(fmt::format("table {} has a text with control characters: {}", table, Quoted(text)));
   };
-  check_text(run.description, "run");
+  for (const std::string* text : {&run.description, &run.lock, &run.despite_lock}) check_text(*text, "run");
   for (const auto& [key, text] : run.ademp) check_text(text, "run");
   for (const DescribedEstimator& estimator : run.estimators) {
     for (const auto& [name, value] : estimator.options) check_text(name + value, "options");
@@ -168,6 +170,8 @@ RunDescription ReadRun(SQLite::Database& database) {
   run.until_options = values.Text("until_options");
   run.until_trials = values.WholeNumber("until_trials", kMax);
   if (values.Has("retried_trials")) run.retried_trials = values.WholeNumber("retried_trials", kMax);
+  if (values.Has("lock")) run.lock = values.Text("lock");
+  if (values.Has("despite_lock")) run.despite_lock = values.Text("despite_lock");
   run.shard = values.Text("shard");
   run.keeps_counts = values.Text("keep") == "counts";
   if (!run.keeps_counts && values.Text("keep") != "all") throw Damage("'keep' of table run is not possible");

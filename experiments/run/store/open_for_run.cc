@@ -7,6 +7,7 @@
 
 #include "experiments/core/files/first_difference.h"
 #include "experiments/study/study_file.h"
+#include "experiments/study/study_lock.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -30,6 +31,7 @@ RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {
   run.until_options = earlier.until_options;
   run.until_trials = earlier.until_trials;
   run.retried_trials = earlier.retried_trials;
+  run.despite_lock = JoinReasons(earlier.despite_lock, run.despite_lock);
   run.origin = earlier.origin;
   return run;
 }
@@ -56,9 +58,16 @@ void CheckIsThatRun(const ResultFile& file, const RunDescription& wanted) {
                     "--out",
                     file.path, held.origin.program, FirstDifference(held.identity, wanted.identity)));
   }
+  if (held.lock != wanted.lock) {
+    throw InputError(
+        fmt::format("{}: holds trials that were run {}, this run is {}: what was decided before a run cannot "
+                    "change. Give "
+                    "another --out, or the lock of then with --lock",
+                    file.path, DescribeLock(held.lock), DescribeLock(wanted.lock)));
+  }
   if (DescribeHeld(held) != DescribeHeld(wanted)) {
-    throw InputError(fmt::format("{}: holds the {}, not {}. Give another --out", file.path, DescribeHeld(held),
-                                 DescribeHeld(wanted)));
+    throw InputError(fmt::format("{}: holds the {}, not {}. Give another --out", file.path,
+                                 DescribeHeld(held), DescribeHeld(wanted)));
   }
 }
 
@@ -103,12 +112,15 @@ std::unique_ptr<ResultFile> OpenFileForRun(const std::string& path, const StudyP
   }
   if (file->totals.NumTrials() > 0) CheckIsThatRun(*file, wanted);
   // A file without a trial (its run failed at once) takes any study and any shard.
-  if (file->description.identity != wanted.identity || DescribeHeld(file->description) != DescribeHeld(wanted)) {
+  if (file->description.identity != wanted.identity || file->description.lock != wanted.lock ||
+      DescribeHeld(file->description) != DescribeHeld(wanted)) {
     file->CreateAnew(wanted);
   } else {
     CheckFits(file->description, plan);
     const RunDescription run = Continued(file->description, plan);
-    if (run.study_yaml != file->description.study_yaml) file->SetDescription(run);
+    const bool says_the_same =
+        run.study_yaml == file->description.study_yaml && run.despite_lock == file->description.despite_lock;
+    if (!says_the_same) file->SetDescription(run);
   }
   return file;
 }

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "experiments/core/files/first_difference.h"
+#include "experiments/study/study_lock.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 
@@ -78,6 +79,10 @@ void PartDescriptions::Add(const ResultFile& part) {
     throw InputError(fmt::format("{}: is of another study than {}; first difference: {}", part.path,
                                  first_path_, FirstDifference(merged_.identity, run.identity)));
   }
+  if (run.lock != merged_.lock) {
+    throw InputError(fmt::format("{}: was run {}, {} {}: they cannot be merged", part.path,
+                                 DescribeLock(run.lock), first_path_, DescribeLock(merged_.lock)));
+  }
   if (run.keeps_counts != merged_.keeps_counts) {
     throw InputError(fmt::format("{}: keeps {}, {} keeps {}: they cannot be merged", part.path,
                                  run.keeps_counts ? "counts" : "all trials", first_path_,
@@ -127,7 +132,9 @@ void PartDescriptions::AddAskedFor(const RunDescription& run) {
     merged_.until_trials = before.until_trials;
     merged_.origin = before.origin;
     merged_.retried_trials = before.retried_trials;
+    merged_.despite_lock = before.despite_lock;
   }
+  merged_.despite_lock = JoinReasons(merged_.despite_lock, run.despite_lock);
   merged_.retried_trials += run.retried_trials;
   merged_.conditions = std::move(conditions);
 }

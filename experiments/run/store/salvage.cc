@@ -111,6 +111,8 @@ Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
     if (stored->identity != description_.identity) Note("the study is another than that of the file");
     description_.stopping_rule = stored->stopping_rule;
     description_.shard = stored->shard;
+    description_.lock = stored->lock;
+    description_.despite_lock = stored->despite_lock;
     description_.origin = stored->origin;
   }
   if (!stored) {
@@ -146,6 +148,7 @@ RunDescription Salvage::DescribeStudy() {
   study.trials = 1;
   study.description.clear();
   study.ademp.reset();
+  study.hypotheses.clear();
   return Describe(PlanOf(study, file_.path, PlanEstimators::kNotMade));
 }
 

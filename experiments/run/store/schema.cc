@@ -161,6 +161,11 @@ const std::vector<RunKey>& RunKeys() {
       {"retried_trials",
        "how many trials were run again because an answer from outside the program was missing (`rcme run "
        "--retry`), each time counted; a file of an earlier version has no such row"},
+      {"lock",
+       "the lock file that the run was begun with (`rcme lock`), with the locked study and its SHA-256; "
+       "empty: "
+       "none; a file of an earlier version has neither this row nor the next"},
+      {"despite_lock", "why the study departs from its lock (`rcme run --despite-lock`), a reason a line"},
       {"shard",
        "which shards of the study the file is of: `3/64`, or merged ones that are complete, `1-3,7/64` or "
        "`none/64`; empty: the whole study"},

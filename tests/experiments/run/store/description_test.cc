@@ -24,7 +24,7 @@ std::string TextOf(const RunDescription& run) {
                   run.seed, run.trials, run.repeats_per_scene, run.failure.max_rotation_error_deg,
                   run.failure.max_direction_error_deg, run.factors, run.study_yaml, run.identity,
                   run.stopping_rule, run.until_options, run.origin.program, run.origin.instruction_set);
-  text += fmt::format("{}\n", run.retried_trials);
+  text += fmt::format("{} {} {}\n", run.retried_trials, run.lock, run.despite_lock);
   for (const DescribedCondition& condition : run.conditions)
     text += fmt::format("{} {}\n", condition.levels, condition.num_trials);
   for (const DescribedEstimator& estimator : run.estimators)
@@ -54,6 +54,8 @@ TEST_F(Description, ComesBackAsItWasWritten) {
   run.origin = {"rcme 1", "AVX2"};
   run.until_options = "--until ci=0.1";
   run.retried_trials = 17;
+  run.lock = "sha256: 1\ntext: |2\n  name: small\n";
+  run.despite_lock = "one reason\nanother";
   NewTrials(path_, run).Finish(run);
   EXPECT_EQ(TextOf(ResultStore::OpenForReading(path_).Description()), TextOf(run));
   EXPECT_TRUE(ThrowsInputError([&] { NewTrials(path_, run); }, {path_, "exists already"}));

@@ -1,0 +1,261 @@
+#include "experiments/study/study_lock.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <map>
+
+#include "experiments/core/files/sha256.h"
+#include "experiments/core/files/yaml_input.h"
+#include "experiments/core/text/program_name.h"
+#include "experiments/data/make_data.h"
+#include "experiments/study/study_file.h"
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char* kLockFormat = "rcme lock 1";
+constexpr const char* kTextLine = "text: |2";      // the lines that follow begin with two blanks
+constexpr size_t kMaxLockBytes = size_t{1} << 20;  // as ParseYaml takes, and so as a study has
+constexpr size_t kMaxLockLine = 200;               // of the lines before the text
+
+const FileKind& LockFileKind() {
+  static const FileKind kind = {"lock file", "a lock"};
+  return kind;
+}
+
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+// The lines of an identity that name the digests of real pairs.
+std::vector<std::string> DigestsIn(const std::string& text, bool is_of_real_pairs) {
+  std::vector<std::string> lines = is_of_real_pairs ? LinesOf(text) : std::vector<std::string>();
+  std::erase_if(lines, [](const std::string& line) { return !line.starts_with("# condition "); });
+  return lines;
+}
+
+bool IsOfRealPairs(const YAML::Node& study) {
+  const YAML::Node data = study["data"];
+  return data && data.IsMap() && data["scene"] && data["scene"].IsScalar() &&
+         data["scene"].Scalar() == kMatchFilesScene;
+}
+
+// A text of a study as "path of the key" -> value, in order; the parts of estimators have their label in it.
+void Flatten(const YAML::Node& node, const std::string& path, Settings* flat) {
+  const std::string prefix = path.empty() ? "" : path + ".";
+  if (node.IsMap()) {
+    for (const auto& entry : node) Flatten(entry.second, prefix + entry.first.Scalar(), flat);
+  } else if (node.IsSequence() && node.size() > 0 && node[0].IsMap()) {
+    for (size_t i = 0; i < node.size(); ++i) {
+      const YAML::Node label = node[i]["label"];
+      Flatten(node[i], prefix + (label ? label.Scalar() : fmt::format("{}", i + 1)), flat);
+    }
+  } else if (node.IsSequence()) {
+    std::vector<std::string> items;
+    for (const YAML::Node& item : node) items.push_back(item.IsScalar() ? item.Scalar() : YAML::Dump(item));
+    flat->emplace_back(path, fmt::format("[{}]", fmt::join(items, ", ")));
+  } else {
+    flat->emplace_back(path, node.IsScalar() ? node.Scalar() : "");
+  }
+}
+
+std::vector<std::string> LabelsIn(const YAML::Node& study) {
+  std::vector<std::string> labels;
+  for (const YAML::Node& estimator : study["estimators"]) labels.push_back(estimator["label"].Scalar());
+  return labels;
+}
+
+bool IsOfOneOf(const std::string& path, const std::vector<std::string>& labels) {
+  return std::ranges::any_of(
+      labels, [&](const std::string& label) { return path.starts_with("estimators." + label + "."); });
+}
+
+Settings FlatStudy(const YAML::Node& study) {
+  Settings flat;
+  Flatten(study, "", &flat);
+  std::erase_if(flat, [](const auto& entry) { return entry.first == "data.folder"; });
+  return flat;
+}
+
+// In one list, not in the other.
+std::vector<std::string> OnlyIn(const std::vector<std::string>& one, const std::vector<std::string>& other) {
+  std::vector<std::string> only;
+  for (const std::string& text : one) {
+    if (std::ranges::count(other, text) == 0) only.push_back(text);
+  }
+  return only;
+}
+
+std::vector<std::string> DifferencesOf(const YAML::Node& locked, const YAML::Node& run) {
+  const std::vector<std::string> added = OnlyIn(LabelsIn(run), LabelsIn(locked));
+  const std::vector<std::string> gone = OnlyIn(LabelsIn(locked), LabelsIn(run));
+  const Settings before = FlatStudy(locked), after = FlatStudy(run);
+  std::vector<std::string> differences;
+  for (const auto& [path, value] : after) {
+    const auto found = std::ranges::find(before, path, &Settings::value_type::first);
+    if (IsOfOneOf(path, added)) continue;
+    if (found == before.end()) {
+      differences.push_back(fmt::format("{}: {}, of which the lock says nothing", path, value));
+    } else if (found->second != value) {
+      differences.push_back(fmt::format("{}: {} instead of {}", path, value, found->second));
+    }
+  }
+  for (const auto& [path, value] : before) {
+    if (IsOfOneOf(path, gone)) continue;
+    if (std::ranges::count(after, path, &Settings::value_type::first) == 0)
+      differences.push_back(fmt::format("{}: left out; the lock says {}", path, value));
+  }
+  for (const std::string& label : added) differences.push_back(fmt::format("estimator {}: was added", label));
+  for (const std::string& label : gone)
+    differences.push_back(fmt::format("estimator {}: was left out", label));
+  return differences;
+}
+
+std::string TextToLock(const StudyPlan& plan) {
+  Study study = plan.study;
+  const bool is_of_real_pairs =
+      std::ranges::count(study.data, Settings::value_type("scene", kMatchFilesScene)) > 0;
+  std::erase_if(study.data, [](const auto& setting) { return setting.first == "folder"; });
+  std::string text = ToYaml(study);
+  for (const std::string& line : DigestsIn(plan.identity, is_of_real_pairs)) text += line + "\n";
+  return text;
+}
+
+std::string Now() {
+  const auto now = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)));
+}
+
+}  // namespace
+
+StudyLock MakeLock(const StudyPlan& plan) {
+  StudyLock lock{Now(), ProgramName(), "", TextToLock(plan)};
+  lock.sha256 = Sha256(lock.text);
+  return lock;
+}
+
+std::string ToYaml(const StudyLock& lock) {
+  std::string yaml = fmt::format(
+      "# Made by `rcme lock`. `rcme run` refuses a study that says something else.\n"
+      "format: {}\nlocked_at: {}\nprogram: {}\nsha256: {}\n{}\n",
+      kLockFormat, lock.locked_at, lock.program, lock.sha256, kTextLine);
+  for (const std::string& line : LinesOf(lock.text)) yaml += line.empty() ? "\n" : "  " + line + "\n";
+  return yaml;
+}
+
+StudyLock ParseLock(const std::string& yaml, const std::string& path) {
+  if (yaml.size() > kMaxLockBytes)
+    throw InputError(
+        fmt::format("{}: is too long for a lock; at most {} bytes are allowed", path, kMaxLockBytes));
+  if (const size_t at = FindNotPlain(yaml); at != std::string::npos)
+    throw InputError(fmt::format("{}: a lock is UTF-8 without control characters", path));
+  StudyLock lock;
+  std::string format;
+  const std::map<std::string, std::string*> fields = {{"format", &format},
+                                                      {"locked_at", &lock.locked_at},
+                                                      {"program", &lock.program},
+                                                      {"sha256", &lock.sha256}};
+  bool is_in_text = false;
+  const std::vector<std::string> lines = LinesOf(yaml);
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const std::string& line = lines[i];
+    const auto field = fields.find(line.substr(0, line.find(": ")));
+    if (is_in_text && (line.empty() || line.starts_with("  "))) {
+      lock.text += (line.empty() ? "" : line.substr(2)) + "\n";
+    } else if (!is_in_text && field != fields.end() && line.size() < kMaxLockLine) {
+      *field->second = line.substr(std::min(line.size(), field->first.size() + 2));
+    } else if (!is_in_text && line == kTextLine) {
+      is_in_text = true;
+    } else if (is_in_text || !line.starts_with("#")) {
+      throw InputError(fmt::format("{}:{}: {} is no line of a lock that `rcme lock` made", path, i + 1,
+                                   Quoted(line.substr(0, kMaxLockLine))));
+    }
+  }
+  if (format != kLockFormat)
+    throw InputError(
+        fmt::format("{}: format: {} is not allowed; this is no lock that `rcme lock` made ('{}')", path,
+                    Quoted(format), kLockFormat));
+  const std::string sha256 = Sha256(lock.text);
+  if (sha256 != lock.sha256) {
+    throw InputError(
+        fmt::format("{}: sha256: its text has the hash {}, not {}: the lock was changed after it was made",
+                    path, sha256, Quoted(lock.sha256)));
+  }
+  return lock;
+}
+
+std::string ReadLockFile(const std::string& path) { return ReadInputText(path, LockFileKind()); }
+
+std::string PathOfLockBeside(const std::string& study_path) {
+  return std::filesystem::path(study_path).replace_extension(".lock").string();
+}
+
+std::string DescribeLock(const std::string& lock_yaml) {
+  for (const std::string& line : LinesOf(lock_yaml)) {
+    if (line.starts_with("sha256: ")) return "with the lock " + line.substr(8, 8);
+  }
+  return "without a lock";
+}
+
+std::string JoinReasons(const std::string& reasons, const std::string& more) {
+  std::vector<std::string> lines = LinesOf(reasons);
+  for (const std::string& line : LinesOf(more)) {
+    if (std::ranges::count(lines, line) == 0) lines.push_back(line);
+  }
+  return fmt::format("{}", fmt::join(lines, "\n"));
+}
+
+std::vector<std::string> DeviationsFrom(const StudyLock& lock, const std::string& study_yaml,
+                                        const std::string& identity, const std::string& stopping_rule) {
+  const YAML::Node locked = ParseYaml(lock.text, "the locked text", LockFileKind());
+  const YAML::Node run = ParseYaml(study_yaml, "the study", LockFileKind());
+  std::vector<std::string> deviations;
+  try {
+    deviations = DifferencesOf(locked, run);
+  } catch (const YAML::Exception&) {
+    return {"the study: is not one that this program can compare with the lock"};
+  }
+  if (DigestsIn(lock.text, IsOfRealPairs(locked)) != DigestsIn(identity, IsOfRealPairs(run)))
+    deviations.emplace_back("the pairs: are others than those that were locked");
+  if (!stopping_rule.empty())
+    deviations.push_back(fmt::format("trials: as many as a stopping rule gave ({})", stopping_rule));
+  return deviations;
+}
+
+WrittenPlan ReadWrittenPlan(const std::string& study_yaml, const std::string& path) {
+  const Place place(path);
+  const YAML::Node root = ParseYaml(study_yaml, path, LockFileKind());
+  WrittenPlan plan;
+  StatableNames names;
+  try {
+    long long trials = 0;
+    if (!ParseInteger(root["trials"].Scalar(), &trials) || trials < 1 ||
+        trials > std::numeric_limits<int>::max())
+      throw InputError(fmt::format("{}: trials: a whole number is needed", path));
+    plan.trials = static_cast<int>(trials);
+    names.estimators = LabelsIn(root);
+    for (const auto& factor : root["factors"])
+      names.factors.emplace_back(factor.first.Scalar(), factor.second.as<std::vector<std::string>>());
+  } catch (const YAML::Exception& error) {
+    throw InputError(fmt::format("{}: is no study: {}", path, error.what()));
+  }
+  if (root["hypotheses"]) plan.hypotheses = ReadHypotheses(place, root["hypotheses"], names);
+  return plan;
+}
+
+}  // namespace rcme
