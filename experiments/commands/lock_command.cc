@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/lock_option.h"
 #include "experiments/core/files/file_output.h"
-#include "experiments/core/files/shared_files.h"
 #include "experiments/core/text/message.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_lock.h"
@@ -19,7 +19,7 @@ struct LockCommandArguments {
 };
 
 void Lock(const LockCommandArguments& arguments) {
-  const std::string path = FindFile(arguments.study, SharedFolder::kStudies, {"study file", "a study"});
+  const std::string path = FindStudyFile(arguments.study);
   const std::string out = arguments.out.empty() ? PathOfLockBeside(path) : arguments.out;
   if (std::filesystem::exists(out)) {
     throw InputError(

@@ -21,10 +21,13 @@ void AddLockOptions(CLI::App* command, LockArguments* arguments) {
       "REASON: run although the study departs from its lock; the result file keeps the reason");
 }
 
+std::string FindStudyFile(const std::string& study) {
+  return FindFile(study, SharedFolder::kStudies, {"study file", "a study"});
+}
+
 std::string FindLock(const std::string& study, const LockArguments& arguments) {
   if (!arguments.file.empty()) return arguments.file;
-  const std::string beside =
-      PathOfLockBeside(FindFile(study, SharedFolder::kStudies, {"study file", "a study"}));
+  const std::string beside = PathOfLockBeside(FindStudyFile(study));
   return std::filesystem::exists(beside) ? beside : "";
 }
 

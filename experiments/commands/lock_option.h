@@ -20,6 +20,9 @@ void AddLockOptions(CLI::App* command, LockArguments* arguments);
 void TakeLock(const std::string& study, const LockArguments& arguments, const std::string& stopping_rule,
               StudyPlan* plan);
 
+// The path of a study that somebody names (core/files/shared_files.h).
+std::string FindStudyFile(const std::string& study);
+
 // The path of the lock that TakeLock takes; empty: none.
 std::string FindLock(const std::string& study, const LockArguments& arguments);
 

@@ -333,7 +333,8 @@ Summary SummarizeCells(const RunDescription& run, const TrialGroups& groups,
                   DescribeTruthQuality(run.identity),
                   /*is_of_population=*/false,
                   DescribePopulation(run.identity),
-                  run.retried_trials};
+                  run.retried_trials,
+                  std::nullopt};
   for (const DescribedEstimator& estimator : run.estimators)
     summary.efforts.emplace_back(estimator.label, estimator.effort);
   for (std::uint32_t c = 0; c < cells.size(); ++c) {

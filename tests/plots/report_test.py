@@ -177,6 +177,26 @@ class Page(ReportTest):
             summary_csv=summary() + scene)
         self.assertNotIn("Severity of the problems", self.page())  # an estimator may be called so
 
+    def test_what_was_decided_before_comes_first(self):
+        hypothesis = {"hypothesis": "failure of rcme is at most 0.1", "value": 0.05, "interval": [0.01, 0.09], "n": 1200,
+                      "verdict": "holds", "why_open": ""}
+        unfinished = hypothesis | {"hypothesis": f"another {EVIL}", "n": 0, "value": None, "interval": [0, 1], "verdict": "open",
+                                   "why_open": "5 of 10 trials are done"}
+        decided = {"locked": True, "locked_at": "2026-01-31T12:00:00Z", "program": "rcme 0.1.0", "sha256": "ab12" * 16,
+                   "confidence": 0.95, "confidence_each": 0.975, "deviations": ["estimator mine: was added"],
+                   "reasons": ["a reader asked"], "hypotheses": [hypothesis, unfinished]}
+        self.add_run(run_json=facts(preregistration=decided))
+        page = self.page()
+        text = "".join(Structure(page).text)
+        for part in ("Decided before the run", "ab12" * 16, "failure of rcme is at most 0.1", "5.00 %[1.00, 9.00]", "1,200", "holds",
+                     "5 of 10 trials are done", "each with 97.50 %", "estimator mine: was added", "Reason: a reader asked",
+                     "Decided after"):
+            self.assertIn(part, text)
+        self.assertNotIn(EVIL, page)
+        self.assertLess(page.index('id="run-1-decided"'), page.index('id="run-1-findings"'))
+        without = mock.Mock(facts={"preregistration": decided | {"locked": False, "deviations": [], "reasons": []}})
+        self.assertIn("has no lock", report.decided_section(without))
+
     def test_probabilities_of_failure_have_a_table_and_a_figure(self):
         self.add_run()
         self.assertNotIn("Probability of failure", self.page())

@@ -73,8 +73,7 @@ TEST(StatedHypothesis, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
   };
   for (const auto& [entry, fragments] : cases) {
     std::vector<std::string> all = fragments;
-    all.emplace_back("h.yaml:10:");
-    all.emplace_back("hypotheses");
+    all.emplace_back("h.yaml:11:");
     EXPECT_TRUE(ThrowsInputError([&, &entry = entry] { StudyWithHypotheses("  - " + entry + "\n"); }, all))
         << entry;
   }
