@@ -341,17 +341,16 @@ std::string PreregistrationAsText(const Preregistration& preregistration) {
           : "Hypotheses of the study. It has no lock (rcme lock): nothing shows that they were\nwritten "
             "before "
             "the run.\n";
-  std::vector<std::vector<std::string>> rows = {{"hypothesis", "value", "n", "verdict"}};
+  size_t number = 0;
   for (const DecidedHypothesis& decided : preregistration.hypotheses) {
-    rows.push_back(
-        {Describe(decided.stated), InPerCent(decided), fmt::format("{}", decided.n), VerdictText(decided)});
+    text += "\n" + FormatParagraph(fmt::format("{}. {}", ++number, Describe(decided.stated)));
+    text += fmt::format("   {}; {}, n = {}\n", VerdictText(decided), InPerCent(decided), decided.n);
   }
-  if (rows.size() > 1) {
+  if (number > 0) {
     text += fmt::format(
-        "\n{}\nAll {} intervals together hold with {:.0f} %, each with {:.2f} %. They are of the trials "
-        "that were\nasked for beforehand.\n",
-        FormatColumns(rows), preregistration.hypotheses.size(), 100.0 * preregistration.confidence,
-        100.0 * preregistration.confidence_each);
+        "\nAll {} intervals together hold with {:.0f} %, each with {:.2f} %. They are of the\n"
+        "trials that were asked for beforehand.\n",
+        number, 100.0 * preregistration.confidence, 100.0 * preregistration.confidence_each);
   } else if (preregistration.is_locked) {
     text += "It states no hypothesis.\n";
   }
