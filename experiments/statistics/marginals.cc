@@ -163,17 +163,6 @@ std::vector<ConditionValues> Select(const std::vector<ConditionValues>& conditio
   return selected;
 }
 
-// Of each condition its draw, where there are draws, else itself.
-std::vector<size_t> NumberDraws(const RunDescription& run) {
-  const bool has_draws = !run.factors.empty() && run.factors.front() == kDrawFactor;
-  const TrialGroups groups = has_draws ? GroupByDraw(run) : GroupByCondition(run);
-  std::vector<size_t> draws;
-  ProblemRecord any_of;
-  for (; any_of.condition < run.conditions.size(); ++any_of.condition)
-    draws.push_back(groups.group_of(any_of));
-  return draws;
-}
-
 bool IsShare(MarginalQuantity quantity) {
   return quantity == MarginalQuantity::kFailure || quantity == MarginalQuantity::kSureCoverage;
 }

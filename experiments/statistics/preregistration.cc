@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "experiments/core/text/columns.h"
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/summary_quantities.h"
+#include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "experiments/study/study_lock.h"
 #include "stats/paired.h"
@@ -35,21 +35,6 @@ std::optional<size_t> FindLabel(const RunDescription& run, const std::string& la
   return static_cast<size_t>(found - run.estimators.begin());
 }
 
-bool IsOfPopulation(const RunDescription& run) {
-  return !run.factors.empty() && run.factors.front() == kDrawFactor;
-}
-
-// The conditions of a draw are one cluster, and else each condition.
-std::vector<size_t> ClustersOf(const RunDescription& run) {
-  std::map<std::string, size_t> draws;
-  std::vector<size_t> clusters;
-  for (size_t c = 0; c < run.conditions.size(); ++c) {
-    const std::string name = IsOfPopulation(run) ? run.conditions[c].levels.front() : fmt::format("{}", c);
-    clusters.push_back(draws.try_emplace(name, draws.size()).first->second);
-  }
-  return clusters;
-}
-
 std::vector<bool> ConditionsWhere(const RunDescription& run, const Settings& where) {
   std::vector<bool> has(run.conditions.size(), true);
   for (const auto& [factor, level] : where) {
@@ -72,7 +57,7 @@ class Evidence {
         is_of_means_(run.repeats_per_scene > 1 || quantity_.kind == SummaryRow::Kind::kScore),
         bounds_(run.failure),
         has_(ConditionsWhere(run, stated.where)),
-        cluster_of_(ClustersOf(run)),
+        cluster_of_(NumberDraws(run)),
         clusters_(run.conditions.size()),
         scores_(is_paired_ ? Interval{-1.0, 1.0} : Interval{0.0, 1.0}) {}
 
@@ -226,7 +211,7 @@ std::vector<DecidedHypothesis> DecideAll(const ResultStore& store, const RunDesc
   for (size_t i = 0; i < evidence.size(); ++i) {
     DecidedHypothesis decided;
     decided.stated = plan.hypotheses[i];
-    evidence[i].Fill(IsOfPopulation(run), confidence, &decided);
+    evidence[i].Fill(IsSampleOfPopulation(run.identity), confidence, &decided);
     decided.why_open = WhyOpen(evidence[i], read, before, decided);
     if (decided.why_open.empty()) decided.verdict = Decide(decided.stated, decided.interval);
     all.push_back(std::move(decided));

@@ -61,6 +61,16 @@ TrialGroups GroupByDraw(const RunDescription& run) {
   return groups;
 }
 
+std::vector<size_t> NumberDraws(const RunDescription& run) {
+  const bool has_draws = !run.factors.empty() && run.factors.front() == kDrawFactor;
+  const TrialGroups groups = has_draws ? GroupByDraw(run) : GroupByCondition(run);
+  std::vector<size_t> draws;
+  ProblemRecord any_of;
+  for (; any_of.condition < run.conditions.size(); ++any_of.condition)
+    draws.push_back(groups.group_of(any_of));
+  return draws;
+}
+
 TrialGroups OneGroup() {
   return {{}, {{}}, [](const ProblemRecord&) { return size_t{0}; }};
 }

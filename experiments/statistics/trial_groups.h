@@ -24,6 +24,9 @@ TrialGroups OneGroup();
 // Throws std::logic_error for a run without draws.
 TrialGroups GroupByDraw(const RunDescription& run);
 
+// Of each condition the number of its draw (GroupByDraw), or its own where there are no draws.
+std::vector<size_t> NumberDraws(const RunDescription& run);
+
 // Five groups with equally many trials, those with the least value of a number of the problem first
 // (kSeverityColumns: "crb_direction_deg"); equal values are in one group, and the trials of which it is
 // unknown in a sixth. Reads the run once. Throws InputError if there is no such number, or it is unknown of
