@@ -103,6 +103,7 @@ A first session:
   AddMergeCommand(app);
   AddSolveCommand(app);
   AddSurfaceCommand(app);
+  AddWorstCommand(app);
   app.group("Thresholds, efforts and answers made elsewhere");
   AddTuneCommand(app);
   AddTransferCommand(app);

@@ -36,6 +36,7 @@ void AddMapCommand(CLI::App& app);
 void AddRareCommand(CLI::App& app);
 void AddSolveCommand(CLI::App& app);
 void AddSurfaceCommand(CLI::App& app);
+void AddWorstCommand(CLI::App& app);
 void AddModelChoiceCommand(CLI::App& app);
 void AddValidateCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);

@@ -1,0 +1,33 @@
+"""Exact intervals of rates that hold together."""
+
+import dataclasses
+
+from scipy.stats import beta
+
+
+def clopper_pearson(successes, trials, level):
+    """(lower, upper) at this confidence level."""
+    tail = (1 - level) / 2
+    lower = 0.0 if successes == 0 else float(beta.ppf(tail, successes, trials - successes + 1))
+    upper = 1.0 if successes == trials else float(beta.ppf(1 - tail, successes + 1, trials - successes))
+    return lower, upper
+
+
+@dataclasses.dataclass
+class Rate:
+    estimate: float
+    lower: float
+    upper: float
+
+
+def simultaneous_rate(counts, num_regions, level=0.95):
+    """Of one region of several, so that all intervals hold together with this probability (Bonferroni). `counts`: fresh,
+    independent trials. A difference of two rates on the same trials is bounded by the exact intervals of its two parts."""
+    each = 1 - (1 - level) / num_regions
+    if counts.trials == 0:
+        return Rate(float("nan"), -1.0 if counts.is_difference else 0.0, 1.0)
+    if not counts.is_difference:
+        return Rate(counts.events / counts.trials, *clopper_pearson(counts.events, counts.trials, each))
+    half = 1 - (1 - each) / 2
+    more, less = (clopper_pearson(n, counts.trials, half) for n in (counts.events, counts.reverse))
+    return Rate((counts.events - counts.reverse) / counts.trials, more[0] - less[1], more[1] - less[0])

@@ -1,0 +1,81 @@
+#!/usr/bin/python3
+"""`rcme worst` on a small study: its files, the same bytes after a kill, and that its region can be run again."""
+
+import csv
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+RCME = str(pathlib.Path(os.environ["RCME"]).resolve())
+STUDY = """
+name: small
+seed: 4
+trials: 1
+data: {scene: uniform_volume, motion: sideways, noise: gaussian, outliers: uniform}
+conditions:
+  design: sobol
+  number: 10
+  ranges: {num_matches: [20, 60], outlier_ratio: [0, 0.9]}
+estimators: [{name: standard, options: {num_iterations: 20}}]
+failure: {max_rotation_error_deg: 3, max_direction_error_deg: 15}
+"""
+ARGUMENTS = ["--estimator", "standard", "--trials", "500", "--regions", "1", "--fresh", "40", "--threads", "1"]
+FILES = ["worst.csv", "worst.txt", "worst.json", "region_1.yaml", "region_1.txt"]
+
+
+class WorstTest(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        (self.folder / "small.yaml").write_text(STUDY, encoding="utf-8")
+
+    def command(self, out, *more):
+        return [RCME, "worst", str(self.folder / "small.yaml"), "--out", str(self.folder / out), *ARGUMENTS, *more]
+
+    def finish(self, out):
+        end = subprocess.run(self.command(out), capture_output=True, text=True, check=False)
+        self.assertEqual(end.returncode, 0, end.stderr)
+        return {name: (self.folder / out / name).read_bytes() for name in FILES}, end
+
+    def kill_after_some_trials(self, out):
+        work = subprocess.Popen(self.command(out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        trials = self.folder / out / "trials"
+        while work.poll() is None and len(list(trials.glob("*.json"))) < 5:
+            time.sleep(0.01)
+        os.killpg(work.pid, signal.SIGKILL)
+        work.wait()
+
+    def test_a_killed_search_ends_as_an_undisturbed_one(self):
+        whole, end = self.finish("whole")
+        self.assertIn("trials", end.stderr)  # the cost, beforehand
+        self.assertTrue((self.folder / "whole" / "region_1.png").exists())
+        self.kill_after_some_trials("killed")
+        self.assertFalse((self.folder / "killed" / "worst.csv").exists())
+        self.assertEqual(self.finish("killed")[0], whole)
+
+        row = next(csv.DictReader((self.folder / "whole" / "worst.csv").read_text().splitlines()))
+        run = str(self.folder / "again.sqlite")
+        subprocess.run([RCME, "run", str(self.folder / "whole" / "region_1.yaml"), "--out", run], check=True,
+                       capture_output=True)
+        raw = subprocess.run([RCME, "summarize", run, "--raw", "csv"], check=True, capture_output=True, text=True).stdout
+        outcomes = [trial["outcome"] for trial in csv.DictReader(raw.splitlines())]
+        self.assertEqual((outcomes.count("failure"), len(outcomes)), (int(row["events"]), int(row["trials"])))
+
+        other = subprocess.run(self.command("whole", "--claim", "0.2"), capture_output=True, text=True, check=False)
+        self.assertEqual(other.returncode, 2)
+        self.assertIn("other arguments", other.stderr)
+
+    def test_what_is_refused(self):
+        for more, said in ((["--against", "standard"], "--quantity difference"), (["--quantity", "difference"], "--against")):
+            end = subprocess.run(self.command("refused", *more), capture_output=True, text=True, check=False)
+            self.assertEqual(end.returncode, 2)
+            self.assertIn(said, end.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

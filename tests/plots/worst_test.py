@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+"""The search of `rcme worst` on functions that are known: what it finds, and that its rates are of fresh trials alone."""
+
+import sys
+import unittest
+from pathlib import Path
+
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "studies"))
+
+import plot_test_case  # noqa: F401  makes plots/ importable
+from planted_regions import PlantedRegion
+from worst_search.intervals import clopper_pearson, simultaneous_rate
+from worst_search.objective import Counts
+from worst_search.run_trials import event_of, narrowed_conditions
+from worst_search.search import Plan, find_worst
+from worst_search.space import Box, Space, overlap
+
+WORDS_BOX = {"a": frozenset(["one"]), "x0": (0.2, 0.45), "x1": (0.5, 0.75)}  # 1/80 of all draws
+OTHER_BOX = {"a": frozenset(["four"]), "x2": (0.1, 0.35), "x3": (0.3, 0.55)}
+
+
+class Recorder(PlantedRegion):
+    def __init__(self, *arguments, **more):
+        super().__init__(*arguments, **more)
+        self.requests = {}
+
+    def try_draws(self, name, *arguments, **more):
+        self.requests[name] = super().try_draws(name, *arguments, **more)
+        return self.requests[name]
+
+    def try_box(self, name, *arguments):
+        self.requests[name] = super().try_box(name, *arguments)
+        return self.requests[name]
+
+
+class KnownFunctions(unittest.TestCase):
+    def test_two_regions_are_found_as_two(self):
+        objective = PlantedRegion([WORDS_BOX, OTHER_BOX], seed=1, pool_size=5000)
+        regions = [r for r in find_worst(objective, Plan(budget=3500, num_regions=2, num_fresh=100)) if r.is_find]
+        self.assertEqual(len(regions), 2)
+        self.assertLessEqual(overlap(regions[0].box, regions[1].box, objective.space.pool), 0.2)
+        for region in regions:
+            inside = objective.is_inside(objective.try_box("check", region.box, 1000).table)
+            self.assertGreater(inside.mean(), 0.7)
+
+    def test_rates_are_of_fresh_trials_alone(self):
+        objective = Recorder([WORDS_BOX, OTHER_BOX], seed=2, pool_size=5000)
+        regions = find_worst(objective, Plan(budget=3000, num_fresh=100))
+        self.assertGreater(len(regions), 0)
+        for region in regions:
+            fresh = objective.requests[region.name].total(False)
+            self.assertEqual((region.fresh.events, region.fresh.trials), (fresh.events, fresh.trials))
+            self.assertEqual(region.rate.estimate, fresh.events / fresh.trials)
+            each = 1 - 0.05 / len(regions)
+            self.assertEqual((region.rate.lower, region.rate.upper), clopper_pearson(fresh.events, fresh.trials, each))
+        last = list(objective.requests)[-len(regions):]
+        self.assertEqual(set(last), {region.name for region in regions})  # nothing is chosen after they were seen
+
+    def test_the_same_search_twice_asks_the_same(self):
+        ends = [Recorder([WORDS_BOX], seed=3, pool_size=2000) for _ in range(2)]
+        for objective in ends:
+            find_worst(objective, Plan(budget=1500, num_fresh=50))
+        self.assertEqual(list(ends[0].requests), list(ends[1].requests))
+
+    def test_nothing_is_claimed_where_every_draw_is_alike(self):
+        # The claim is the rate itself. A search has a false find with probability .025 at most; of 20, four or more with .002.
+        finds = 0
+        for seed in range(20):
+            objective = PlantedRegion([], seed, outside=0.3, pool_size=1000)
+            finds += any(r.is_find for r in find_worst(objective, Plan(budget=700, num_fresh=60, claim=0.3, num_raced=40,
+                                                                       num_looks=2, box_draws=40, seed=seed)))
+        self.assertLess(finds, 4)
+
+
+class Intervals(unittest.TestCase):
+    def test_known_answers(self):
+        # R: binom.test(7, 50)$conf.int
+        self.assertAlmostEqual(clopper_pearson(7, 50, 0.95)[0], 0.0581917, places=6)
+        self.assertAlmostEqual(clopper_pearson(7, 50, 0.95)[1], 0.2673960, places=6)
+
+    def test_several_regions_widen_them(self):
+        one, three = (simultaneous_rate(Counts(30, 100), k) for k in (1, 3))
+        self.assertLess(three.lower, one.lower)
+        self.assertGreater(three.upper, one.upper)
+
+    def test_a_difference_holds_both_parts(self):
+        rate = simultaneous_rate(Counts(30, 100, 5, True), 1)
+        self.assertAlmostEqual(rate.estimate, 0.25)
+        self.assertAlmostEqual(rate.lower, clopper_pearson(30, 100, 0.975)[0] - clopper_pearson(5, 100, 0.975)[1])
+
+    def test_no_trials_claim_nothing(self):
+        self.assertEqual(simultaneous_rate(Counts(0, 0), 3).lower, 0.0)
+
+
+class Boxes(unittest.TestCase):
+    def setUp(self):
+        rows = [[word, repr(i / 10), "-" if word == "plane" else str(i)] for word in ("room", "plane") for i in range(11)]
+        self.space = Space(["scene", "sigma_px", "num_boxes"], rows)
+
+    def test_a_draw_without_the_key_is_not_restricted(self):
+        box = Box.of(self.space, {"num_boxes": (0.0, 3.0)})
+        self.assertEqual(box.contains(self.space.pool).sum(), 4 + 11)
+
+    def test_limits_that_all_draws_meet_are_left_out(self):
+        self.assertEqual(Box.of(self.space, {"sigma_px": (0.0, 1.0), "scene": frozenset(["room", "plane"])}).limits, ())
+
+    def test_ranges_are_narrowed_where_they_stand(self):
+        conditions = {"ranges": {"scene": {"room": {"num_boxes": ["0", "10"]}, "plane": {}}, "sigma_px": ["0", "1"]}}
+        box = Box.of(self.space, {"scene": frozenset(["room"]), "num_boxes": (2.4, 7.7), "sigma_px": (0.2, 0.2)})
+        narrowed = narrowed_conditions(conditions, self.space, box, 50, "random")
+        self.assertEqual(narrowed["ranges"], {"scene": {"room": {"num_boxes": ["3", "7"]}}, "sigma_px": "0.2"})
+        self.assertIn("num_boxes >= 2.4", narrowed["given"])
+
+    def test_words_as_often_as_they_stand(self):
+        conditions = {"ranges": {"scene": {"any": ["room", "room", "plane"]}}}
+        box = Box.of(self.space, {"scene": frozenset(["room"])})
+        self.assertEqual(narrowed_conditions(conditions, self.space, box, 5, "sobol")["ranges"], {"scene": {"any": ["room",
+                                                                                                               "room"]}})
+
+
+class Events(unittest.TestCase):
+    def test_each_quantity(self):
+        sure_failure = {"outcome": "failure", "nees": "40", "failure_probability": "0.005"}
+        doubtful = {**sure_failure, "failure_probability": "0.4"}
+        silent = {**sure_failure, "failure_probability": ""}
+        absent = {**silent, "outcome": "not_simulated"}
+        self.assertEqual([event_of("failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, 1, 1, -1])
+        self.assertEqual([event_of("sure_failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, -1, -1, -1])
+        self.assertEqual([event_of("coverage", row) for row in (sure_failure, doubtful, silent)], [1, -1, -1])
+        self.assertEqual(event_of("coverage", {**silent, "outcome": "success", "nees": "5"}), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
