@@ -17,6 +17,7 @@ from worst_search.space import Space
 
 PILOT_DRAWS = 64  # whose time says how many trials --minutes allows
 DEFAULT_TRIALS = 5000
+MANY_TRIALS = 3000  # with fewer, fewer and smaller looks into each box
 SHARE_OF_TIME = 0.8  # for the trials; the rest for the search itself and the pictures
 
 
@@ -79,7 +80,8 @@ def search(arguments):
     claim = CLAIMS[options.quantity] if options.claim is None else options.claim
     budget = budget_of(options, objective)
     plan = Plan(budget=budget, num_regions=options.regions, num_fresh=options.fresh, claim=claim,
-                num_raced=min(120, budget // 20), seed=int(objective.study["seed"]))
+                num_raced=min(120, budget // 20), box_draws=min(80, max(40, budget // 40)),
+                num_looks=3 if budget >= MANY_TRIALS else 2, seed=int(objective.study["seed"]))
     progress.begin(objective, plan)
     regions = find_worst(objective, plan)
     progress.end(objective)

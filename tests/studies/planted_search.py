@@ -22,6 +22,7 @@ from worst_search.search import Evidence, Plan, explore, find_worst, race, worst
 from worst_search.space import Table
 
 BUDGETS = {"search": (1500, 5000), "random": (5000,), "grid": (5000,)}
+SMALL = {"num_regions": 1, "num_fresh": 100, "num_raced": 60}  # of the small budget
 NUM_CHECKED = 2000  # draws of a region that say what its true rate is
 
 
@@ -69,7 +70,7 @@ def one_search(name, method, budget, repetition):
     boxes, slope = cases(np.random.default_rng([7, repetition]))[name]
     objective = PlantedRegion(boxes, repetition + 1, slope=slope)
     plan = Plan(budget=budget, seed=repetition + 1, method="search" if method == "search" else "random",
-                num_batches=6 if method == "search" else 1)
+                num_batches=6 if method == "search" else 1, **({} if budget > 2000 else SMALL))
     if method == "grid":
         objective.space.pool = grid_pool(np.random.default_rng([9, repetition]))
     found = (regions_of if method == "search" else worst_points)(objective, plan)
