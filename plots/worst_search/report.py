@@ -18,9 +18,9 @@ def limit_text(space, key, limit):
     if isinstance(limit, frozenset):
         left_out = sorted(set(space.words[key]) - limit)
         return f"{key}: not {', '.join(left_out)}" if len(left_out) < len(limit) else f"{key}: {', '.join(sorted(limit))}"
-    known = space.sorted[key]
-    return (f"{key}: {number_text(limit[0])} to {number_text(limit[1])} (of {number_text(known[0])} to "
-            f"{number_text(known[-1])})")
+    least, most = space.sorted[key][[0, -1]]
+    ends = [f"{word} {number_text(end)}" for word, end in zip(("from", "to"), limit) if np.isfinite(end)]
+    return f"{key}: {' '.join(ends)} (drawn from {least:.3g} to {most:.3g})"
 
 
 def share_interval(region, pool):

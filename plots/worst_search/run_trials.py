@@ -46,8 +46,14 @@ def read_study(path):
         return yaml.load(file, Loader=yaml.BaseLoader)  # all values as texts
 
 
+def all_texts(value):
+    if isinstance(value, dict):
+        return {key: all_texts(part) for key, part in value.items()}
+    return [all_texts(part) for part in value] if isinstance(value, list) else str(value)
+
+
 def study_text(study):
-    return yaml.dump(study, Dumper=PlainDumper, sort_keys=False, default_flow_style=None, width=120)
+    return yaml.dump(all_texts(study), Dumper=PlainDumper, sort_keys=False, default_flow_style=None, width=120)
 
 
 def number_text(value):
@@ -109,7 +115,7 @@ def narrowed_conditions(conditions, space, box, number, design):
     given = list(conditions.get("given", []))
     for key, limit in box.limits:
         if not isinstance(limit, frozenset):
-            given += [f"{key} >= {number_text(limit[0])}", f"{key} <= {number_text(limit[1])}"]
+            given += [f"{key} {sign} {number_text(end)}" for sign, end in zip((">=", "<="), limit) if math.isfinite(end)]
     return {"design": design, "number": number, "ranges": ranges, **({"given": given} if given else {})}
 
 

@@ -93,15 +93,16 @@ class Box:
 
     @staticmethod
     def of(space, limits):
-        """Without the limits that every draw of the population meets."""
+        """Without the limits that every draw of the population meets; ends that all of them meet are infinite."""
         kept = []
         for key in space.keys:
             limit = limits.get(key)
             if limit is None or (isinstance(limit, frozenset) and limit >= set(space.words[key])):
                 continue
-            if not isinstance(limit, frozenset):
-                known = space.sorted[key]
-                if limit[0] <= known[0] and known[-1] <= limit[1]:
+            if not isinstance(limit, frozenset) and limit[0] < limit[1]:
+                least, most = space.sorted[key][[0, -1]]
+                limit = (-np.inf if limit[0] <= least else limit[0], np.inf if limit[1] >= most else limit[1])
+                if np.isinf(limit).all():
                     continue
             kept.append((key, limit))
         return Box(tuple(kept))

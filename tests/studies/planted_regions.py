@@ -76,7 +76,8 @@ class PlantedRegion(Objective):
             if isinstance(limit, frozenset):
                 table.columns[key] = rng.permutation(np.resize(np.array(sorted(limit), dtype=object), number))
             else:
-                table.columns[key] = limit[0] + (limit[1] - limit[0]) * column
+                lower, upper = max(limit[0], 0.0), min(limit[1], 1.0)
+                table.columns[key] = lower + (upper - lower) * column
         return self.tried(name, table, 1)
 
 
