@@ -29,7 +29,7 @@ ALLOWED = {
 # itself, where the program begins.
 FOLDERS = {
     "experiments": ["core", "data", "study", "trial", "run", "statistics", "audit", "tuning", "rare", "search", "real", "commands", "."],
-    "plots": ["common", "page", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "surface", "trial_sheet", "."],
+    "plots": ["common", "page", "rates", "audit_figures", "tuning_figures", "reliability_figure", "report_page", "surface", "worst_search", "trial_sheet", "."],
 }
 PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)
 OUR_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
