@@ -19,7 +19,7 @@ def per_cent(value):
 
 def title_of(trial):
     facts = trial.facts
-    levels = ", ".join(style.level_in_words(*factor) for factor in facts["factors"])
+    levels = ", ".join(style.level_in_words(*factor) for factor in facts["factors"] if factor[1] != "-")
     return (f"{facts['study']}, condition {facts['condition']}{' (' + levels + ')' if levels else ''}, "
             f"trial {facts['trial']}, seed {facts['seed']}")
 
