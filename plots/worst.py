@@ -9,11 +9,15 @@ import sys
 
 from common.command_line import Parser, PlotError, run
 from common.whole_file import write_text
-from worst_search.progress import Progress
-from worst_search.report import write_report
-from worst_search.run_trials import CLAIMS, QUANTITIES, TrialsOfRun
-from worst_search.search import Plan, find_worst
-from worst_search.space import Space
+
+try:
+    from worst_search.progress import Progress
+    from worst_search.report import write_report
+    from worst_search.run_trials import CLAIMS, QUANTITIES, TrialsOfRun
+    from worst_search.search import Plan, find_worst
+    from worst_search.space import Space
+except ImportError as missing:
+    sys.exit(f"worst: Python lacks {missing.name}; on Debian: apt-get install python3-sklearn python3-yaml")
 
 PILOT_DRAWS = 64  # whose time says how many trials --minutes allows
 DEFAULT_TRIALS = 5000
