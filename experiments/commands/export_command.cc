@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/lock_option.h"
@@ -46,9 +47,19 @@ std::string TruthAsJson(const TrialData& data, const std::string& id, const Cond
   return json.dump() + "\n";
 }
 
+// Nothing where the condition is a draw of a population and the trial cannot be simulated.
+std::optional<TrialData> MakeData(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
+  try {
+    return condition.source->Make(NameOfScene(plan, condition, trial));
+  } catch (const NotSimulated&) {
+    if (!plan.study.population) throw;
+    return std::nullopt;
+  }
+}
+
 void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
-                 const fs::path& folder, FileInPieces* problems, FileInPieces* truths) {
-  const TrialData data = condition.source->Make(NameOfScene(plan, condition, trial));
+                 const TrialData& data, const fs::path& folder, FileInPieces* problems,
+                 FileInPieces* truths) {
   RandomStream rng = StreamFor(NameOfTrial(plan, condition, trial), StreamPurpose::kSampling);
   const std::uint32_t seed = SeedForOutside(rng);
   const std::string id = ProblemId(data.problem, seed);
@@ -74,18 +85,27 @@ void Export(const ExportArguments& arguments) {
   const fs::path folder = arguments.out;
   MakeResultFolder((folder / "matches").string());
   FileInPieces problems((folder / "problems.jsonl").string()), truths((folder / "truth.jsonl").string());
+  std::int64_t num_problems = 0;
   for (const Condition& condition : plan.conditions) {
-    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial)
-      ExportTrial(plan, condition, trial, folder, &problems, &truths);
+    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial) {
+      const std::optional<TrialData> data = MakeData(plan, condition, trial);
+      if (!data) continue;
+      ++num_problems;
+      ExportTrial(plan, condition, trial, *data, folder, &problems, &truths);
+    }
   }
   problems.Finish();
   truths.Finish();
   WriteFileWhole((folder / "study.yaml").string(), plan.study_yaml);
   if (!plan.lock.empty()) WriteFileWhole((folder / "study.lock").string(), plan.lock);
   PrintMessage(
-      "done: {} problems in {}; next: answer them, then rcme import ANSWERS --study {} --label mine --out "
+      "done: {} problems in {}{}; next: answer them, then rcme import ANSWERS --study {} --label mine --out "
       "run.sqlite\n",
-      plan.NumTrials(), (folder / "problems.jsonl").string(), (folder / "study.yaml").string());
+      num_problems, (folder / "problems.jsonl").string(),
+      num_problems < plan.NumTrials()
+          ? fmt::format(" ({} trials cannot be simulated)", plan.NumTrials() - num_problems)
+          : "",
+      (folder / "study.yaml").string());
 }
 
 }  // namespace
