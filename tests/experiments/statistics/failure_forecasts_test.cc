@@ -182,9 +182,10 @@ TEST_F(FailureForecastsTest, MeasuresOfRightProbabilities) {
 }
 
 TEST(AddForecastsOfRun, KeepsTheScenesOfTwoRunsApart) {
-  const FailureForecasts first{"a", "", ForecastSource::kStated, {{0.1, false, 0}, {0.2, true, 3}}, {5}, 1};
-  const FailureForecasts second{"a", "", ForecastSource::kStated, {{0.3, true, 0}}, {2}, 2};
-  const FailureForecasts other{"b", "", ForecastSource::kStated, {{0.4, false, 0}}, {}, 0};
+  const FailureForecasts first{"a", "", ForecastSource::kStated, false, {{0.1, false, 0}, {0.2, true, 3}},
+                               {5}, 1};
+  const FailureForecasts second{"a", "", ForecastSource::kStated, false, {{0.3, true, 0}}, {2}, 2};
+  const FailureForecasts other{"b", "", ForecastSource::kStated, false, {{0.4, false, 0}}, {}, 0};
   std::vector<FailureForecasts> all;
   AddForecastsOfRun({first}, &all);
   AddForecastsOfRun({second, other}, &all);
@@ -197,9 +198,9 @@ TEST(AddForecastsOfRun, KeepsTheScenesOfTwoRunsApart) {
 }
 
 TEST(AddForecastsOfRun, RefusesProbabilitiesOfTwoKinds) {
-  std::vector<FailureForecasts> all = {{"a", "", ForecastSource::kStated, {}, {}, 0}};
+  std::vector<FailureForecasts> all = {{"a", "", ForecastSource::kStated, false, {}, {}, 0}};
   try {
-    AddForecastsOfRun({{"a", "", ForecastSource::kInlierShare, {}, {}, 0}}, &all);
+    AddForecastsOfRun({{"a", "", ForecastSource::kInlierShare, false, {}, {}, 0}}, &all);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
