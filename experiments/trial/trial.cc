@@ -39,7 +39,7 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
   if (!truth.is_direction_known) return;
   if (HasMotion(estimate.status))
     record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  if (!HasRefused(*record)) record->nees = NeesOf(estimate, truth);
+  if (WasSimulated(*record) && !HasRefused(*record)) record->nees = NeesOf(estimate, truth);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {

@@ -26,6 +26,7 @@ inline constexpr const char* kTrialFormat = "rcme trial 2";
 inline constexpr const char* kTuningFormat = "rcme tuning 1";
 inline constexpr const char* kTwinFormat = "rcme twin 1";
 inline constexpr const char* kValidationFormat = "rcme validation 2";
+inline constexpr const char* kWorstFormat = "rcme worst 1";  // written by plots/worst_search/report.py
 
 // The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no
 // UTF-8 is replaced.

@@ -33,7 +33,7 @@ TEST(JsonText, BytesThatAreNoTextAreReplaced) {
 // The page names every format of the program, and no other.
 TEST(JsonText, ThePageHasTheSameFormats) {
   const std::set<std::string> formats = FormatsIn("experiments/core/text/json_output.h");
-  EXPECT_EQ(formats.size(), 15u);
+  EXPECT_EQ(formats.size(), 16u);
   EXPECT_EQ(FormatsIn("docs/output_formats.md"), formats);
 }
 
@@ -44,7 +44,8 @@ TEST(JsonText, TheFiguresKnowTheSameFormats) {
                                      {"plots/tuning_figures/tune_file.py", kTransferFormat},
                                      {"plots/trial_sheet/trial_file.py", kTrialFormat},
                                      {"plots/reliability_figure/reliability_file.py", kReliabilityFormat},
-                                     {"plots/report_page/data.py", kReportFormat}}) {
+                                     {"plots/report_page/data.py", kReportFormat},
+                                     {"plots/worst_search/report.py", kWorstFormat}}) {
     EXPECT_EQ(FormatsIn(path).count(format), 1u) << path;
   }
 }
