@@ -1,5 +1,10 @@
 // A folder of images, rendered.
+#include <fmt/format.h>
+
+#include <cstdlib>
+
 #include "tests/test_support/dataset_checks.h"
+#include "tests/test_support/paths.h"
 
 namespace rcme {
 namespace {
