@@ -16,7 +16,7 @@ import yaml
 from common.command_line import PlotError
 from common.whole_file import write_text
 from worst_search.objective import Objective, Tried
-from worst_search.space import is_number
+from worst_search.space import ABSENT, is_number
 
 SURE_BELOW, SURE_OF_COVERAGE = 0.1, 0.01  # stated probabilities of failure, as in `rcme marginals`
 COVERED_BELOW = 11.0705  # the 95 % point of chi square with five degrees of freedom
@@ -105,6 +105,27 @@ def narrow_ranges(ranges, limits, is_whole):
     return narrowed
 
 
+def words_left(value):
+    """The words that a key is drawn from, of its range as a study has it; empty: it is a number."""
+    if isinstance(value, str):
+        return set() if is_number(value) else {value}
+    if isinstance(value, dict) and set(value) == {"any"}:
+        return {word for word in value["any"] if not is_number(word)}
+    return set(value) if isinstance(value, dict) and set(value) != {"log"} else set()
+
+
+def brought_keys(space, ranges):
+    """The keys that draws from these ranges have: others belong to words that are not among them."""
+    columns = space.pool.columns
+    there = {key: ~np.isnan(columns[key]) if space.numeric[key] else columns[key] != ABSENT for key in space.keys}
+    for word_key, value in ranges.items():
+        words = words_left(value)
+        if words and not space.numeric[word_key]:
+            inside = np.isin(columns[word_key].astype(str), sorted(words) + [ABSENT])
+            there = {key: here for key, here in there.items() if np.any(here & inside)}
+    return set(there)
+
+
 def narrowed_conditions(conditions, space, box, number, design):
     """The block of a study whose draws are those of a population that lie in a box."""
     limits = dict(box.limits)
@@ -112,9 +133,11 @@ def narrowed_conditions(conditions, space, box, number, design):
     for key, value in conditions["ranges"].items():
         narrowed = narrow_range(key, value, limits.get(key), limits, lambda k: space.is_whole[k])
         ranges[key] = value if narrowed is None else narrowed  # a word may bring a range of its own
+    brought = brought_keys(space, ranges)
+    ranges = {key: value for key, value in ranges.items() if key in brought}
     given = list(conditions.get("given", []))
     for key, limit in box.limits:
-        if not isinstance(limit, frozenset):
+        if not isinstance(limit, frozenset) and key in brought:
             given += [f"{key} {sign} {number_text(end)}" for sign, end in zip((">=", "<="), limit) if math.isfinite(end)]
     return {"design": design, "number": number, "ranges": ranges, **({"given": given} if given else {})}
 
@@ -201,10 +224,12 @@ class TrialsOfRun(Objective):
             raise PlotError(f"{name}: {table.stderr.strip()}")
         rows = csv.DictReader(io.StringIO(table.stdout))
         levels, answers, num_calls = {}, {label: {} for label in self.labels}, 0
-        columns = rows.fieldnames[3:3 + len(self.space.keys)]  # after study, condition, draw
+        names = rows.fieldnames[3:rows.fieldnames.index("trial")]  # after study, condition, draw
+        columns = {name if name in self.space.keys else name.removeprefix("level_"): name for name in names}
         for row in rows:
             condition, trial = int(row["condition"]), int(row["trial"])
-            levels.setdefault(condition, (int(row["draw"]), [row[key].removeprefix("'") for key in columns]))
+            levels.setdefault(condition, (int(row["draw"]), [row[columns[key]].removeprefix("'") if key in columns else ABSENT
+                                                                for key in self.space.keys]))
             num_calls += row["estimator"] == self.labels[0]
             if trial >= first:
                 answers[row["estimator"]][condition, trial] = event_of(self.quantity, row)

@@ -112,6 +112,14 @@ class Boxes(unittest.TestCase):
         self.assertEqual(narrowed["ranges"], {"scene": {"room": {"num_boxes": ["3", "7"]}}, "sigma_px": "0.2"})
         self.assertIn("num_boxes >= 2.4", narrowed["given"])
 
+    def test_keys_of_words_that_are_left_out_are_not_drawn(self):
+        """num_boxes stands beside the scenes, and is drawn with a room alone: with a plane it is no key."""
+        conditions = {"ranges": {"scene": {"any": ["room", "plane"]}, "num_boxes": ["0", "10"], "sigma_px": ["0", "1"]}}
+        box = Box.of(self.space, {"scene": frozenset(["plane"]), "num_boxes": (2.4, 7.7), "sigma_px": (0.2, 0.2)})
+        narrowed = narrowed_conditions(conditions, self.space, box, 50, "random")
+        self.assertEqual(narrowed["ranges"], {"scene": "plane", "sigma_px": "0.2"})
+        self.assertNotIn("num_boxes >= 2.4", narrowed.get("given", []))
+
     def test_words_as_often_as_they_stand(self):
         conditions = {"ranges": {"scene": {"any": ["room", "room", "plane"]}}}
         box = Box.of(self.space, {"scene": frozenset(["room"])})
