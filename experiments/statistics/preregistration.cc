@@ -13,6 +13,7 @@
 #include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "experiments/study/study_lock.h"
+#include "parameters/text_lines.h"
 #include "stats/paired.h"
 #include "stats/population_mean.h"
 #include "stats/population_rate.h"
@@ -127,7 +128,7 @@ class Evidence {
       decided->value = measured.value;
       decided->interval = measured.interval;
     };
-    constexpr ConditionWeights kWeights = ConditionWeights::kEqual;
+    constexpr ConditionWeights kWeights = ConditionWeights::kByTrials;  // as in a pooled summary
     if (is_of_means_) {
       fill(MeasurePopulationMean(Clusters(&Cluster::moments), kWeights, confidence));
     } else if (is_paired_) {
@@ -219,16 +220,6 @@ std::vector<DecidedHypothesis> DecideAll(const ResultStore& store, const RunDesc
   return all;
 }
 
-std::vector<std::string> SplitLines(const std::string& text) {
-  std::vector<std::string> lines;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return lines;
-}
-
 // The text that says what was decided before; empty: none. A study that this program cannot read has none.
 std::string PlanText(const RunDescription& run, const std::string& path) {
   if (!run.lock.empty()) return ParseLock(run.lock, path + " (its lock)").text;
@@ -302,7 +293,7 @@ std::optional<Preregistration> DescribePreregistered(const RunDescription& run, 
   preregistration.program = lock.program;
   preregistration.sha256 = lock.sha256;
   preregistration.deviations = DeviationsFrom(lock, run.study_yaml, run.identity, run.stopping_rule);
-  preregistration.reasons = SplitLines(run.despite_lock);
+  preregistration.reasons = SplitText(run.despite_lock, '\n');
   return preregistration;
 }
 

@@ -18,6 +18,7 @@
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -32,19 +33,9 @@ const FileKind& LockFileKind() {
   return kind;
 }
 
-std::vector<std::string> LinesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return lines;
-}
-
 // The lines of an identity that name the digests of real pairs.
 std::vector<std::string> DigestsIn(const std::string& text, bool is_of_real_pairs) {
-  std::vector<std::string> lines = is_of_real_pairs ? LinesOf(text) : std::vector<std::string>();
+  std::vector<std::string> lines = is_of_real_pairs ? SplitText(text, '\n') : std::vector<std::string>();
   std::erase_if(lines, [](const std::string& line) { return !line.starts_with("# condition "); });
   return lines;
 }
@@ -154,7 +145,7 @@ std::string ToYaml(const StudyLock& lock) {
       "# Made by `rcme lock`. `rcme run` refuses a study that says something else.\n"
       "format: {}\nlocked_at: {}\nprogram: {}\nsha256: {}\n{}\n",
       kLockFormat, lock.locked_at, lock.program, lock.sha256, kTextLine);
-  for (const std::string& line : LinesOf(lock.text)) yaml += line.empty() ? "\n" : "  " + line + "\n";
+  for (const std::string& line : SplitText(lock.text, '\n')) yaml += line.empty() ? "\n" : "  " + line + "\n";
   return yaml;
 }
 
@@ -171,7 +162,7 @@ StudyLock ParseLock(const std::string& yaml, const std::string& path) {
                                                       {"program", &lock.program},
                                                       {"sha256", &lock.sha256}};
   bool is_in_text = false;
-  const std::vector<std::string> lines = LinesOf(yaml);
+  const std::vector<std::string> lines = SplitText(yaml, '\n');
   for (size_t i = 0; i < lines.size(); ++i) {
     const std::string& line = lines[i];
     const auto field = fields.find(line.substr(0, line.find(": ")));
@@ -206,15 +197,15 @@ std::string PathOfLockBeside(const std::string& study_path) {
 }
 
 std::string DescribeLock(const std::string& lock_yaml) {
-  for (const std::string& line : LinesOf(lock_yaml)) {
+  for (const std::string& line : SplitText(lock_yaml, '\n')) {
     if (line.starts_with("sha256: ")) return "with the lock " + line.substr(8, 8);
   }
   return "without a lock";
 }
 
 std::string JoinReasons(const std::string& reasons, const std::string& more) {
-  std::vector<std::string> lines = LinesOf(reasons);
-  for (const std::string& line : LinesOf(more)) {
+  std::vector<std::string> lines = SplitText(reasons, '\n');
+  for (const std::string& line : SplitText(more, '\n')) {
     if (std::ranges::count(lines, line) == 0) lines.push_back(line);
   }
   return fmt::format("{}", fmt::join(lines, "\n"));

@@ -120,6 +120,13 @@ class Boxes(unittest.TestCase):
         self.assertEqual(narrowed["ranges"], {"scene": "plane", "sigma_px": "0.2"})
         self.assertNotIn("num_boxes >= 2.4", narrowed.get("given", []))
 
+    def test_keys_of_words_without_a_place_in_the_box_are_not_drawn(self):
+        """No room has so much noise: planes are left, although the box has no limit of the scene."""
+        conditions = {"ranges": {"scene": {"room": {"sigma_px": ["0", "0.1"]}, "plane": {}}, "num_boxes": ["0", "10"],
+                                 "sigma_px": ["0", "1"]}}
+        narrowed = narrowed_conditions(conditions, self.space, Box.of(self.space, {"sigma_px": (0.5, 0.9)}), 50, "random")
+        self.assertEqual(set(narrowed["ranges"]), {"scene", "sigma_px"})
+
     def test_words_as_often_as_they_stand(self):
         conditions = {"ranges": {"scene": {"any": ["room", "room", "plane"]}}}
         box = Box.of(self.space, {"scene": frozenset(["room"])})

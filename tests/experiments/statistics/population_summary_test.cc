@@ -187,7 +187,7 @@ TEST(PopulationMedianTest, CoversWhereDrawsDiffer) {
     num_covered += median.interval.Contains(1.0);
     num_covered_as_independent += median.of_these_conditions.Contains(1.0);
   }
-  // At .95 more than 367 with probability .998; at .90 with .02.
+  // More than 367 with probability .996 at a coverage of .95, .10 at .90, .006 at .88.
   EXPECT_GE(num_covered, 368);
   EXPECT_LT(num_covered_as_independent, 250);
 }
