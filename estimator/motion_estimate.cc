@@ -50,4 +50,16 @@ const std::vector<MotionStatus>& AllStatuses() {
   return all;
 }
 
+const char* Name(ProbabilityDomain domain) {
+  switch (domain) {
+    case ProbabilityDomain::kNotStated:
+      break;
+    case ProbabilityDomain::kVerified:
+      return "verified";
+    case ProbabilityDomain::kExtrapolated:
+      return "extrapolated";
+  }
+  return "not_stated";
+}
+
 }  // namespace rcme

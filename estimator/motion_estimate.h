@@ -61,7 +61,18 @@ enum class Doubt {
   kOppositeWay,       // the direction of translation may have the opposite sign
   kLowParallax,       // hardly any parallax: the direction is poorly determined
   kFewMatches,        // few matches agree with the motion, chance might give as many
+  kModel,             // the matches are not as the estimator's model has them
 };
+
+// Whether a stated probability of failure is of problems like those that it was fitted and verified on, as
+// far as the matches show that.
+enum class ProbabilityDomain {
+  kNotStated,     // the estimator does not say
+  kVerified,      // like them
+  kExtrapolated,  // unlike nearly all of them in some respect
+};
+// "not_stated", "verified", "extrapolated".
+const char* Name(ProbabilityDomain domain);
 
 // Another motion that explains the matches, with what speaks for it.
 struct MotionMode {
@@ -107,6 +118,7 @@ struct MotionEstimate {
   std::vector<double> inlier_probabilities;  // one per match
   std::vector<MotionMode> other_modes;       // the most likely first
   Doubt doubt = Doubt::kNone;
+  ProbabilityDomain probability_domain = ProbabilityDomain::kNotStated;
 
   // Time of the part of the call that ran in another process or on another machine, s; NaN: none did.
   double seconds_elsewhere = std::numeric_limits<double>::quiet_NaN();

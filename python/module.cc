@@ -82,6 +82,7 @@ py::dict DictOf(const MotionEstimate& estimate) {
   if (estimate.status == MotionStatus::kDirectionNotObservable) dict["motion"] = DictOfRotation(estimate);
   dict["inliers"] = estimate.inliers;
   dict["p_failure"] = estimate.failure_probability;
+  dict["p_failure_domain"] = Name(estimate.probability_domain);
   dict["sigma"] = estimate.sigma_estimated_px;
   dict["sigma_sd"] = estimate.sigma_estimated_sd_px;
   dict["inlier_probabilities"] = estimate.inlier_probabilities;

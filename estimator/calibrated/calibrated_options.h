@@ -29,6 +29,7 @@ enum class CalibratedStep {
   kOppositeWay,
   kDirectionPosterior,
   kNoiseChoice,
+  kModelCheck,
 };
 
 // Options of rcme_calibrated.

@@ -1,23 +1,23 @@
 #include "estimator/estimators/rcme_calibrated.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "estimator/calibrated/candidates.h"
+#include "estimator/calibrated/checked_probability.h"
+#include "estimator/calibrated/describe_answer.h"
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/mode_covariance.h"
 #include "estimator/calibrated/noise_choice.h"
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
+#include "estimator/calibrated/verdict.h"
 #include "estimator/calibrated/weigh_modes.h"
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
-#include "parameters/probability_text.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -40,13 +40,6 @@ MixturePrior PriorOf(const MotionProblem& problem, const CalibratedOptions& opti
   const double diagonal = std::hypot(problem.camera2.width, problem.camera2.height) / problem.sigma_px;
   return {2.0 / diagonal, options.sigma == SigmaKnowledge::kEstimated};
 }
-
-// What follows from the weights of the modes: the probability of failure and the covariance of the answer.
-struct Verdict {
-  double failure_probability = 1.0;
-  double mass_beyond = 0.0;  // of the modes within the bounds: what of them lies beyond
-  Matrix5d pose_cov = Matrix5d::Zero();
-};
 
 void FillMotion(const ExplainedMode& answer, const Verdict& verdict, double assumed_sigma_px,
                 MotionEstimate* estimate) {
@@ -91,69 +84,16 @@ void FillOtherModes(const std::vector<ExplainedMode>& modes, const ModeWeights& 
   std::ranges::stable_sort(estimate->other_modes, std::ranges::greater{}, &MotionMode::weight);
 }
 
-Doubt DoubtOfOrigin(const ExplainedMode& mode, bool is_second_motion) {
-  if (is_second_motion) return Doubt::kOtherMotion;
-  switch (mode.mode.origin) {
-    case ModeOrigin::kTwistedPair:
-      return Doubt::kPlane;
-    case ModeOrigin::kLeverage:
-      return Doubt::kFewMatchesDecide;
-    case ModeOrigin::kOppositeWay:
-      return Doubt::kOppositeWay;
-    case ModeOrigin::kSample:
-      break;
-  }
-  return Doubt::kOtherMotion;
-}
-
-// The greatest part of the probability of failure, where that is more than a hundredth.
-Doubt DoubtOf(const std::vector<ExplainedMode>& modes, const ModeWeights& weights, double mass_beyond) {
-  Doubt doubt = Doubt::kNone;
-  double greatest = 0.01;
-  const auto consider = [&](double part, Doubt reason) {
-    if (part > greatest) greatest = part, doubt = reason;
-  };
-  consider(mass_beyond, Doubt::kLowParallax);
-  consider(weights.of_no_motion, Doubt::kFewMatches);
-  for (size_t i = 0; i < modes.size(); ++i) {
-    if (weights.is_rival[i])
-      consider(weights.of_modes[i], DoubtOfOrigin(modes[i], weights.is_second_motion[i]));
-  }
-  return doubt;
-}
-
-std::string ReasonOf(const MotionEstimate& e) {
-  switch (e.doubt) {
-    case Doubt::kNone:
-      return {};
-    case Doubt::kOtherMotion:
-      return fmt::format(": another motion explains {:.0f} % more of the matches",
-                         e.other_modes.empty() ? 0.0 : 100.0 * e.other_modes.front().explained_share);
-    case Doubt::kPlane:
-      return ": a plane, two motions explain the matches";
-    case Doubt::kFewMatchesDecide:
-      return ": a few matches of large influence decide";
-    case Doubt::kOppositeWay:
-      return ": the direction may be the opposite one";
-    case Doubt::kLowParallax:
-      return ": hardly any parallax, the direction is poorly determined";
-    case Doubt::kFewMatches:
-      return ": chance might explain as many matches";
-  }
-  return {};
-}
-
-std::string MessageOf(const MotionEstimate& e) {
-  return fmt::format("{} of {} matches agree, sigma {:.2g} px; wrong with probability {}{}", e.inliers.size(),
-                     e.inlier_probabilities.size(), e.sigma_estimated_px,
-                     ProbabilityText(e.failure_probability), ReasonOf(e));
-}
-
 class RcmeCalibrated : public MotionEstimator, public WeightInspection {
  public:
   explicit RcmeCalibrated(const CalibratedOptions& options) : options_(options) { Validate(options); }
 
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
+    return EstimateChecked(problem, rng, nullptr);
+  }
+
+  MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
+                                 CheckedVerdict* checked) const override {
     if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, 6)) return *refusal;
     std::vector<int> order;
     const MotionProblem shuffled = Shuffled(problem, rng, &order);
@@ -183,12 +123,20 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       direction_mass =
           SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
     }
-    const Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, rng);
+    const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
+    ModelCheck check;
+    if (is_checked || checked != nullptr) check = CheckModel(shuffled, modes, weights, direction_mass);
+    Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, check, rng);
+    if (checked != nullptr) *checked = {check, verdict.by_modes};
+    if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
+    if (is_checked)
+      estimate.probability_domain = IsInDomain(verdict.by_modes, check) ? ProbabilityDomain::kVerified
+                                                                        : ProbabilityDomain::kExtrapolated;
     FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
     FillMatches(modes[weights.answer].explanation, order, &estimate);
-    FillOtherModes(modes, weights, &estimate);
-    estimate.doubt = DoubtOf(modes, weights, verdict.mass_beyond);
-    estimate.message = MessageOf(estimate);
+    FillOtherModes(modes, ReweighModes(weights, verdict), &estimate);
+    estimate.doubt = FindDoubt(modes, weights, verdict);
+    estimate.message = DescribeAnswer(estimate, check);
     if (estimate.failure_probability > options_.max_failure_probability) {
       estimate.status = MotionStatus::kTooUncertain;
     } else if (options_.covariance == CovarianceKind::kRobust) {
@@ -224,7 +172,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   // The covariance is the second moment, about the answer, of the modes within the bounds.
   Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches,
                 const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
-                const std::optional<double>& direction_mass, RandomStream& rng) const {
+                const std::optional<double>& direction_mass, const ModelCheck& check,
+                RandomStream& rng) const {
     const ExplainedMode& answer = modes[weights.answer];
     const RelativePose& pose = answer.mode.pose;
     double within = 0.0, success = 0.0;
@@ -243,21 +192,25 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
                                : MassWithin(pose, Bounds(), mode.pose, reach, rng));
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
-      verdict.pose_cov += weight * (CovarianceOf(problem, modes[i], curvature) + away * away.transpose());
+      verdict.pose_cov +=
+          weight * (CovarianceOf(problem, modes[i], curvature, check) + away * away.transpose());
       within += weight;
     }
     verdict.pose_cov /= within;
     verdict.mass_beyond = std::max(within - success, 0.0);
-    verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
+    verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
     return verdict;
   }
 
-  Matrix5d CovarianceOf(const MotionProblem& problem, const ExplainedMode& mode,
-                        const Matrix5d& curvature) const {
-    const Matrix5d of_matches = options_.covariance == CovarianceKind::kInformation
-                                    ? mode.mode.inverse_hessian
-                                    : SandwichCovariance(mode.mode, mode.explanation, curvature);
-    if (options_.covariance == CovarianceKind::kRobust) return of_matches;  // adds it to the whole
+  Matrix5d CovarianceOf(const MotionProblem& problem, const ExplainedMode& mode, const Matrix5d& curvature,
+                        const ModelCheck& check) const {
+    Matrix5d of_matches = options_.covariance == CovarianceKind::kInformation
+                              ? mode.mode.inverse_hessian
+                              : SandwichCovariance(mode.mode, mode.explanation, curvature);
+    if (options_.covariance == CovarianceKind::kRobust)
+      return of_matches;  // adds what is shared to the whole
+    if (options_.covariance == CovarianceKind::kSandwich && options_.leave_out != CalibratedStep::kModelCheck)
+      of_matches *= CovarianceFactor(check);
     return of_matches + IntrinsicsCovariance(problem, options_, mode.mode, curvature);
   }
 

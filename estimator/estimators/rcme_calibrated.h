@@ -14,6 +14,8 @@
 //                    calibrated/noise_choice.h         the answer's tails: five degrees of freedom or fifteen
 //   7  P(fail)       calibrated/failure_probability.h  the mass of all modes beyond the failure bounds
 //                    calibrated/settle_direction.h     where the parallax is hardly more than the noise
+//                    calibrated/model_check.h          whether the matches are as the model has them
+//                    calibrated/checked_probability.h  what that makes of the mass and the covariance
 //   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds
 #pragma once
 
@@ -21,6 +23,7 @@
 #include <vector>
 
 #include "estimator/calibrated/calibrated_options.h"
+#include "estimator/calibrated/model_check.h"
 #include "estimator/estimator_model.h"
 
 namespace rcme {
@@ -33,7 +36,14 @@ struct WeighedMotion {
   bool is_answer = false;
 };
 
-// The inspection of rcme_calibrated: its weights taken apart from its search. Estimate never asks it.
+// What the probability of failure of an answer is made of.
+struct CheckedVerdict {
+  ModelCheck check;
+  double by_modes = 1.0;  // the probability by the modes alone, before the check
+};
+
+// The inspection of rcme_calibrated: its weights taken apart from its search, its probability from the check.
+// Estimate never asks it.
 class WeightInspection {
  public:
   virtual ~WeightInspection() = default;
@@ -41,6 +51,9 @@ class WeightInspection {
   // reached from them, and the others that follow from these (steps 3 to 6).
   virtual std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
                                                   const std::vector<RelativePose>& starts) const = 0;
+  // Estimate, and what its probability is made of; that stays as it is where there is no motion.
+  virtual MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
+                                         CheckedVerdict* verdict) const = 0;
 };
 
 // The inspection of the estimator's weights, which lives as long as the estimator; null if there is none.

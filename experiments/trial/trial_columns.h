@@ -92,7 +92,8 @@ void VisitColumns(Record& record, Visitor&& visit) {
       StoredColumn{
           "doubt", "",
           "what makes the motion uncertain: 0 nothing, 1 another motion, 2 a plane, 3 few influential "
-          "matches, 4 the opposite direction, 5 low parallax, 6 few matches"},
+          "matches, 4 the opposite direction, 5 low parallax, 6 few matches, 7 matches that are not as its "
+          "model has them"},
       record.doubt);
   visit(
       StoredColumn{

@@ -45,7 +45,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         inliers (bool, N), num_inliers, inlier_probabilities (N, or None);
         pose_cov (6, 6) of [w, dt], or None: the true motion is Exp([w]x) R, t + dt, w in rad; rank 5;
         p_failure, the probability that the motion is wrong by more than the estimator's bounds (max_rotation_error_deg, ...;
-        None if it states none); sigma and sigma_sd (px), the noise level that it found (None likewise);
+        None if it states none); p_failure_domain, "verified" or "extrapolated": whether the matches are like those that it was
+        verified on ("not_stated"); sigma and sigma_sd (px), the noise level that it found (None likewise);
         other_motions: a list of further explanations {R, t, pose_cov, weight, explained_share}, the most likely first.
 
     Raises
@@ -108,5 +109,6 @@ def _pose_and_info(answer: dict[str, Any], num_matches: int) -> tuple[Optional[P
             "inlier_probabilities": probabilities if len(probabilities) else None,
             "pose_cov": motion["pose_cov"] if motion else None,
             **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd")},
+            "p_failure_domain": answer["p_failure_domain"],
             "other_motions": answer["other_motions"]}
     return Pose(motion["R"], motion["t"]) if motion else None, info

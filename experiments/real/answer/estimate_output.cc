@@ -88,6 +88,8 @@ std::string SureText(const MotionEstimate& estimate, const MotionSpread& spread,
   } else {
     text += fmt::format("  P(wrong)   {}  ({})\n", ProbabilityText(estimate.failure_probability),
                         BoundsText(spec));
+    if (estimate.probability_domain == ProbabilityDomain::kExtrapolated)
+      text += "             extrapolated: matches like these were not among those that P was verified on\n";
   }
   text += fmt::format(
       "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
@@ -154,6 +156,8 @@ std::string TruthText(const PairAnswer& answer) {
 // Of an estimator that states them; see motion_estimate.h.
 void AddProbabilities(const MotionEstimate& estimate, Json* json) {
   (*json)["failure_probability"] = estimate.failure_probability;
+  if (estimate.probability_domain != ProbabilityDomain::kNotStated)
+    (*json)["failure_probability_domain"] = Name(estimate.probability_domain);
   (*json)["sigma_estimated_px"] = estimate.sigma_estimated_px;
   (*json)["sigma_estimated_sd_px"] = estimate.sigma_estimated_sd_px;
   (*json)["inlier_probabilities"] = estimate.inlier_probabilities;

@@ -1,0 +1,267 @@
+#include "estimator/calibrated/model_check.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "estimator/calibrated/direction_posterior.h"
+#include "estimator/calibrated/twisted_pair.h"
+#include "estimator/noise_scale.h"
+#include "stats/order_statistic.h"
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMostCompared = 128;
+constexpr double kCut = 3.0;            // of residuals, standard deviations
+constexpr double kPlaneBound = 4.0;     // standard deviations of a match
+constexpr double kApart = 0.5;          // of two displacements, per distance
+constexpr double kLeastDistance = 1.0;  // px; nearer ones are the same key point
+constexpr double kLeastKept = 0.05;     // of the information along a direction, without a block
+constexpr double kMostRivals = 6.0;
+
+double LogWithin(double x, double least, double most) { return std::log(std::clamp(x, least, most)); }
+
+// The matches that the answer explains, and the others, in their order.
+struct Split {
+  std::vector<size_t> right, wrong;
+};
+Split SplitMatches(const Explanation& explanation) {
+  Split split;
+  for (size_t i = 0; i < explanation.probability.size(); ++i)
+    (explanation.probability[i] > 0.5 ? split.right : split.wrong).push_back(i);
+  return split;
+}
+
+// For each of the first kMostCompared of `some` the place of its nearest neighbour among them in image 1, at
+// least `least_px` away in both images; its own place where there is none. Every pair is looked at once.
+std::vector<size_t> NearestNeighbours(const MotionProblem& problem, const std::vector<size_t>& some,
+                                      double least_px) {
+  const size_t n = std::min(some.size(), kMostCompared);
+  const double least = least_px * least_px;
+  std::array<Correspondence, kMostCompared> matches;
+  std::array<double, kMostCompared> square{};
+  std::vector<size_t> nearest(n);
+  for (size_t a = 0; a < n; ++a) {
+    matches[a] = problem.matches[some[a]];
+    square[a] = std::numeric_limits<double>::infinity();
+    nearest[a] = a;
+    for (size_t b = 0; b < a; ++b) {
+      const double away = (matches[a].x1_px - matches[b].x1_px).squaredNorm();
+      if (away >= square[a] && away >= square[b]) continue;
+      if (away < least || (matches[a].x2_px - matches[b].x2_px).squaredNorm() < least) continue;
+      if (away < square[a]) square[a] = away, nearest[a] = b;
+      if (away < square[b]) square[b] = away, nearest[b] = a;
+    }
+  }
+  return nearest;
+}
+
+void CheckNeighbours(const MotionProblem& problem, const Split& split, const ExplainedMode& answer,
+                     ModelCheck* check) {
+  const std::vector<size_t> nearest = NearestNeighbours(problem, split.right, 0.0);
+  const auto residual = [&](size_t place) {
+    const double u = answer.explanation.terms.residual[split.right[place]] / answer.mode.mixture.scale;
+    return std::clamp(u, -kCut, kCut);
+  };
+  double sum = 0.0, count = 0.0;
+  for (size_t a = 0; a < nearest.size(); ++a) {
+    if (nearest[a] == a) continue;
+    sum += residual(a) * residual(nearest[a]);
+    count += 1.0;
+  }
+  if (count == 0.0) return;
+  check->neighbour_correlation = sum / count;
+  check->neighbour_z = sum / std::sqrt(count);
+}
+
+double WrongCoherence(const MotionProblem& problem, const Split& split) {
+  const std::vector<size_t> nearest = NearestNeighbours(problem, split.wrong, kLeastDistance);
+  double together = 0.0, count = 0.0;
+  for (size_t a = 0; a < nearest.size(); ++a) {
+    if (nearest[a] == a) continue;
+    const Correspondence &match = problem.matches[split.wrong[a]],
+                         &other = problem.matches[split.wrong[nearest[a]]];
+    const Eigen::Vector2d from = other.x1_px - match.x1_px, to = other.x2_px - match.x2_px;
+    together += (to - from).norm() < kApart * from.norm() + kCut * problem.sigma_px;
+    count += 1.0;
+  }
+  return count > 0.0 ? together / count : 0.0;
+}
+
+double PlanarShare(const MotionProblem& problem, const Split& split, const ExplainedMode& answer) {
+  const RelativePose& pose = answer.mode.pose;
+  const std::optional<Eigen::Vector3d> plane = FindPlane(problem, pose, answer.explanation.probability, 0.0);
+  const size_t n = std::min(split.right.size(), kMostCompared);
+  if (!plane || n == 0) return 0.0;
+  const Eigen::Matrix3d H = pose.R + pose.t * plane->transpose();
+  const MixtureParameters& m = answer.mode.mixture;
+  const double noise_rad = problem.sigma_px * m.scale / m.noise.scale_of_gaussian *
+                           std::sqrt(1.0 / (problem.camera1.fx * problem.camera1.fy) +
+                                     1.0 / (problem.camera2.fx * problem.camera2.fy));
+  double num_near = 0.0;
+  for (size_t a = 0; a < n; ++a) {
+    const size_t i = split.right[a];
+    const Eigen::Vector3d moved = (H * problem.camera1.Ray(problem.matches[i].x1_px)).normalized();
+    const Eigen::Vector3d seen = problem.camera2.Ray(problem.matches[i].x2_px).normalized();
+    num_near += moved.dot(seen) > 0.0 &&
+                moved.cross(seen).norm() < kPlaneBound * noise_rad * NoiseScaleAt(problem, i);
+  }
+  return num_near / static_cast<double>(n);
+}
+
+// det of the scatter of some matches' points in image 1, px^4.
+double ScatterDeterminant(const MotionProblem& problem, const std::vector<size_t>& some) {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const size_t i : some) mean += problem.matches[i].x1_px;
+  mean /= std::max(1.0, static_cast<double>(some.size()));
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const size_t i : some) {
+    const Eigen::Vector2d away = problem.matches[i].x1_px - mean;
+    scatter += away * away.transpose();
+  }
+  scatter /= std::max(1.0, static_cast<double>(some.size()));
+  return scatter.determinant();
+}
+
+void CheckSpread(const MotionProblem& problem, const Split& split, ModelCheck* check) {
+  std::vector<size_t> all(problem.matches.size());
+  for (size_t i = 0; i < all.size(); ++i) all[i] = i;
+  const double of_right = ScatterDeterminant(problem, split.right) + 1.0;
+  const double of_image = std::pow(problem.camera1.width * problem.camera1.height / 12.0, 2);
+  check->spread_in_matches =
+      std::clamp(0.25 * std::log(of_right / (ScatterDeterminant(problem, all) + 1.0)), -2.0, 1.0);
+  check->spread_in_image = std::clamp(0.25 * std::log(of_right / of_image), -3.0, 1.0);
+}
+
+// Of the right matches in a block of image 1.
+struct BlockSums {
+  double num_matches = 0.0;
+  Vector5d score = Vector5d::Zero();
+  Matrix5d information = Matrix5d::Zero();
+  double parallax = 0.0;  // sum z^2, z > 0
+
+  void Add(const BlockSums& other) {
+    num_matches += other.num_matches;
+    score += other.score;
+    information += other.information;
+    parallax += other.parallax;
+  }
+};
+
+constexpr int kPerSide = 4;
+struct Blocks {
+  std::array<BlockSums, kPerSide * kPerSide> sums;  // by column of blocks, then row
+  Matrix5d scatter = Matrix5d::Zero();              // of the scores of single matches
+};
+
+Blocks SumBlocks(const MotionProblem& problem, const Split& split, const ExplainedMode& answer) {
+  const Explanation& e = answer.explanation;
+  const MixtureParameters& m = answer.mode.mixture;
+  const auto block = [&](double x_px, int length_px) {
+    return std::clamp(static_cast<int>((x_px + 0.5) / length_px * kPerSide), 0, kPerSide - 1);
+  };
+  Blocks blocks;
+  for (const size_t i : split.right) {
+    const Eigen::Vector2d& x = problem.matches[i].x1_px;
+    BlockSums& sums = blocks.sums[static_cast<size_t>(block(x.x(), problem.camera1.width) * kPerSide +
+                                                      block(x.y(), problem.camera1.height))];
+    Vector5d J;
+    for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = e.terms.derivative[k][i];
+    const double u = e.terms.residual[i] / m.scale, weight = e.probability[i] * NoiseWeight(m.noise, u);
+    const Matrix5d outer = J * J.transpose();
+    sums.num_matches += 1.0;
+    sums.score += weight * u * J;
+    sums.information += weight * outer;
+    sums.parallax += std::pow(std::max(e.terms.depth[i] / m.scale, 0.0), 2);
+    blocks.scatter += weight * weight * u * u * outer;
+  }
+  return blocks;
+}
+
+// Of `per_side` x `per_side` blocks, 4 or 2 of them. With the information of all matches as the identity, a
+// block's score moves the motion by (1.05 I - A)^-1 s where it is left out: at most twenty times.
+double LogDesignEffect(const Blocks& blocks, int per_side) {
+  std::array<BlockSums, kPerSide * kPerSide> joined;
+  BlockSums all;
+  for (int k = 0; k < kPerSide * kPerSide; ++k) {
+    const int column = k / kPerSide * per_side / kPerSide, row = k % kPerSide * per_side / kPerSide;
+    joined[static_cast<size_t>(column * per_side + row)].Add(blocks.sums[static_cast<size_t>(k)]);
+    all.Add(blocks.sums[static_cast<size_t>(k)]);
+  }
+  const Eigen::LLT<Matrix5d> llt(all.information);
+  if (llt.info() != Eigen::Success) return 0.0;
+  const Matrix5d whitening = llt.matrixL().solve(Matrix5d::Identity());
+  double moved = 0.0;
+  for (const BlockSums& sums : joined) {
+    if (sums.num_matches == 0.0) continue;
+    const Matrix5d kept =
+        (1.0 + kLeastKept) * Matrix5d::Identity() - whitening * sums.information * whitening.transpose();
+    moved += kept.llt().solve(whitening * sums.score).squaredNorm();
+  }
+  const double own = (whitening * blocks.scatter * whitening.transpose()).trace();
+  return own > 0.0 ? LogWithin(moved / own, 0.1, 1e3) : 0.0;
+}
+
+double LogParallaxShare(const Blocks& blocks) {
+  double sum = 0.0, sum_squares = 0.0, count = 0.0;
+  for (const BlockSums& sums : blocks.sums) {
+    sum += sums.parallax;
+    sum_squares += sums.parallax * sums.parallax;
+    count += sums.num_matches > 0.0;
+  }
+  return sum_squares > 0.0 ? LogWithin(sum * sum / (sum_squares * count), 0.01, 1.0) : 0.0;
+}
+
+void CheckBlocks(const MotionProblem& problem, const Split& split, const ExplainedMode& answer,
+                 ModelCheck* check) {
+  const Blocks blocks = SumBlocks(problem, split, answer);
+  check->log_design_2 = LogDesignEffect(blocks, 2);
+  check->log_design_4 = LogDesignEffect(blocks, 4);
+  check->log_parallax_share = LogParallaxShare(blocks);
+}
+
+double LowDepth(const Split& split, const ExplainedMode& answer) {
+  std::vector<double> depths;
+  for (const size_t i : split.right) depths.push_back(answer.explanation.terms.depth[i]);
+  if (depths.empty()) return 0.0;
+  const size_t rank = depths.size() / 20;
+  return std::clamp(ValueOfRank(rank, &depths) / answer.mode.mixture.scale, -3.0, 3.0);
+}
+
+void CheckRivals(const ModeWeights& weights, ModelCheck* check) {
+  for (size_t i = 0; i < weights.of_modes.size(); ++i) {
+    if (!weights.is_rival[i]) continue;
+    check->num_rivals = std::min(check->num_rivals + 1.0, kMostRivals);
+    check->greatest_rival = std::max(check->greatest_rival, weights.of_modes[i]);
+  }
+}
+
+}  // namespace
+
+ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
+                      const ModeWeights& weights, const std::optional<double>& direction_mass) {
+  const ExplainedMode& answer = modes[weights.answer];
+  const MixtureParameters& m = answer.mode.mixture;
+  const Split split = SplitMatches(answer.explanation);
+  ModelCheck check;
+  check.log_noise_ratio = std::log(m.scale / m.noise.scale_of_gaussian);
+  CheckNeighbours(problem, split, answer, &check);
+  check.planar_share = PlanarShare(problem, split, answer);
+  CheckSpread(problem, split, &check);
+  CheckBlocks(problem, split, answer, &check);
+  check.wrong_share = static_cast<double>(split.wrong.size()) / static_cast<double>(problem.matches.size());
+  check.wrong_coherence = WrongCoherence(problem, split);
+  check.log_rotation_sd =
+      LogWithin(std::sqrt(answer.mode.inverse_hessian.topLeftCorner<3, 3>().trace()), 1e-6, 3.0);
+  CheckRivals(weights, &check);
+  check.direction_mass = direction_mass.value_or(1.0);
+  check.low_depth = LowDepth(split, answer);
+  check.usual_depth = UsualDepthInNoise(answer.explanation);
+  return check;
+}
+
+}  // namespace rcme

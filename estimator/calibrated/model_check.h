@@ -1,0 +1,47 @@
+// Quantities, all visible without the truth, that show how far the model behind the modes' probabilities
+// holds: independent noise of the assumed size, wrong matches unrelated to each other, a scene that is deep.
+#pragma once
+
+#include <optional>
+
+#include "estimator/calibrated/weigh_modes.h"
+
+namespace rcme {
+
+// Of the answer. "Right" matches are those that it explains, "wrong" the others; residuals r are in units of
+// the mode's scale s, depths z in standard deviations of a match's parallax.
+struct ModelCheck {
+  double log_noise_ratio = 0.0;  // ln(sigma found / sigma assumed)
+  // Mean product of the residuals, cut at 3, of a right match and its nearest right neighbour in image 1, and
+  // the same times the square root of the number of pairs: about N(0, 1) where residuals are independent.
+  double neighbour_correlation = 0.0, neighbour_z = 0.0;
+  // Of the right matches: those whose second point lies within four standard deviations of where the
+  // homography of one plane (twisted_pair.h) takes the first.
+  double planar_share = 0.0;
+  // Quarter of the log of det(scatter of the right matches in image 1) over that of all matches, and over
+  // that of a uniform distribution over the image: ln of a length.
+  double spread_in_matches = 0.0, spread_in_image = 0.0;
+  // ln of the share of the 4x4 blocks of image 1 with right matches that hold the parallax: (sum b)^2 / sum
+  // b^2 over their number (Kish 1965), b the sum of z^2 in a block, z > 0.
+  double log_parallax_share = 0.0;
+  // ln of the design effect of 2x2 and of 4x4 blocks: by how much the motion moves where a block is left out,
+  // squared and summed over the blocks, over the same of single matches (tr in units of the information).
+  double log_design_2 = 0.0, log_design_4 = 0.0;
+  double wrong_share = 0.0;  // of all matches
+  // Of the wrong matches: those that move as their nearest wrong neighbour does, the two displacements no
+  // more apart than half the distance of the neighbours and three standard deviations.
+  double wrong_coherence = 0.0;
+  double log_rotation_sd = 0.0;  // ln of the rotation's standard deviation by the likelihood, rad
+  double num_rivals = 0.0;       // modes beyond the bounds around the answer, at most six
+  double greatest_rival = 0.0;   // the greatest weight of one
+  double direction_mass = 1.0;   // within the bound, of the posterior of the direction; 1: not asked
+  double low_depth = 0.0;        // a twentieth of the right matches have a smaller z, within [-3, 3]
+  double usual_depth = 0.0;      // a fifth have a greater one (direction_posterior.h)
+};
+
+// At most 128 matches of a kind, the first, are compared with each other: the matches are in an order that
+// means nothing.
+ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
+                      const ModeWeights& weights, const std::optional<double>& direction_mass);
+
+}  // namespace rcme

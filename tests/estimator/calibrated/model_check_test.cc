@@ -1,0 +1,185 @@
+// The quantities of the check on matches whose answer is known.
+#include "estimator/calibrated/model_check.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
+
+#include "tests/test_support/calibrated_mode.h"
+
+namespace rcme {
+namespace {
+
+ModelCheck CheckOf(const FittedMode& f) {
+  const std::vector<ExplainedMode> modes = {{f.mode, Explain(f.matches, f.mode)}};
+  ModeWeights weights;
+  weights.of_modes = {1.0};
+  weights.is_rival = weights.is_second_motion = {false};
+  return CheckModel(f.problem, modes, weights, std::nullopt);
+}
+
+MotionProblem Changed(const FittedMode& f, auto change) {
+  MotionProblem problem = f.problem;
+  for (size_t i = 0; i < problem.matches.size(); ++i) change(i, &problem.matches[i]);
+  return problem;
+}
+
+// Each mean over 200 scenes of what is about N(0, 1): its bound of four standard deviations is missed by
+// chance once in 16,000 runs. Where the errors of neighbours are equal the product's mean is near that of a
+// squared residual, cut: 200 scenes of 128 pairs leave no doubt.
+TEST(ModelCheckOf, NeighboursOfIndependentNoiseAgreeByChance) {
+  constexpr int kScenes = 200;
+  double sum = 0.0, squares = 0.0;
+  for (std::uint32_t trial = 0; trial < kScenes; ++trial) {
+    const ModelCheck check = CheckOf(FitScene(200, 0.5, 0.2, trial));
+    sum += check.neighbour_z;
+    squares += check.neighbour_z * check.neighbour_z;
+  }
+  // A match and its nearest neighbour are often each other's, so that pairs count twice: variance 1 to 2.
+  EXPECT_NEAR(sum / kScenes, 0.0, 4.0 * std::sqrt(2.0 / kScenes));
+  EXPECT_GT(squares / kScenes, 0.6);
+  EXPECT_LT(squares / kScenes, 3.0);
+}
+
+// Errors that vary smoothly over the image, up to 3 sigma, beside independent ones of one sigma. In the mean
+// over twenty scenes, whose standard deviation is a quarter of that of one.
+TEST(ModelCheckOf, NeighboursThatErrAlikeAreSeen) {
+  constexpr int kScenes = 20;
+  double z = 0.0, correlation = 0.0, design = 0.0;
+  for (std::uint32_t trial = 0; trial < kScenes; ++trial) {
+    const FittedMode f = FitScene(200, 0.5, 0.0, trial);
+    const MotionProblem wavy = Changed(f, [](size_t, Correspondence* match) {
+      const Eigen::Vector2d x = match->x1_px / 80.0;
+      match->x2_px +=
+          1.5 * Eigen::Vector2d(std::cos(x.x()) * std::sin(x.y()), std::sin(x.x()) * std::cos(x.y()));
+    });
+    const ModelCheck check = CheckOf(FitFromTruth(wavy, f.pose_true));
+    z += check.neighbour_z / kScenes;
+    correlation += check.neighbour_correlation / kScenes;
+    design += check.log_design_4 / kScenes;
+  }
+  EXPECT_GT(z, 4.0);
+  EXPECT_GT(correlation, 0.3);
+  EXPECT_GT(design, 0.3);
+}
+
+TEST(ModelCheckOf, TheNoiseThatIsFoundIsComparedWithTheAssumed) {
+  for (const double factor : {0.5, 1.0, 2.0}) {
+    const ModelCheck check = CheckOf(FitScene(400, 0.5, 0.2, 3, factor));
+    EXPECT_NEAR(check.log_noise_ratio, -std::log(factor), 0.15) << factor;
+  }
+}
+
+// The points of a scene moved onto a plane, the same cameras.
+FittedMode FitPlane(std::uint32_t trial) {
+  const Scene scene = TwoCameraScene(200, trial);
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2901});
+  MotionProblem problem{{}, scene.camera1, scene.camera2, 0.5};
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.3, 1.0).normalized();
+  for (const Eigen::Vector3d& point : scene.points_in_cam1) {
+    const Eigen::Vector3d moved = point * (3.0 / normal.dot(point));
+    problem.matches.push_back(ProjectToBoth(moved,
+                                            {scene.cam2_from_cam1_true.R, 0.5 * scene.cam2_from_cam1_true.t},
+                                            scene.camera1, scene.camera2));
+  }
+  AddNoise(0.5, rng, &problem);
+  return FitFromTruth(problem, scene.cam2_from_cam1_true);
+}
+
+TEST(ModelCheckOf, APlaneExplainsThePointsOfAPlaneAlone) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    EXPECT_GT(CheckOf(FitPlane(trial)).planar_share, 0.95) << trial;
+    EXPECT_LT(CheckOf(FitScene(200, 0.5, 0.0, trial)).planar_share, 0.6) << trial;
+  }
+}
+
+TEST(ModelCheckOf, WrongMatchesThatMoveTogetherAreToldFromOthers) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const FittedMode f = FitScene(200, 0.5, 0.3, trial);
+    const Explanation explanation = Explain(f.matches, f.mode);
+    const ModelCheck scattered = CheckOf(f);
+    EXPECT_LT(scattered.wrong_coherence, 0.3) << trial;
+    // Wrong matches that are all displaced by the same.
+    const MotionProblem together = Changed(f, [&](size_t i, Correspondence* match) {
+      if (explanation.probability[i] <= 0.5) match->x2_px = match->x1_px + Eigen::Vector2d(25.0, -60.0);
+    });
+    const ModelCheck check = CheckOf(FitFromTruth(together, f.pose_true));
+    EXPECT_GT(check.wrong_coherence, 0.9) << trial;
+    EXPECT_GT(check.wrong_share, 0.15) << trial;
+    EXPECT_LT(check.wrong_share, 0.35) << trial;
+  }
+}
+
+// All matches right: the right ones are spread as all are.
+TEST(ModelCheckOf, SpreadIsOfTheRightMatches) {
+  const FittedMode f = FitScene(300, 0.5, 0.0, 4);
+  FittedMode all = f;
+  const Explanation explanation = Explain(all.matches, all.mode);
+  double num_right = 0.0;
+  for (const double p : explanation.probability) num_right += p > 0.5;
+  const ModelCheck check = CheckOf(f);
+  EXPECT_NEAR(check.spread_in_matches, 0.0, 0.02);
+  EXPECT_NEAR(check.wrong_share, 1.0 - num_right / 300.0, 1e-12);
+  // Of the right ones within a tenth of the image, an area of a hundredth: ln(1/10) less.
+  const Eigen::Vector2d middle(f.problem.camera1.width / 2.0, f.problem.camera1.height / 2.0);
+  FittedMode small = f;
+  for (Correspondence& match : small.problem.matches) match.x1_px = middle + 0.1 * (match.x1_px - middle);
+  EXPECT_NEAR(CheckOf(small).spread_in_image, check.spread_in_image - std::log(10.0), 0.02);
+}
+
+// Points of one corner three baselines away, the others three hundred: a sixteenth of the image or two.
+TEST(ModelCheckOf, ParallaxOfACornerIsTold) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const Scene scene = TwoCameraScene(300, trial);
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2902});
+    MotionProblem problem{{}, scene.camera1, scene.camera2, 0.3};
+    for (const Eigen::Vector3d& point : scene.points_in_cam1) {
+      const Eigen::Vector2d x = scene.camera1.Project(point);
+      const bool is_near = x.x() < 0.25 * scene.camera1.width && x.y() < 0.25 * scene.camera1.height;
+      problem.matches.push_back(ProjectToBoth(point * ((is_near ? 3.0 : 300.0) / point.z()),
+                                              scene.cam2_from_cam1_true, scene.camera1, scene.camera2));
+    }
+    AddNoise(0.3, rng, &problem);
+    EXPECT_LT(CheckOf(FitFromTruth(problem, scene.cam2_from_cam1_true)).log_parallax_share, std::log(0.3))
+        << trial;
+    EXPECT_GT(CheckOf(FitScene(300, 0.3, 0.0, trial)).log_parallax_share, std::log(0.4)) << trial;
+  }
+}
+
+TEST(ModelCheckOf, RivalsAreCountedAndTheGreatestIsTold) {
+  const FittedMode f = FitScene(100, 0.5, 0.0, 5);
+  const Explanation explanation = Explain(f.matches, f.mode);
+  const std::vector<ExplainedMode> modes(9, {f.mode, explanation});
+  ModeWeights weights;
+  weights.answer = 1;
+  weights.of_modes = {0.1, 0.3, 0.2, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05};
+  weights.is_rival = {true, false, true, true, true, true, true, true, true};
+  const ModelCheck check = CheckModel(f.problem, modes, weights, 0.7);
+  EXPECT_DOUBLE_EQ(check.num_rivals, 6.0);  // of eight
+  EXPECT_DOUBLE_EQ(check.greatest_rival, 0.2);
+  EXPECT_DOUBLE_EQ(check.direction_mass, 0.7);
+  weights.is_rival.assign(9, false);
+  EXPECT_DOUBLE_EQ(CheckModel(f.problem, modes, weights, std::nullopt).num_rivals, 0.0);
+  EXPECT_DOUBLE_EQ(CheckModel(f.problem, modes, weights, std::nullopt).direction_mass, 1.0);
+}
+
+// Every match the same one, and a handful.
+TEST(ModelCheckOf, IsFiniteWhateverTheMatches) {
+  for (const int n : {6, 8, 12}) {
+    FittedMode f = FitScene(n, 0.5, 0.0, 6);
+    for (const bool is_one : {false, true}) {
+      if (is_one) std::ranges::fill(f.problem.matches, f.problem.matches.front());
+      const ModelCheck c = CheckOf(f);
+      for (const double x :
+           {c.log_noise_ratio, c.neighbour_correlation, c.neighbour_z, c.planar_share, c.spread_in_matches,
+            c.spread_in_image, c.log_parallax_share, c.log_design_2, c.log_design_4, c.wrong_share,
+            c.wrong_coherence, c.log_rotation_sd, c.low_depth})
+        EXPECT_TRUE(std::isfinite(x)) << n << is_one;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rcme
