@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "experiments/core/files/sha256.h"
 #include "experiments/core/files/yaml_input.h"
@@ -71,49 +72,65 @@ std::vector<std::string> LabelsIn(const YAML::Node& study) {
   return labels;
 }
 
-bool IsOfOneOf(const std::string& path, const std::vector<std::string>& labels) {
-  return std::ranges::any_of(
-      labels, [&](const std::string& label) { return path.starts_with("estimators." + label + "."); });
-}
-
-Settings FlatStudy(const YAML::Node& study) {
+// All but the estimators with these labels, and the folder.
+Settings FlatStudy(const YAML::Node& study, const std::vector<std::string>& without) {
+  const std::set<std::string> left_out(without.begin(), without.end());
   Settings flat;
-  Flatten(study, "", &flat);
+  for (const auto& entry : study) {
+    const std::string key = entry.first.Scalar();
+    if (key != "estimators") Flatten(entry.second, key, &flat);
+  }
+  for (const YAML::Node& estimator : study["estimators"]) {
+    const std::string label = estimator["label"].Scalar();
+    if (!left_out.contains(label)) Flatten(estimator, "estimators." + label, &flat);
+  }
   std::erase_if(flat, [](const auto& entry) { return entry.first == "data.folder"; });
   return flat;
 }
 
 // In one list, not in the other.
 std::vector<std::string> OnlyIn(const std::vector<std::string>& one, const std::vector<std::string>& other) {
+  const std::set<std::string> known(other.begin(), other.end());
   std::vector<std::string> only;
   for (const std::string& text : one) {
-    if (std::ranges::count(other, text) == 0) only.push_back(text);
+    if (!known.contains(text)) only.push_back(text);
   }
   return only;
+}
+
+// A value of each key; of a key that stands twice, which no text of ToYaml has, a difference.
+std::map<std::string, std::string> ByKey(const Settings& flat, std::vector<std::string>* differences) {
+  std::map<std::string, std::string> values;
+  for (const auto& [path, value] : flat) {
+    if (!values.emplace(path, value).second) differences->push_back(path + ": stands twice");
+  }
+  return values;
 }
 
 std::vector<std::string> DifferencesOf(const YAML::Node& locked, const YAML::Node& run) {
   const std::vector<std::string> added = OnlyIn(LabelsIn(run), LabelsIn(locked));
   const std::vector<std::string> gone = OnlyIn(LabelsIn(locked), LabelsIn(run));
-  const Settings before = FlatStudy(locked), after = FlatStudy(run);
+  const Settings before = FlatStudy(locked, gone), after = FlatStudy(run, added);
   std::vector<std::string> differences;
+  const std::map<std::string, std::string> locked_values = ByKey(before, &differences);
+  const std::map<std::string, std::string> run_values = ByKey(after, &differences);
   for (const auto& [path, value] : after) {
-    const auto found = std::ranges::find(before, path, &Settings::value_type::first);
-    if (IsOfOneOf(path, added)) continue;
-    if (found == before.end()) {
+    const auto found = locked_values.find(path);
+    if (found == locked_values.end()) {
       differences.push_back(fmt::format("{}: {}, of which the lock says nothing", path, value));
     } else if (found->second != value) {
       differences.push_back(fmt::format("{}: {} instead of {}", path, value, found->second));
     }
   }
   for (const auto& [path, value] : before) {
-    if (IsOfOneOf(path, gone)) continue;
-    if (std::ranges::count(after, path, &Settings::value_type::first) == 0)
+    if (!run_values.contains(path))
       differences.push_back(fmt::format("{}: left out; the lock says {}", path, value));
   }
   for (const std::string& label : added) differences.push_back(fmt::format("estimator {}: was added", label));
   for (const std::string& label : gone)
     differences.push_back(fmt::format("estimator {}: was left out", label));
+  // Whoever wrote the lock, nothing of it is a command to a terminal, nor a further line.
+  for (std::string& difference : differences) difference = Printable(difference);
   return differences;
 }
 
@@ -169,6 +186,8 @@ StudyLock ParseLock(const std::string& yaml, const std::string& path) {
     if (is_in_text && (line.empty() || line.starts_with("  "))) {
       lock.text += (line.empty() ? "" : line.substr(2)) + "\n";
     } else if (!is_in_text && field != fields.end() && line.size() < kMaxLockLine) {
+      if (!field->second->empty())
+        throw InputError(fmt::format("{}:{}: {} stands twice", path, i + 1, field->first));
       *field->second = line.substr(std::min(line.size(), field->first.size() + 2));
     } else if (!is_in_text && line == kTextLine) {
       is_in_text = true;
@@ -181,6 +200,10 @@ StudyLock ParseLock(const std::string& yaml, const std::string& path) {
     throw InputError(
         fmt::format("{}: format: {} is not allowed; this is no lock that `rcme lock` made ('{}')", path,
                     Quoted(format), kLockFormat));
+  for (const auto& [key, value] : fields) {
+    if (value->empty()) throw InputError(fmt::format("{}: {} is missing", path, key));
+  }
+  if (lock.text.empty()) throw InputError(fmt::format("{}: text is missing: it locks nothing", path));
   const std::string sha256 = Sha256(lock.text);
   if (sha256 != lock.sha256) {
     throw InputError(
@@ -204,9 +227,10 @@ std::string DescribeLock(const std::string& lock_yaml) {
 }
 
 std::string JoinReasons(const std::string& reasons, const std::string& more) {
-  std::vector<std::string> lines = SplitText(reasons, '\n');
-  for (const std::string& line : SplitText(more, '\n')) {
-    if (std::ranges::count(lines, line) == 0) lines.push_back(line);
+  std::vector<std::string> lines;
+  std::set<std::string> known;
+  for (const std::string& line : SplitText(reasons + "\n" + more, '\n')) {
+    if (!line.empty() && known.insert(line).second) lines.push_back(line);
   }
   return fmt::format("{}", fmt::join(lines, "\n"));
 }
@@ -241,7 +265,8 @@ WrittenPlan ReadWrittenPlan(const std::string& study_yaml, const std::string& pa
     plan.trials = static_cast<int>(trials);
     names.estimators = LabelsIn(root);
     for (const auto& factor : root["factors"])
-      names.factors.emplace_back(factor.first.Scalar(), factor.second.as<std::vector<std::string>>());
+      names.factors.emplace_back(Line(place, factor.first, "factors"),
+                                 factor.second.as<std::vector<std::string>>());
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}: is no study: {}", path, error.what()));
   }

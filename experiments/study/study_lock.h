@@ -22,8 +22,8 @@ struct StudyLock {
 StudyLock MakeLock(const StudyPlan& plan);
 
 // The lock as a file, which is YAML, and read from one, line by line: its text is longer than a text of YAML
-// input may be. `path` is what the messages call it. ParseLock throws InputError
-// for what is no lock, and where the text does not have the hash.
+// input may be. `path` is what the messages call it. ParseLock throws InputError for what is no lock: a key
+// that is missing or stands twice, no text, a text that does not have the hash.
 std::string ToYaml(const StudyLock& lock);
 StudyLock ParseLock(const std::string& yaml, const std::string& path);
 
@@ -41,7 +41,8 @@ std::string DescribeLock(const std::string& lock_yaml);
 std::string JoinReasons(const std::string& reasons, const std::string& more);
 
 // How a run departs from its lock: one sentence a difference, "trials: 200 instead of 100", "estimator mine:
-// was added". `study_yaml`, `identity`, `stopping_rule` are those of the run (run_description.h).
+// was added", each of them one line of plain text, whoever wrote the lock. `study_yaml`, `identity`,
+// `stopping_rule` are those of the run (run_description.h).
 std::vector<std::string> DeviationsFrom(const StudyLock& lock, const std::string& study_yaml,
                                         const std::string& identity, const std::string& stopping_rule);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/files/sha256.h"
 #include "experiments/statistics/summary_quantities.h"
 #include "experiments/study/study_lock.h"
 #include "stats/paired.h"
@@ -191,6 +192,9 @@ TEST_F(PreregistrationTest, AForgedLockIsRefused) {
   EXPECT_TRUE(DescribePreregistered(run, "run"));
   run.lock.replace(run.lock.find("at_most: 0.5"), 12, "at_most: 0.6");
   EXPECT_TRUE(ThrowsInputError([&] { DescribePreregistered(run, "run"); }, {"run (its lock)", "sha256"}));
+  run.lock = ToYaml(StudyLock{"now", "rcme", Sha256(""), ""});
+  EXPECT_TRUE(
+      ThrowsInputError([&] { DescribePreregistered(run, "run"); }, {"run (its lock)", "text is missing"}));
 }
 
 }  // namespace

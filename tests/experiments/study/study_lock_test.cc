@@ -70,7 +70,50 @@ TEST_F(Lock, AChangeOfTheTextIsRefused) {
   }
   EXPECT_TRUE(ThrowsInputError([&] { ParseLock("format: rcme lock 0\n", "s.lock"); },
                                {"s.lock: format", "'rcme lock 0'"}));
-  EXPECT_TRUE(ThrowsInputError([&] { ParseLock("sha: 1\n", "s.lock"); }, {"s.lock:1:", "'sha: 1'", "no line of a lock"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ParseLock("sha: 1\n", "s.lock"); },
+                               {"s.lock:1:", "'sha: 1'", "no line of a lock"}));
+}
+
+TEST_F(Lock, EachKeyStandsOnceAndSomethingIsLocked) {
+  const std::string yaml = ToYaml(lock_);
+  for (const std::string key : {"format", "locked_at", "program", "sha256"}) {
+    const size_t begin = yaml.find(key + ": "), end = yaml.find('\n', begin) + 1;
+    const std::string line = yaml.substr(begin, end - begin);
+    EXPECT_TRUE(ThrowsInputError([&] { ParseLock(Replaced(yaml, line, line + line), "s.lock"); },
+                                 {"s.lock:", key + " stands twice"}));
+    EXPECT_TRUE(ThrowsInputError([&] { ParseLock(Replaced(yaml, line, ""), "s.lock"); }, {"s.lock: " + key}));
+  }
+  EXPECT_TRUE(ThrowsInputError(
+      [] {
+        ParseLock(ToYaml({"now", "rcme", Sha256(""), ""}), "s.lock");
+      },
+      {"s.lock: text is missing"}));
+}
+
+// YAML can write what a terminal takes for a command, and further lines, in plain text.
+TEST_F(Lock, DeviationsAreLinesOfPlainText) {
+  const StudyLock lock{"now", "rcme", "", Replaced(lock_.text, "name: small", "name: \"a\\e[2K\\nb\"")};
+  const std::vector<std::string> deviations = DeviationsFrom(lock, plan_.study_yaml, plan_.identity, "");
+  EXPECT_THAT(deviations, ElementsAre("name: small instead of a\\x1B[2K\\nb"));
+}
+
+TEST_F(Lock, AnAddedEstimatorHidesNoChangeOfAnother) {
+  const std::string dotted = Replaced(LockedStudyYaml(), "label: ours", "label: a.b");
+  const std::string locked = Replaced(dotted, "estimator: ours", "estimator: a.b");
+  const std::string changed = Replaced(locked, "label: a.b, options: {num_iterations: 20",
+                                       "label: a.b, options: {num_iterations: 30");
+  const StudyLock lock = MakeLock(MakePlan(ParseStudy(locked, "s.yaml")));
+  const StudyPlan run = MakePlan(ParseStudy(
+      Replaced(changed, "  - {name: standard", "  - {name: msac, label: a}\n  - {name: standard"), "s.yaml"));
+  EXPECT_THAT(
+      DeviationsFrom(lock, run.study_yaml, run.identity, ""),
+      ElementsAre("estimators.a.b.options.num_iterations: 30 instead of 20", "estimator a: was added"));
+}
+
+TEST_F(Lock, AKeyThatStandsTwiceIsNamed) {
+  const StudyLock lock{"now", "rcme", "", lock_.text + "trials: 7\n"};
+  EXPECT_THAT(DeviationsFrom(lock, plan_.study_yaml, plan_.identity, ""),
+              ElementsAre("trials: stands twice"));
 }
 
 TEST_F(Lock, DeviationsAreNamed) {
@@ -107,6 +150,9 @@ TEST(JoinReasons, EachOnce) {
   EXPECT_EQ(JoinReasons("", ""), "");
   EXPECT_EQ(JoinReasons("a\nb", "b"), "a\nb");
   EXPECT_EQ(JoinReasons("a", "b"), "a\nb");
+  std::string many;  // in the square of their number they would take minutes
+  for (int i = 0; i < 100'000; ++i) many += std::to_string(i) + "\n";
+  EXPECT_EQ(JoinReasons(many, many) + "\n", many);
 }
 
 }  // namespace
