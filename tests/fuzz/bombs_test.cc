@@ -8,11 +8,13 @@
 #include <filesystem>
 
 #include "experiments/core/files/gzip_lines.h"
+#include "experiments/core/files/sha256.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
 #include "experiments/real/images/match_images.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
+#include "experiments/study/study_lock.h"
 #include "tests/fuzz/bomb.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
@@ -157,6 +159,27 @@ TEST(YamlBomb, TooManyCombinationsAreRefusedBeforeTheyAreBuilt) {
                    "bomb.yaml");
       },
       {"bomb.yaml:", "factors: more than 100000 combinations of levels"}));
+}
+
+TEST(LockBomb, IsRefused) {
+  const auto lock_of = [](const std::string& text) {
+    return ToYaml(StudyLock{"now", "rcme", Sha256(text), text});
+  };
+  const auto read = [](const std::string& yaml) {
+    ReadWrittenPlan(ParseLock(yaml, "b.lock").text, "b.lock");
+  };
+  const std::vector<std::pair<std::string, std::string>> bombs = {
+      {Repeated("#\n", (1 << 19) + 1), "is too long for a lock; at most 1048576 bytes are allowed"},
+      {"program: " + Repeated("x", 1 << 19), "is no line of a lock"},
+      {Repeated("\n", 1 << 19), "is no line of a lock"},
+      {lock_of("a: &a [" + Repeated("x,", 1000) + "]\nb: [" + Repeated("*a,", 1000) + "]\n"),
+       "at most 20000 are allowed"},
+      {lock_of(Repeated("[", 1 << 18) + "\n"), "deeper than 20 levels"},
+  };
+  for (const auto& [yaml, message] : bombs) {
+    EXPECT_TRUE(IsRefusedWithin(200.0, [&, &yaml = yaml] { read(yaml); }, {"b.lock:", message}))
+        << yaml.substr(0, 40);
+  }
 }
 
 class ImageBomb : public testing::Test {

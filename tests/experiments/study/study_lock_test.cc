@@ -8,7 +8,9 @@
 
 #include "experiments/core/files/sha256.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/paths.h"
 #include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
 
 namespace rcme {
 namespace {
@@ -72,6 +74,24 @@ TEST_F(Lock, AChangeOfTheTextIsRefused) {
                                {"s.lock: format", "'rcme lock 0'"}));
   EXPECT_TRUE(ThrowsInputError([&] { ParseLock("sha: 1\n", "s.lock"); },
                                {"s.lock:1:", "'sha: 1'", "no line of a lock"}));
+}
+
+// The text of a file of today's format never changes: published hashes are of it.
+TEST(LockFile, OfFormat1IsStillRead) {
+  const std::string yaml = ReadBytes(SourceFolder() + "/tests/fuzz/corpus/lock/format_1.lock");
+  const StudyLock lock = ParseLock(yaml, "format_1.lock");
+  EXPECT_EQ(lock.sha256, "8bcb1ddf67c34d146582dfa25571a810182dcb7acf049d84f45c660cd19b885e");  // of sha256sum
+  EXPECT_EQ(lock.locked_at, "2026-11-26T05:21:43Z");
+  EXPECT_EQ(lock.program, "rcme 0.1.0");
+  EXPECT_THAT(lock.text, testing::StartsWith("name: locked\ndescription: \"Two lines,\\n\\n'#'"));
+  EXPECT_EQ(ToYaml(lock), yaml);
+  const WrittenPlan plan = ReadWrittenPlan(lock.text, "format_1.lock");
+  EXPECT_EQ(plan.trials, 6);
+  ASSERT_EQ(plan.hypotheses.size(), 2u);
+  EXPECT_EQ(Describe(plan.hypotheses[1]), "nees_coverage of ours is at least 0.9");
+  EXPECT_THAT(plan.hypotheses[0].where,
+              ElementsAre(std::pair<std::string, std::string>("outlier_ratio", "0.3")));
+  EXPECT_THAT(DeviationsFrom(lock, lock.text, "", ""), IsEmpty());
 }
 
 TEST_F(Lock, EachKeyStandsOnceAndSomethingIsLocked) {
