@@ -229,7 +229,10 @@ RunDescription ReadDescription(SQLite::Database& database) {
     run.factors.push_back(TextIn(row.getColumn(1), "factors"));
   });
   ForEachNumbered(database, "conditions", [&](SQLite::Statement& row) {
-    run.conditions.push_back({{}, IntegerIn(row.getColumn(1), "conditions")});
+    const std::int64_t num_trials = IntegerIn(row.getColumn(1), "conditions");
+    if (num_trials < 0 || num_trials > std::numeric_limits<int>::max())
+      throw Damage("table conditions has a number of trials that is not possible");
+    run.conditions.push_back({{}, num_trials});
   });
   ForEachNumbered(database, "estimators", [&](SQLite::Statement& row) {
     run.estimators.push_back({TextIn(row.getColumn(1), "estimators"),

@@ -84,6 +84,20 @@ TEST_F(Description, ResultsOfUnknownEstimatorsAreRead) {
   EXPECT_TRUE(ThrowsInputError([&] { store.Plan(); }, {path_}));
 }
 
+// A result file of somebody's, whose checksums are right: with a number beyond those of trials a merge would
+// never end.
+TEST_F(Description, NumbersOfTrialsThatCannotBeAreRefused) {
+  for (const std::int64_t num_trials : {std::int64_t{1} << 33, std::int64_t{1} << 31, std::int64_t{-1}}) {
+    RunDescription run = Describe(MakePlan(SmallStudy()));
+    run.conditions[1].num_trials = num_trials;
+    std::filesystem::remove(path_);
+    NewTrials(path_, run).Finish(run);
+    EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(path_); },
+                                 {path_, "a number of trials that is not possible"}))
+        << num_trials;
+  }
+}
+
 // A result file of somebody's: its checksums are right, and its names would clear the screen.
 TEST_F(Description, NamesWithControlCharactersAreRefused) {
   const auto refuses = [&](const std::function<void(RunDescription*)>& change) {
