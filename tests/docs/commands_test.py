@@ -33,6 +33,7 @@ ELSEWHERE = {
     r"rcme compare run.sqlite --against opencv_python$": "test python.any_language",
     r"rcme run \S+ --add-estimator opencv.yaml": "test python.any_language",
     r"rcme run studies/any_condition.yaml|rcme surface |rcme run surface/next.yaml": "test SurfaceProgram.*, on a small population",
+    r"rcme worst ": "test end_to_end.worst, on a small population: the page's search takes ten minutes",
     r"parallel ": "needs GNU parallel; its command is that of the first line of the page",
 }
 

@@ -4,6 +4,7 @@
 import csv
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import tempfile
@@ -69,6 +70,16 @@ class WorstTest(unittest.TestCase):
         other = subprocess.run(self.command("whole", "--seed", "9"), capture_output=True, text=True, check=False)
         self.assertEqual(other.returncode, 2)
         self.assertIn("another study", other.stderr)
+
+    def test_minutes_say_how_many_trials(self):
+        command = [RCME, "worst", str(self.folder / "small.yaml"), "--out", str(self.folder / "minutes"), "--estimator", "standard",
+                   "--minutes", "1", "--threads", "1"]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True) as work:
+            said = work.stderr.readline()  # the cost, by the time of the first draws
+            os.killpg(work.pid, signal.SIGKILL)
+        cost = re.match(r"worst: about (\d+) trials: ", said)
+        self.assertTrue(cost, said)
+        self.assertGreater(int(cost[1]), 500)  # the least that is ever spent
 
     def test_what_is_refused(self):
         for more, said in ((["--against", "standard"], "--quantity difference"), (["--quantity", "difference"], "--against")):
