@@ -29,8 +29,8 @@ class Pip(unittest.TestCase):
     def test_install(self):
         with tempfile.TemporaryDirectory() as folder:
             environment = {**os.environ, **NO_NETWORK, "PYTHONPATH": ""}
-            # NumPy and pandas are Debian's: a virtual environment without them would need the network.
-            subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", f"{folder}/venv"], check=True)
+            # NumPy, pandas and pip are Debian's: a virtual environment without them would need the network.
+            subprocess.run([sys.executable, "-m", "venv", "--without-pip", "--system-site-packages", f"{folder}/venv"], check=True)
             python = f"{folder}/venv/bin/python"
             subprocess.run([python, "-m", "pip", "install", "--quiet", str(ROOT), "--config-settings", f"build-dir={BUILD}"],
                            check=True, env=environment, cwd=folder)
