@@ -187,8 +187,8 @@ Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials,
   CrossingSearch search(kNumLevels, rate);
   Crossing crossing;
   const auto ask_at = [&](size_t level, std::int64_t number, std::vector<EventsAtLevel>* asked) {
-    asked->push_back({PlaceOfLevel(level), ask(PlaceOfLevel(level), number), number});
-    search.Add(level, asked->back().num_events, number);
+    asked->push_back(ask(PlaceOfLevel(level), number));
+    search.Add(level, asked->back().num_events, asked->back().num_trials);
   };
   const std::int64_t num_searched = num_trials / 3, num_steps = std::min(kNumSteps, num_searched);
   for (std::int64_t step = 0; step < num_steps; ++step) {
@@ -200,7 +200,9 @@ Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials,
     const std::int64_t number = EvenPart(num_trials - num_searched, i, std::ssize(levels));
     ask_at(levels[static_cast<size_t>(i)], number, &crossing.fresh);
   }
-  crossing.estimate = search.Quantile(0.5) / kNumLevels;
+  const bool is_known = SumOver(crossing.searched, 0, crossing.searched.size()).num_trials > 0 ||
+                        SumOver(crossing.fresh, 0, crossing.fresh.size()).num_trials > 0;
+  crossing.estimate = is_known ? search.Quantile(0.5) / kNumLevels : kNaN;
   crossing.interval = FindCrossingInterval(crossing.fresh, rate, confidence);
   crossing.logistic_interval = FindLogisticInterval(crossing.fresh, rate, confidence);
   return crossing;

@@ -67,10 +67,12 @@ struct Crossing {
   std::vector<EventsAtLevel> searched, fresh;  // by step, and by level
 };
 
-// The number of events in so many new trials at a level in [0, 1].
-using AskLevel = std::function<std::int64_t(double level, std::int64_t num_trials)>;
+// The events in so many new trials at a level in [0, 1]; trials that tell nothing are not among those of the
+// answer.
+using AskLevel = std::function<EventsAtLevel(double level, std::int64_t num_trials)>;
 
-// The crossing in [0, 1], from `num_trials` trials, at least 100: a third of them for the search.
+// The crossing in [0, 1], from `num_trials` trials, at least 100: a third of them for the search. The
+// estimate is NaN if no trial tells anything.
 Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence = 0.95);
 
 }  // namespace rcme

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/lock_option.h"
@@ -13,6 +12,7 @@
 #include "experiments/core/text/message.h"
 #include "experiments/data/match_file.h"
 #include "experiments/study/study_file.h"
+#include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
 #include "peers/answer_json.h"
 
@@ -47,16 +47,6 @@ std::string TruthAsJson(const TrialData& data, const std::string& id, const Cond
   return json.dump() + "\n";
 }
 
-// Nothing where the condition is a draw of a population and the trial cannot be simulated.
-std::optional<TrialData> MakeData(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
-  try {
-    return condition.source->Make(NameOfScene(plan, condition, trial));
-  } catch (const NotSimulated&) {
-    if (!plan.study.population) throw;
-    return std::nullopt;
-  }
-}
-
 void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
                  const TrialData& data, const fs::path& folder, FileInPieces* problems,
                  FileInPieces* truths) {
@@ -88,10 +78,11 @@ void Export(const ExportArguments& arguments) {
   std::int64_t num_problems = 0;
   for (const Condition& condition : plan.conditions) {
     for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial) {
-      const std::optional<TrialData> data = MakeData(plan, condition, trial);
-      if (!data) continue;
+      const auto simulated = SimulateDraw(
+          plan.study, [&] { return condition.source->Make(NameOfScene(plan, condition, trial)); });
+      if (!simulated.made) continue;
       ++num_problems;
-      ExportTrial(plan, condition, trial, *data, folder, &problems, &truths);
+      ExportTrial(plan, condition, trial, *simulated.made, folder, &problems, &truths);
     }
   }
   problems.Finish();

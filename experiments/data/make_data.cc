@@ -150,10 +150,10 @@ DataSources MakeDataSources(const Settings& settings, BaselineSearch search) {
   return {"pair_scene", LoadMatchFolder(configured.folder)};
 }
 
-std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings) {
+std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings, BaselineSearch search) {
   const Configured configured(settings);
   if (!configured.simulated) throw InputError(fmt::format("scene: {} is not simulated", kMatchFilesScene));
-  configured.simulated->FixBaseline();
+  if (search == BaselineSearch::kNow) configured.simulated->FixBaseline();
   return configured.simulated;
 }
 

@@ -49,6 +49,7 @@ std::vector<SettingHelp> DescribeSettings(const Settings& settings);
 inline constexpr const char* kMatchFilesScene = "match_files";
 
 // Simulated data for the settings, `scene` among them. Throws InputError that names key and value.
-std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings);
+std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings,
+                                                       BaselineSearch search = BaselineSearch::kNow);
 
 }  // namespace rcme

@@ -37,6 +37,16 @@ class GivenNoise : public NoiseModel {
   std::span<const double> normals_;
 };
 
+// What `make` returns. What a simulation cannot do with its settings is NotSimulated.
+template <typename Make>
+auto Simulate(const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw NotSimulated(error.what());
+  }
+}
+
 }  // namespace
 
 SimulatedData::SimulatedData(const Choices& choices)
@@ -73,11 +83,7 @@ void SimulatedData::FixBaseline() const {
 }
 
 TrialData SimulatedData::Make(const StreamName& trial_name) const {
-  try {
-    return MakeFrom(DrawScene(trial_name), trial_name);
-  } catch (const InputError& error) {
-    throw NotSimulated(error.what());
-  }
+  return MakeFrom(DrawScene(trial_name), trial_name);
 }
 
 std::string SimulatedData::Identity() const {
@@ -97,12 +103,12 @@ Settings SimulatedData::ChosenParts() const {
 Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
   FixBaseline();
   RandomStream scene_rng = StreamFor(trial_name, StreamPurpose::kScene);
-  return scenes_.Generate(scene_rng);
+  return Simulate([&] { return scenes_.Generate(scene_rng); });
 }
 
 Scene SimulatedData::DrawSceneOf(const Motion& motion, RandomStream& rng) const {
   FixBaseline();
-  return scenes_.GenerateWith(motion, rng);
+  return Simulate([&] { return scenes_.GenerateWith(motion, rng); });
 }
 
 std::optional<Scene> SimulatedData::DrawSceneNear(const Motion& motion, double step,
@@ -110,13 +116,14 @@ std::optional<Scene> SimulatedData::DrawSceneNear(const Motion& motion, double s
   FixBaseline();
   const std::optional<Motion> near = scenes_.motion_model().DrawNear(motion, step, rng);
   if (!near) return std::nullopt;
-  return scenes_.GenerateWith(*near, rng);
+  return Simulate([&] { return std::optional<Scene>(scenes_.GenerateWith(*near, rng)); });
 }
 
 TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_name) const {
   RandomStream noise_rng = StreamFor(trial_name, StreamPurpose::kNoise);
   RandomStream outlier_rng = StreamFor(trial_name, StreamPurpose::kOutliers);
-  Observation observation = Observe(scene, *noise_, outliers_, noise_rng, outlier_rng, defects_);
+  Observation observation =
+      Simulate([&] { return Observe(scene, *noise_, outliers_, noise_rng, outlier_rng, defects_); });
 
   Severity severity;
   if (measures_severity_) {
@@ -131,7 +138,8 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_na
 TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> normals,
                                   RandomStream& outlier_rng) const {
   RandomStream unused = StreamFor({}, StreamPurpose::kNoise);
-  return Give(scene, Observe(scene, GivenNoise(noise_->sigma_px(), normals), outliers_, unused, outlier_rng));
+  const GivenNoise noise(noise_->sigma_px(), normals);
+  return Give(scene, Simulate([&] { return Observe(scene, noise, outliers_, unused, outlier_rng); }));
 }
 
 TrialData SimulatedData::Give(const Scene& scene, Observation observation) const {

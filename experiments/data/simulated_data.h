@@ -22,7 +22,8 @@ struct Choices {
 };
 
 // Simulated pairs: a scene, noise, outliers. The estimators get the matches, an assumed sigma and assumed
-// cameras, and nothing else.
+// cameras, and nothing else. Scenes and what the images give of them throw NotSimulated where the settings do
+// not allow them.
 class SimulatedData : public DataSource {
  public:
   // Throws InputError that lists what is allowed.
@@ -32,7 +33,7 @@ class SimulatedData : public DataSource {
   std::vector<Parameter> SceneParameters() { return scenes_.Parameters(); }
 
   // See SceneGenerator. The first scene does it where nobody has called it; no parameter is set afterwards.
-  // Throws NotSimulated, at every call, if no baseline gives the parallax.
+  // Throws at every call if no baseline gives the parallax.
   void FixBaseline() const;
   // The baseline, where it was found from a parallax.
   std::string Identity() const override;

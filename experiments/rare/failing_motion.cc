@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "experiments/data/make_data.h"
+#include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -42,19 +43,27 @@ double ErrorOverBound(const TrialRecord& record, const FailureBounds& bounds) {
 }
 
 FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, size_t estimator)
-    : estimator_(plan.estimators[estimator]), bounds_(plan.study.failure), stream_key_(condition.stream_key) {
+    : estimator_(plan.estimators[estimator]), study_(plan.study), stream_key_(condition.stream_key) {
   RequireDrawnScenes(plan.study);
-  data_ = MakeSimulatedData(SettingsOf(plan.study, condition.levels));
+  data_ = MakeSimulatedData(SettingsOf(plan.study, condition.levels), BaselineSearch::kWithFirstScene);
   if (!data_->HasNormalNoise()) {
     throw InputError("rare: noise: splitting needs gaussian noise; for other noise give --method stratified");
   }
   for (const auto& [part, name] : data_->ChosenParts())
     has_free_points_ = has_free_points_ || (part == "scene" && name == "uniform_volume");
   RandomStream rng({plan.study.seed, stream_key_, 0, kSplittingPurpose});
-  const State first = Draw(rng);
-  RandomStream outlier_rng = StreamFor({first.outlier_seed, stream_key_, 0, 0}, StreamPurpose::kOutliers);
-  if (data_->MakeFrom(*first.scene, first.noise, outlier_rng).weight != 1.0)
+  if (study_.population) TryDraws(rng);
+  if (num_not_simulated_ == kNumTried) return;
+  if (MakeData(Draw(rng)).weight != 1.0)
     throw InputError("rare: tilted_to: weighted trials are not allowed; leave it out");
+}
+
+void FailingMotion::TryDraws(RandomStream& rng) {
+  for (int i = 0; i < kNumTried; ++i) {
+    const SimulatedDraw<State> drawn = SimulateDraw(study_, [&] { return DrawOnce(rng); });
+    if (drawn.made) continue;
+    if (num_not_simulated_++ == 0) why_not_simulated_ = drawn.why_not;
+  }
 }
 
 std::shared_ptr<const Scene> FailingMotion::DrawScene(RandomStream& rng) const {
@@ -90,13 +99,37 @@ std::shared_ptr<const Scene> FailingMotion::WithMotionNear(const Scene& scene, d
 }
 
 FailingMotion::State FailingMotion::Draw(RandomStream& rng) const {
+  for (;;) {
+    SimulatedDraw<State> drawn = SimulateDraw(study_, [&] { return DrawOnce(rng); });
+    if (drawn.made) return *std::move(drawn.made);
+  }
+}
+
+FailingMotion::State FailingMotion::DrawOnce(RandomStream& rng) const {
   State state;
   state.scene = DrawScene(rng);
   state.noise.resize(4 * state.scene->points_in_cam1.size());
   rng.FillNormal(state.noise);
   state.outlier_seed = rng.Next64();
   state.sampling_seed = rng.Next64();
+  if (study_.population) MakeData(state);  // throws where it cannot
   return state;
+}
+
+TrialData FailingMotion::MakeData(const State& state) const {
+  RandomStream outlier_rng = StreamFor({state.outlier_seed, stream_key_, 0, 0}, StreamPurpose::kOutliers);
+  return data_->MakeFrom(*state.scene, state.noise, outlier_rng);
+}
+
+// The move of the scene that the kind is.
+std::shared_ptr<const Scene> FailingMotion::ProposeScene(const State& state, std::uint32_t kind, double step,
+                                                         RandomStream& rng) const {
+  const auto simulated = SimulateDraw(study_, [&] {
+    if (kind == 0) return DrawScene(rng);
+    return kind <= 5 ? WithSomePoints(*state.scene, 0.5 * step * step, rng)
+                     : WithMotionNear(*state.scene, step, rng);
+  });
+  return simulated.made.value_or(nullptr);
 }
 
 FailingMotion::State FailingMotion::Propose(const State& state, double step, RandomStream& rng,
@@ -105,7 +138,7 @@ FailingMotion::State FailingMotion::Propose(const State& state, double step, Ran
   is_local = false;
   const std::uint32_t kind = rng.IntegerBelow(16);
   if (kind == 0) {
-    moved.scene = DrawScene(rng);
+    moved.scene = ProposeScene(state, kind, step, rng);
     return moved;
   }
   if (kind == 1) {
@@ -118,8 +151,7 @@ FailingMotion::State FailingMotion::Propose(const State& state, double step, Ran
   }
   is_local = true;
   if (kind <= 7 && has_free_points_) {
-    moved.scene = kind <= 5 ? WithSomePoints(*state.scene, 0.5 * step * step, rng)
-                            : WithMotionNear(*state.scene, step, rng);
+    moved.scene = ProposeScene(state, kind, step, rng);
     return moved;
   }
   rng.FillNormal(moved.noise);
@@ -129,10 +161,13 @@ FailingMotion::State FailingMotion::Propose(const State& state, double step, Ran
 }
 
 double FailingMotion::Value(const State& state) const {
-  RandomStream outlier_rng = StreamFor({state.outlier_seed, stream_key_, 0, 0}, StreamPurpose::kOutliers);
+  constexpr double kNoTrial = -std::numeric_limits<double>::infinity();
+  if (!state.scene) return kNoTrial;
+  const SimulatedDraw<TrialData> simulated = SimulateDraw(study_, [&] { return MakeData(state); });
+  if (!simulated.made) return kNoTrial;
+  const TrialData& data = *simulated.made;
   RandomStream sampling_rng = StreamFor({state.sampling_seed, stream_key_, 0, 0}, StreamPurpose::kSampling);
-  const TrialData data = data_->MakeFrom(*state.scene, state.noise, outlier_rng);
-  return ErrorOverBound(Score(estimator_->Estimate(data.problem, sampling_rng), data, 0.0), bounds_);
+  return ErrorOverBound(Score(estimator_->Estimate(data.problem, sampling_rng), data, 0.0), study_.failure);
 }
 
 }  // namespace rcme

@@ -11,6 +11,7 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/trial/simulate_draw.h"
 #include "stats/moments.h"
 
 namespace rcme {
@@ -46,6 +47,8 @@ std::string DescribeDoubt(SplittingDoubt doubt, const RareCell& cell) {
 }
 
 std::string DescribeDoubts(const RareCell& cell) {
+  if (!cell.why_not_simulated.empty())
+    return fmt::format("{}: {}", StatusName(MotionStatus::kNotSimulated), cell.why_not_simulated);
   std::vector<std::string> words;
   for (const SplittingDoubt doubt : cell.rate.doubts) words.push_back(DescribeDoubt(doubt, cell));
   return fmt::format("{}", fmt::join(words, "; "));
@@ -68,6 +71,24 @@ std::vector<Column> HeadColumns(const StudyPlan& plan) {
 double KnownShare(const RareRow& row) {
   const double share = row.BruteForceShare();
   return std::isfinite(share) ? share : std::nan("");
+}
+
+// Of so many trials of every condition; the estimators of one share them.
+template <typename Cell>
+std::string DescribeMissingTrials(const std::vector<Cell>& cells, std::int64_t num_of_condition) {
+  std::int64_t num_not_simulated = 0, num_trials = 0;
+  for (const Cell& cell : cells) {
+    if (cell.estimator != 0) continue;
+    num_not_simulated += cell.num_not_simulated;
+    num_trials += num_of_condition;
+  }
+  return FormatParagraph(DescribeNotSimulated(num_not_simulated, num_trials));
+}
+
+std::int64_t NumDrawn(const std::vector<StratifiedCell>& cells) {
+  std::int64_t num_trials = cells.front().num_not_simulated;
+  for (const StratumCount& count : cells.front().strata) num_trials += count.num_trials;
+  return num_trials;
 }
 
 // The columns that all rates have.
@@ -140,6 +161,7 @@ RareRow RowOf(const RareCell& cell) {
               rate.standard_error, rate.interval,        rate.num_values,
               rate.unseen_up_to,   rate.relative_spread, {}};
   for (const SplittingDoubt doubt : rate.doubts) row.doubts.push_back(Name(doubt));
+  if (!cell.why_not_simulated.empty()) row.doubts = {StatusName(MotionStatus::kNotSimulated)};
   return row;
 }
 
@@ -154,6 +176,12 @@ RareRow RowOf(const StratifiedCell& cell) {
               std::numeric_limits<double>::quiet_NaN(),
               {}};
   if (cell.rate.num_effective_events < kLeastFailures) row.doubts = {"few_failures"};
+  const auto has_trials = [](const StratumCount& count) { return count.num_trials > 0; };
+  if (std::ranges::none_of(cell.strata, has_trials)) {
+    row.estimate = std::nan("");
+    row.interval = {0.0, 1.0};
+    row.doubts = {StatusName(MotionStatus::kNotSimulated)};
+  }
   return row;
 }
 
@@ -176,7 +204,7 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
              "Mean of independent unbiased replicates with Cox's 95 % interval; spread: standard deviation "
              "of "
              "one over the mean.") +
-         FormatParagraph(kBruteForceLegend) +
+         FormatParagraph(kBruteForceLegend) + DescribeMissingTrials(cells, FailingMotion::kNumTried) +
          FormatParagraph(
              "unseen up to: failures of a kind that comes at once, with no level before it, may have any "
              "rate "
@@ -200,7 +228,7 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
              "Each trial that is run counts as many as its stratum stands for; 95 % interval of Fay and "
              "Feuer "
              "for weighted counts.") +
-         FormatParagraph(kBruteForceLegend) +
+         FormatParagraph(kBruteForceLegend) + DescribeMissingTrials(cells, NumDrawn(cells)) +
          FormatParagraph(
              "unseen up to: the upper end if the next failure came from the easiest stratum that was run.") +
          FormatParagraph(fmt::format("trusted: the failures weigh as much as {:g} of equal weight or more.",

@@ -117,11 +117,19 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
                                     Runner* runner) {
   std::vector<RareCell> cells = MakeCells(plan);
   std::vector<FailingMotion> systems;  // all made first: bad input ends it before any work
-  for (const RareCell& cell : cells)
-    systems.emplace_back(plan, plan.conditions[cell.condition], cell.estimator);
+  for (RareCell& cell : cells) {
+    const FailingMotion& system = systems.emplace_back(plan, plan.conditions[cell.condition], cell.estimator);
+    cell.num_not_simulated = system.num_not_simulated();
+    if (cell.num_not_simulated < FailingMotion::kNumTried) continue;
+    cell.why_not_simulated = system.why_not_simulated();
+    cell.pilot.end = PilotEnd::kStuck;
+  }
   const WorkPlan& work = runner->plan();
   const size_t num_cells = cells.size();
-  runner->Get(ListItems(work, {}, 0, num_cells), [&](const ItemPlace& place) {
+  std::vector<ItemPlace> pilots = ListItems(work, {}, 0, num_cells);
+  std::erase_if(pilots,
+                [&](const ItemPlace& place) { return !cells[place.group].why_not_simulated.empty(); });
+  runner->Get(pilots, [&](const ItemPlace& place) {
     RandomStream rng = StreamOf(seed, plan.conditions[cells[place.group].condition], 0);
     return PilotAsJson(FindLevels(systems[place.group], effort.splitting, rng));
   });

@@ -20,6 +20,9 @@ struct RareCell {
   SplittingPilot pilot;
   std::vector<SplittingReplicate> replicates;
   SplittingRate rate;
+  // Of the first draws (FailingMotion); if it is all of them there is no pilot, and why.
+  int num_not_simulated = 0;
+  std::string why_not_simulated = {};
 };
 
 // The runner's work: each cell's pilot, then its replicates.

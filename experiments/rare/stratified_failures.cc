@@ -12,6 +12,7 @@
 #include "experiments/audit/claims/cramer_rao.h"
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/rare/failing_motion.h"
+#include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial.h"
 #include "experiments/trial/trial_range.h"
 #include "parameters/input_error.h"
@@ -37,19 +38,25 @@ class Strata {
  public:
   Strata(const StudyPlan& plan, const Condition& condition, double run_share)
       : plan_(plan), condition_(condition), make_(StudyCases(plan, condition)) {
-    std::vector<double> chances;
-    for (std::uint32_t i = 0; i < kNumPilotTrials; ++i) chances.push_back(ChanceOf(kFirstPilotTrial + i));
+    std::vector<double> chances;  // of the trials that can be simulated
+    for (std::uint32_t i = 0; i < kNumPilotTrials; ++i) {
+      if (const std::optional<double> chance = ChanceOf(kFirstPilotTrial + i)) chances.push_back(*chance);
+    }
     // The share that is run falls as p_hard rises.
     double lower = -700.0, upper = 50.0;  // of its logarithm
     for (int i = 0; i < 60; ++i) {
       log_hard_ = 0.5 * (lower + upper);
       double num_run = 0.0;
       for (const double chance : chances) num_run += std::ldexp(1.0, -StratumOfChance(chance));
-      (num_run > run_share * kNumPilotTrials ? lower : upper) = log_hard_;
+      (num_run > run_share * static_cast<double>(chances.size()) ? lower : upper) = log_hard_;
     }
   }
 
-  int StratumOf(std::uint32_t trial) const { return StratumOfChance(ChanceOf(trial)); }
+  // Nothing: the trial could not be simulated.
+  std::optional<int> FindStratum(std::uint32_t trial) const {
+    const std::optional<double> chance = ChanceOf(trial);
+    return chance ? std::optional(StratumOfChance(*chance)) : std::nullopt;
+  }
 
   bool IsRun(std::uint32_t trial, int stratum) const {
     RandomStream rng({plan_.study.seed, condition_.stream_key, trial, kThinningPurpose});
@@ -57,9 +64,12 @@ class Strata {
   }
 
  private:
-  // 1 where the matches do not determine the motion.
-  double ChanceOf(std::uint32_t trial) const {
-    const std::optional<Matrix5d> bound = CramerRaoBound(make_(NameOfTrial(plan_, condition_, trial)));
+  // 1 where the matches do not determine the motion; nothing where there is no trial.
+  std::optional<double> ChanceOf(std::uint32_t trial) const {
+    const auto simulated =
+        SimulateDraw(plan_.study, [&] { return make_(NameOfTrial(plan_, condition_, trial)); });
+    if (!simulated.made) return std::nullopt;
+    const std::optional<Matrix5d> bound = CramerRaoBound(*simulated.made);
     const double chance = bound ? FailureChanceOfBound(*bound, plan_.study.failure) : 1.0;
     return std::isfinite(chance) ? chance : 1.0;
   }
@@ -79,20 +89,27 @@ TrialRange FindTrialsOf(const StratifiedEffort& effort, const ItemPlace& place) 
   return {first, std::min(first + kTrialsOfItem, effort.num_trials)};
 }
 
-// Runs some trials: for each its stratum, a character 0, ..., 6 for one that is run, a, ..., g for another;
-// of each that is run its weight; and for each estimator a character a trial, 1 where it failed.
+constexpr char kNotSimulatedMark = '-';
+
+// Runs some trials: for each its stratum, a character 0, ..., 6 for one that is run, a, ..., g for another,
+// and kNotSimulatedMark for one that could not be simulated; of each that is run its weight; and for each
+// estimator a character a trial, 1 where it failed.
 std::string RunBlock(const StudyPlan& plan, const Condition& condition, const Strata& strata,
                      TrialRange trials) {
   std::string chosen;
   Json weights = Json::array();
   std::vector<std::string> has_failed(plan.estimators.size());
   for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
-    const int k = strata.StratumOf(trial);
-    const bool is_run = strata.IsRun(trial, k);
-    chosen += static_cast<char>((is_run ? '0' : 'a') + k);
+    const std::optional<int> k = strata.FindStratum(trial);
+    if (!k) {
+      chosen += kNotSimulatedMark;
+      continue;
+    }
+    const bool is_run = strata.IsRun(trial, *k);
+    chosen += static_cast<char>((is_run ? '0' : 'a') + *k);
     if (!is_run) continue;
     const TrialResult result = RunTrial(plan, condition, trial);
-    weights.push_back(NumberAsJson(std::ldexp(result.problem.weight, k)));
+    weights.push_back(NumberAsJson(std::ldexp(result.problem.weight, *k)));
     for (size_t e = 0; e < has_failed.size(); ++e)
       has_failed[e] += HasFailed(result.records[e], plan.study.failure) ? '1' : '0';
   }
@@ -114,6 +131,10 @@ class StrataSum {
       throw std::invalid_argument("it has other trials or estimators");
     size_t num_run = 0;
     for (const char c : chosen) {
+      if (c == kNotSimulatedMark) {
+        ++num_not_simulated_;
+        continue;
+      }
       const bool is_run = is_stratum(c, '0');
       if (!is_run && !is_stratum(c, 'a')) throw std::invalid_argument("a stratum that is none");
       const auto k = static_cast<size_t>(c - (is_run ? '0' : 'a'));
@@ -134,9 +155,10 @@ class StrataSum {
   }
 
   StratifiedCell Take(size_t condition, size_t estimator, std::int64_t num_trials) const {
-    StratifiedCell cell{condition, estimator, strata_[estimator], events_[estimator].num_trials, {}};
+    StratifiedCell cell{condition,          estimator, strata_[estimator], events_[estimator].num_trials,
+                        num_not_simulated_, {}};
     WeightedEvents events = events_[estimator];
-    events.num_trials = num_trials;  // what is not run counts nothing, but was drawn
+    events.num_trials = num_trials - num_not_simulated_;  // what is not run counts nothing, but was drawn
     cell.rate = EstimateWeightedRate(events);
     return cell;
   }
@@ -155,6 +177,7 @@ class StrataSum {
 
   std::vector<std::array<StratumCount, kNumStrata>> strata_;  // per estimator, as events_
   std::vector<WeightedEvents> events_;
+  std::int64_t num_not_simulated_ = 0;
 };
 
 }  // namespace

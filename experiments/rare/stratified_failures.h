@@ -42,6 +42,7 @@ struct StratifiedCell {
   size_t condition = 0, estimator = 0;
   std::array<StratumCount, kNumStrata> strata;
   std::int64_t num_run = 0;
+  std::int64_t num_not_simulated = 0;  // of the trials drawn: in no stratum (trial/simulate_draw.h)
   WeightedRate
       rate;  // cautious_upper: as if the next failure were in the easiest stratum of which a trial was run
 };

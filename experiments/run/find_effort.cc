@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "experiments/core/work/thread_time.h"
+#include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -49,9 +50,12 @@ std::vector<TimedProblem> TimedProblems(const StudyPlan& plan, std::uint32_t fir
   for (const Condition& condition : plan.conditions) {
     for (std::uint32_t trial = first; trial < first + per_condition; ++trial) {
       const StreamName name = NameOfTrial(plan, condition, trial);
-      problems.push_back({condition.source->Make(name).problem, name});
+      auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name).problem; });
+      if (simulated.made) problems.push_back({*std::move(simulated.made), name});
     }
   }
+  if (problems.empty())
+    throw InputError("budget: conditions: no trial of the draws could be simulated; change their ranges");
   return problems;
 }
 

@@ -17,7 +17,8 @@ struct TimedProblem {
   StreamName name;
 };
 
-// `per_condition` trials of every condition, from `first` on.
+// `per_condition` trials of every condition, from `first` on; of draws those that can be simulated. Throws
+// InputError if there is none.
 std::vector<TimedProblem> TimedProblems(const StudyPlan& plan, std::uint32_t first,
                                         std::uint32_t per_condition);
 

@@ -8,6 +8,7 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/trial/simulate_draw.h"
 
 namespace rcme {
 namespace {
@@ -48,6 +49,9 @@ std::string CrossingsAsTable(const Study& study, const CrossingQuestion& questio
   std::vector<ColumnOf<RateCrossing>> columns = CrossingColumns(question, answer.factors);
   std::erase_if(columns,
                 [](const auto& one) { return one.column.name == "lower,upper"; });  // beside the estimate
+  const std::int64_t num_trials = question.num_trials * std::ssize(answer.crossings);
+  std::int64_t num_simulated = 0;
+  for (const RateCrossing& crossing : answer.crossings) num_simulated += crossing.num_trials();
   return FormatParagraph(
              fmt::format("Study {}: {} of {} within [{:.6g}, {:.6g}] at which the rate of {} crosses {:.6g}",
                          study.name, question.is_falling ? "the least value" : "the greatest value",
@@ -57,7 +61,8 @@ std::string CrossingsAsTable(const Study& study, const CrossingQuestion& questio
              "Intervals are of 95 % each. The first supposes only that the rate does not {} with {}; the "
              "second also that its log-odds "
              "are linear where the fresh trials were run. inf: the crossing may lie beyond the range.",
-             question.is_falling ? "rise" : "fall", question.setting));
+             question.is_falling ? "rise" : "fall", question.setting)) +
+         FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
 }
 
 std::string CrossingsAsCsv(const CrossingQuestion& question, const CrossingAnswer& answer) {

@@ -98,36 +98,45 @@ class Asker {
     study_.estimators = {study.estimators[estimator]};
   }
 
-  std::int64_t Ask(double place, std::int64_t num_trials) {
+  // Of the trials those that could be simulated.
+  EventsAtLevel Ask(double place, std::int64_t num_trials) {
     const std::string level = scale_.TextAt(place);
     std::int64_t& next = next_trials_[level];
-    const StepForm<std::int64_t> form = {[](const std::int64_t& count) { return fmt::format("[{}]", count); },
-                                         [&](const std::string& json) {
-                                           const nlohmann::ordered_json counts = ParsePiece(json);
-                                           RequireSize(counts, 1);
-                                           return CountFrom(counts[0], num_trials);
-                                         }};
-    const std::int64_t num_events = TakeStep<std::int64_t>(
+    const StepForm<Events> form = {
+        [](const Events& events) { return fmt::format("[{},{}]", events.num_events, events.num_trials); },
+        [&](const std::string& json) {
+          const nlohmann::ordered_json counts = ParsePiece(json);
+          RequireSize(counts, 2);
+          const std::int64_t num_simulated = CountFrom(counts[1], num_trials);
+          return Events{CountFrom(counts[0], num_simulated), num_simulated};
+        }};
+    const Events events = TakeStep<Events>(
         steps_, [&] { return Count(level, next, num_trials); }, form);
     next += num_trials;
     *num_done_ += num_trials;
-    return num_events;
+    return {place, events.num_events, events.num_trials};
   }
 
  private:
-  // The events among the trials first, ..., first + num_trials - 1.
-  std::int64_t Count(const std::string& level, std::int64_t first, std::int64_t num_trials) {
+  struct Events {
+    std::int64_t num_events = 0, num_trials = 0;
+  };
+
+  // Of the trials first, ..., first + num_trials - 1.
+  Events Count(const std::string& level, std::int64_t first, std::int64_t num_trials) {
     if (!*progress_) progress_->emplace("trials", total_, *num_done_);
     const StudyPlan plan = PlanAt(study_, question_, level);
     const Condition& condition = plan.conditions.at(condition_);
-    std::atomic<std::int64_t> num_events = 0;
+    std::atomic<std::int64_t> num_events = 0, num_simulated = 0;
     ForEachIndex(num_trials, num_threads_, [&](std::int64_t index) {
-      const TrialResult result = RunTrial(plan, condition, static_cast<std::uint32_t>(first + index));
-      CheckTrial(result, question_);
-      num_events += question_.event.has_happened(result.records.front(), plan.study.failure);
+      const TrialResult result = RunTrialOfDraw(plan, condition, static_cast<std::uint32_t>(first + index));
       (*progress_)->Advance(1);
+      if (!result.why_not_simulated.empty()) return;
+      CheckTrial(result, question_);
+      ++num_simulated;
+      num_events += question_.event.has_happened(result.records.front(), plan.study.failure);
     });
-    return num_events;
+    return {num_events, num_simulated};
   }
 
   Study study_;

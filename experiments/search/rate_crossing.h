@@ -29,7 +29,7 @@ struct RateCrossing {
   double estimate = 0.0;
   Interval interval, logistic_interval;
   std::vector<EventsAtLevel> searched, fresh;
-  std::int64_t num_trials() const;
+  std::int64_t num_trials() const;  // that could be simulated
 };
 
 struct CrossingAnswer {

@@ -5,6 +5,7 @@
 
 #include "experiments/core/work/thread_time.h"
 #include "experiments/trial/answer_check.h"
+#include "experiments/trial/simulate_draw.h"
 #include "stats/consistency.h"
 #include "stats/constants.h"
 
@@ -164,13 +165,11 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
 }
 
 TrialResult RunTrialOfDraw(const StudyPlan& plan, const Condition& condition, std::uint32_t trial) {
+  SimulatedDraw<TrialResult> simulated =
+      SimulateDraw(plan.study, [&] { return RunTrial(plan, condition, trial); });
+  if (simulated.made) return *std::move(simulated.made);
   TrialResult result;
-  try {
-    return RunTrial(plan, condition, trial);
-  } catch (const NotSimulated& error) {
-    if (!plan.study.population) throw;
-    result.why_not_simulated = error.what();
-  }
+  result.why_not_simulated = std::move(simulated.why_not);
   result.problem = Describe(result.data, condition, trial);
   MotionEstimate nothing;
   nothing.status = MotionStatus::kNotSimulated;

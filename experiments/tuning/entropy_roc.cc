@@ -7,6 +7,7 @@
 
 #include "estimator/loop_inspection.h"
 #include "experiments/run/for_each_trial.h"
+#include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial.h"
 
 namespace rcme {
@@ -108,7 +109,9 @@ EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials) {
   EntropiesOfTrials entropies(estimators.size(), std::vector<TrialEntropies>(num_trials));
   ForEachTrial(plan, trials, [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
     const StreamName name = NameOfTrial(plan, condition, trial);
-    const TrialData data = condition.source->Make(name);
+    const auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name); });
+    if (!simulated.made) return;
+    const TrialData& data = *simulated.made;
     for (size_t e = 0; e < estimators.size(); ++e) {
       if (!estimators[e]) continue;
       entropies[e][static_cast<size_t>(index)] = EntropiesOf(*estimators[e], data, name, plan.study.failure);

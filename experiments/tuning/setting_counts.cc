@@ -6,6 +6,7 @@
 #include <map>
 
 #include "experiments/run/for_each_trial.h"
+#include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
 
@@ -15,10 +16,8 @@ namespace {
 // All settings in one trial.
 class TrialDecisions {
  public:
-  TrialDecisions(const StudyPlan& plan, const Condition& condition, std::uint32_t trial)
-      : name_(NameOfTrial(plan, condition, trial)),
-        bounds_(plan.study.failure),
-        data_(condition.source->Make(name_)) {
+  TrialDecisions(const StreamName& name, const FailureBounds& bounds, TrialData data)
+      : name_(name), bounds_(bounds), data_(std::move(data)) {
     if (data_.weight != 1.0)
       throw InputError("tune: tilted_to: weighted trials cannot be used to tune; leave it out");
   }
@@ -111,7 +110,10 @@ SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, 
   ForEachTrial(plan, trials, [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
     // By its place in the plan, which may be a part of a study's.
     std::vector<SettingCount>& of_condition = counts[static_cast<size_t>(index / per_condition)];
-    TrialDecisions decisions(plan, condition, trial);
+    const StreamName name = NameOfTrial(plan, condition, trial);
+    auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name); });
+    if (!simulated.made) return;
+    TrialDecisions decisions(name, plan.study.failure, *std::move(simulated.made));
     for (const TraceGroup& group : settings.groups) {
       decisions.ForEachSetting(settings, group, [&](size_t s, TrialOutcome outcome, TrialOutcome without) {
         AddOutcome(outcome, without, &of_condition[s]);

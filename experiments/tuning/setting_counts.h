@@ -10,8 +10,9 @@
 
 namespace rcme {
 
-// Over some trials. A trial is good where the setting without its limits (SettingPlan) returns a motion
-// within the bounds; refused nevertheless, it is a false refusal.
+// Over some trials, of which `n` could be simulated (trial/simulate_draw.h). A trial is good where the
+// setting without its limits (SettingPlan) returns a motion within the bounds; refused nevertheless, it is a
+// false refusal.
 struct SettingCount {
   std::int64_t n = 0, failures = 0, refusals = 0, good = 0, false_refusals = 0;
 

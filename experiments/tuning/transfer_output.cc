@@ -7,6 +7,7 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/trial/simulate_draw.h"
 #include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_json.h"
 
@@ -52,10 +53,15 @@ std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result)
       row.resize(table.columns.size());
     }
   }
+  const std::int64_t num_trials = tuning.verify * std::ssize(plan.conditions);
+  std::int64_t num_simulated = 0;
+  for (const std::vector<SettingCount>& counts : result.verified) num_simulated += counts.front().n;
   return FormatParagraph(fmt::format(
              "{}: {} tuned on one family, verified on all; {} trials to verify a family of one condition",
              plan.study.name, tuning.estimator, tuning.verify)) +
-         FormatParagraph("Target: " + DescribeTarget(tuning)) + "\n" + RenderText(table);
+         FormatParagraph("Target: " + DescribeTarget(tuning)) +
+         FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials)) + "\n" +
+         RenderText(table);
 }
 
 std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, const TransferResult& result) {

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "experiments/core/table/render_table.h"
+#include "experiments/trial/simulate_draw.h"
 #include "experiments/tuning/rate_output.h"
 #include "stats/intervals.h"
 #include "stats/thresholds.h"
@@ -25,6 +26,21 @@ std::string DescribeTrials(const StudyPlan& plan) {
   const auto c = static_cast<std::int64_t>(plan.conditions.size());
   return fmt::format("{} conditions; {} trials to explore, {} to calibrate, {} to verify", c,
                      c * tuning.explore, c * tuning.calibrate, c * tuning.verify);
+}
+
+// Of all trials of the tuning.
+std::string DescribeMissingTrials(const StudyPlan& plan, const TuneResult& result) {
+  const Tuning& tuning = *plan.study.tuning;
+  std::int64_t num_trials = 0, num_simulated = 0;
+  const auto add = [&](const std::vector<SettingCount>& counts, int per_condition) {
+    if (counts.empty()) return;
+    num_trials += per_condition * std::ssize(plan.conditions);
+    num_simulated += counts.front().n;
+  };
+  add(result.explored, tuning.explore);
+  add(result.calibrated, tuning.calibrate);
+  add(result.verified, tuning.verify);
+  return FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
 }
 
 // Tuned, verified and the optimism of the tuned figure, rate by rate.
@@ -139,7 +155,7 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
   std::string text =
       FormatParagraph(fmt::format("{}: {} settings of {}, {}", plan.study.name, result.settings.size(),
                                   tuning.estimator, DescribeTrials(plan))) +
-      FormatParagraph("Target: " + DescribeTarget(tuning));
+      FormatParagraph("Target: " + DescribeTarget(tuning)) + DescribeMissingTrials(plan, result);
   if (!result.choice.setting) return text + FormatParagraph("Not reached: " + result.choice.why);
   text +=
       FormatParagraph(fmt::format("Tuned: {}{}; {}", result.settings[*result.choice.setting],
@@ -167,6 +183,7 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
   const ErrorCount violated{repetitions.num_violated, repetitions.num_done};
   const ErrorCount not_shown{violated.errors + repetitions.num_undecided, violated.n};
   const std::vector<size_t> chosen = ByTimesChosen(repetitions);
+  const std::int64_t num_reference = repetitions.reference.front().n;
   std::string text =
       FormatParagraph(fmt::format(
           "{}: tuned {} times with fresh seeds ({} trials to explore, {} to calibrate each)", plan.study.name,
@@ -179,7 +196,9 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
       "\n" +
       FormatParagraph(
           fmt::format("What was chosen, on {} further trials (all 95 % intervals below the limits: holds)",
-                      repetitions.reference.front().n)) +
+                      num_reference)) +
+      FormatParagraph(DescribeNotSimulated(tuning.verify * num_conditions - num_reference,
+                                           tuning.verify * num_conditions)) +
       "\n" + RenderText(MakeChosenTable(tuning, settings, repetitions, chosen));
   if (chosen.size() > kMaxChosenRows) {
     text += FormatParagraph(fmt::format(

@@ -80,7 +80,8 @@ TuningWork PlanWork(const StudyPlan& plan, const std::string& work, size_t num_k
 
 Json CountsAsJson(const std::vector<SettingCount>& counts) {
   Json json = Json::array();
-  for (const SettingCount& c : counts) json.push_back({c.failures, c.refusals, c.good, c.false_refusals});
+  for (const SettingCount& c : counts)
+    json.push_back({c.n, c.failures, c.refusals, c.good, c.false_refusals});
   return json;
 }
 
@@ -89,12 +90,15 @@ void RequirePossible(bool is_possible, const char* what) {
   if (!is_possible) throw std::invalid_argument(fmt::format("its counts cannot be: {}", what));
 }
 
-void AddCounts(const Json& json, std::int64_t n, std::vector<SettingCount>* counts) {
+// Of so many trials, or of those of them that could be simulated.
+void AddCounts(const Json& json, std::int64_t num_trials, bool is_drawn, std::vector<SettingCount>* counts) {
   RequireSize(json, counts->size());
   for (size_t s = 0; s < counts->size(); ++s) {
-    RequireSize(json[s], 4);
+    RequireSize(json[s], 5);
+    const std::int64_t n = CountFrom(json[s][0], num_trials);
+    RequirePossible(n == num_trials || is_drawn, "fewer trials than there are");
     const auto number = [&](size_t i) { return CountFrom(json[s][i], n); };
-    const SettingCount count{n, number(0), number(1), number(2), number(3)};
+    const SettingCount count{n, number(1), number(2), number(3), number(4)};
     RequirePossible(count.failures + count.refusals <= n, "more failures and refusals than trials");
     RequirePossible(count.false_refusals <= count.refusals, "more false refusals than refusals");
     RequirePossible(count.false_refusals <= count.good, "more false refusals than good trials");
@@ -131,10 +135,14 @@ VerifiedEstimator VerifiedFrom(const Json& json, std::int64_t n, std::int64_t nu
   return one;
 }
 
-void AddVerified(const Json& json, std::int64_t n, std::vector<VerifiedEstimator>* estimators) {
+void AddVerified(const Json& json, std::int64_t num_trials, bool is_drawn,
+                 std::vector<VerifiedEstimator>* estimators) {
   RequireSize(json, estimators->size());
   if (estimators->empty()) return;
   RequireSize(json[0], 7);
+  std::int64_t n = 0;  // of them could be simulated
+  for (size_t i = 3; i < 7; ++i) n += CountFrom(json[0][i], num_trials - n);
+  RequirePossible(n == num_trials || is_drawn, "the pairs are not the trials");
   const std::int64_t num_bad_of_first = CountFrom(json[0][2], n);
   for (size_t e = 0; e < estimators->size(); ++e) {
     const VerifiedEstimator one = VerifiedFrom(json[e], n, num_bad_of_first);
@@ -273,7 +281,8 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
     SettingCounts counts(num_conditions, std::vector<SettingCount>(settings.settings.size()));
     ReadResults(work.items, results, first, first + num_conditions,
                 [&](const ItemPlace& place, const std::string& json) {
-                  AddCounts(ParsePiece(json), NumTrialsOf(plan, place), &counts[place.group - first]);
+                  AddCounts(ParsePiece(json), NumTrialsOf(plan, place), plan.study.population.has_value(),
+                            &counts[place.group - first]);
                 });
     return counts;
   };
@@ -284,7 +293,8 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
     const size_t first = FirstGroup(plan, Kind::kPlainCalls);
     ReadResults(work.items, results, first, first + plan.conditions.size(),
                 [&](const ItemPlace& place, const std::string& json) {
-                  AddVerified(ParsePiece(json), NumTrialsOf(plan, place), &estimators);
+                  AddVerified(ParsePiece(json), NumTrialsOf(plan, place), plan.study.population.has_value(),
+                              &estimators);
                 });
     return estimators;
   };

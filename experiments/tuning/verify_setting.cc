@@ -26,7 +26,8 @@ std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRang
   std::vector<VerifiedEstimator> verified;
   for (const EstimatorSpec& spec : plan.study.estimators) verified.push_back({spec, {}, {}, {}, {}});
   ForEachTrial(plan, trials, [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
-    AddTrial(RunTrial(plan, condition, trial).records, plan.study.failure, &verified);
+    const TrialResult result = RunTrialOfDraw(plan, condition, trial);
+    if (result.why_not_simulated.empty()) AddTrial(result.records, plan.study.failure, &verified);
   });
   return verified;
 }

@@ -55,7 +55,7 @@ inline CrossingCoverage MeasureCrossingCoverage(const KnownCrossing& curve, doub
     const auto ask = [&](double level, std::int64_t number) {
       std::int64_t num_events = 0;
       for (std::int64_t k = 0; k < number; ++k) num_events += rng.Uniform() < curve.rate(level);
-      return num_events;
+      return EventsAtLevel{level, num_events, number};
     };
     const Crossing found = FindCrossing(ask, rate, num_trials, confidence);
     coverage.num_covered += found.interval.Contains(curve.crossing);

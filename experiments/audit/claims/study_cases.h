@@ -18,7 +18,7 @@ void RequireCases(const Study& study);
 // All settings of a condition's simulation; of a study that can give cases.
 Settings SimulatedSettings(const StudyPlan& plan, const Condition& condition);
 
-// Cases of a condition; their severity is not measured.
+// Cases of a condition; their severity is not measured. NotSimulated shows when one is made.
 CaseMaker StudyCases(const StudyPlan& plan, const Condition& condition);
 
 // What a case lacks for a statistic with these needs, in words; empty: nothing.

@@ -4,6 +4,7 @@
 
 #include "experiments/audit/claims/calibration.h"
 #include "experiments/audit/claims/study_cases.h"
+#include "experiments/trial/simulate_draw.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -25,16 +26,21 @@ std::vector<CaseClaim> CalibrationOf(const StudyPlan& plan) {
   return all;
 }
 
+using SimulatedCase = SimulatedDraw<Case>;
+
 // A condition of the study, with the first of its trials for a look at what they hold.
 struct ConditionCases {
   Settings levels;  // factor, level
-  CaseMaker make;
-  std::vector<Case> first;
+  std::function<SimulatedCase(const StreamName&)> make;
+  std::vector<SimulatedCase> first;
 };
 
 ConditionCases CasesOf(const StudyPlan& plan, const Condition& condition) {
   constexpr std::uint32_t kNumFirst = 16;
-  ConditionCases cases{{}, StudyCases(plan, condition), {}};
+  const auto make = [study = plan.study, make_case = StudyCases(plan, condition)](const StreamName& name) {
+    return SimulateDraw(study, [&] { return make_case(name); });
+  };
+  ConditionCases cases{{}, make, {}};
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {
     cases.levels.emplace_back(plan.factor_names[f], condition.levels[f]);
   }
@@ -44,11 +50,17 @@ ConditionCases CasesOf(const StudyPlan& plan, const Condition& condition) {
   return cases;
 }
 
+// Why a trial gives no statistic with these needs; empty: it does.
+std::string WhyNoStatistic(const SimulatedCase& simulated, const CaseNeeds& needs) {
+  if (simulated.made) return WhatIsMissing(*simulated.made, needs);
+  return StatusName(MotionStatus::kNotSimulated) + ": " + simulated.why_not;
+}
+
 // What every one of the first trials lacks; empty: some of them lack nothing.
-std::string WhatAllLack(const std::vector<Case>& cases, const CaseNeeds& needs) {
+std::string WhatAllLack(const std::vector<SimulatedCase>& cases, const CaseNeeds& needs) {
   std::string missing;
-  for (const Case& made : cases) {
-    missing = WhatIsMissing(made, needs);
+  for (const SimulatedCase& simulated : cases) {
+    missing = WhyNoStatistic(simulated, needs);
     if (missing.empty()) break;
   }
   return missing;
@@ -73,10 +85,10 @@ Check CheckOn(const ConditionCases& cases, const CaseClaim& claim) {
   const Outcome nothing(NumStatistics(claim.targets), kNaN);
   check.trial = [make = cases.make, statistic = claim.statistic, needs = claim.needs,
                  nothing](const StreamName& name) {
-    Case made = make(name);
-    if (!WhatIsMissing(made, needs).empty()) return nothing;
-    KeepWhatIsNeeded(&made.data, needs);
-    return statistic(made);
+    SimulatedCase simulated = make(name);
+    if (!WhyNoStatistic(simulated, needs).empty()) return nothing;
+    KeepWhatIsNeeded(&simulated.made->data, needs);
+    return statistic(*simulated.made);
   };
   return check;
 }

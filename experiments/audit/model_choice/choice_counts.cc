@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial_range.h"
 #include "parameters/input_error.h"
 
@@ -86,7 +87,9 @@ Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRan
   Matrices matrices(criteria.size(), ConfusionMatrix{});
   for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
     const StreamName name = NameOfTrial(plan, condition, trial);
-    const TrialData data = condition.source->Make(name);
+    const auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name); });
+    if (!simulated.made) continue;
+    const TrialData& data = *simulated.made;
     if (data.weight != 1.0)
       throw InputError("model-choice: tilted_to: weighted trials have no plain rates; leave it out");
     const auto kind = static_cast<size_t>(KindOfTrial(condition.source->SceneOf(name).value(), data, name));
@@ -97,9 +100,11 @@ Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRan
   return matrices;
 }
 
-// Adds the matrices of so many trials. What no trials can have given is damage, whatever the checksums say.
-void AddMatrices(const nlohmann::ordered_json& json, std::int64_t num_trials, Matrices* sum) {
+// Adds the matrices of so many trials, or of those of them that could be simulated. What no trials can have
+// given is damage, whatever the checksums say.
+void AddMatrices(const nlohmann::ordered_json& json, std::int64_t num_trials, bool is_drawn, Matrices* sum) {
   RequireSize(json, sum->size());
+  std::int64_t num_of_first = 0;
   for (size_t c = 0; c < sum->size(); ++c) {
     RequireSize(json[c], kTrueKinds.size());
     std::int64_t n = 0;
@@ -111,7 +116,8 @@ void AddMatrices(const nlohmann::ordered_json& json, std::int64_t num_trials, Ma
         (*sum)[c][kind][answer] += count;
       }
     }
-    if (n != num_trials)
+    if (c == 0) num_of_first = n;
+    if (n > num_trials || n != num_of_first || (n < num_trials && !is_drawn))
       throw std::invalid_argument(fmt::format("it counts {} trials, not {}", n, num_trials));
   }
 }
@@ -146,7 +152,8 @@ ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>&
     ReadResults(runner->plan(), runner->results(), c, c + 1,
                 [&](const ItemPlace& place, const std::string& json) {
                   const TrialRange trials = FindTrialsOf(plan, place);
-                  AddMatrices(ParsePiece(json), trials.end - trials.first, &group.matrices);
+                  AddMatrices(ParsePiece(json), trials.end - trials.first, plan.study.population.has_value(),
+                              &group.matrices);
                 });
   }
   return counts;

@@ -8,6 +8,7 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/trial/simulate_draw.h"
 #include "stats/intervals.h"
 
 namespace rcme {
@@ -44,6 +45,12 @@ Table MakeMatrixTable(const std::string& criterion, const ConfusionMatrix& matri
   return table;
 }
 
+std::int64_t CountTrials(const ConfusionMatrix& matrix) {
+  std::int64_t n = 0;
+  for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) n += CellOf(matrix, kind, 0).n;
+  return n;
+}
+
 std::string DescribeLevels(const ChoiceCounts& counts, const ChoiceGroup& group) {
   std::vector<std::string> words;
   for (size_t f = 0; f < counts.by.size(); ++f)
@@ -54,12 +61,16 @@ std::string DescribeLevels(const ChoiceCounts& counts, const ChoiceGroup& group)
 }  // namespace
 
 std::string ChoicesAsTable(const StudyPlan& plan, const ChoiceCounts& counts) {
+  const std::int64_t num_trials = plan.study.trials * std::ssize(plan.conditions);
+  std::int64_t num_simulated = 0;
+  for (const ChoiceGroup& group : counts.groups) num_simulated += CountTrials(group.matrices.front());
   std::string text =
       FormatParagraph(plan.study.name + ": verdicts of model choice where the truth is known") +
       FormatParagraph(
           fmt::format("{} trials in each of {} conditions. Rows: the truth; columns: the verdict, "
                       "its share of the row with the exact 95 % interval.",
-                      plan.study.trials, plan.conditions.size()));
+                      plan.study.trials, plan.conditions.size())) +
+      FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
   for (const ChoiceGroup& group : counts.groups) {
     text += fmt::format("\n{}\n", DescribeLevels(counts, group));
     for (size_t c = 0; c < group.matrices.size(); ++c)

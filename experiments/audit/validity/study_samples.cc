@@ -7,6 +7,7 @@
 
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/data/make_data.h"
+#include "experiments/trial/simulate_draw.h"
 #include "parameters/parameter.h"
 #include "simulator/exact_match.h"
 
@@ -75,14 +76,14 @@ MapSample SampleOf(const Case& made, int num_points) {
   return sample;
 }
 
-MapSampler SamplerOf(const Settings& settings, int num_points) {
-  const CaseMaker make = CasesFrom(MakeSimulatedData(settings));
+MapSampler SamplerOf(const Study& study, const Settings& settings, int num_points) {
+  const CaseMaker make = CasesFrom(MakeSimulatedData(settings, BaselineSearch::kWithFirstScene));
   const CaseNeeds needs{.num_true_matches = num_points + 1};
-  return [make, needs, num_points](const StreamName& name) -> std::optional<MapSample> {
-    Case made = make(name);
-    if (!WhatIsMissing(made, needs).empty()) return std::nullopt;
-    KeepTrueMatches(&made.data);
-    return SampleOf(made, num_points);
+  return [study, make, needs, num_points](const StreamName& name) -> std::optional<MapSample> {
+    auto simulated = SimulateDraw(study, [&] { return make(name); });
+    if (!simulated.made || !WhatIsMissing(*simulated.made, needs).empty()) return std::nullopt;
+    KeepTrueMatches(&simulated.made->data);
+    return SampleOf(*simulated.made, num_points);
   };
 }
 
@@ -96,9 +97,10 @@ std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
     const Settings settings = SimulatedSettings(plan, condition);
     const Settings levels = LevelsOf(plan, condition, settings);
     if (!seen.insert(levels).second) continue;
-    conditions.push_back({DescribeCase(plan, levels), [settings](int num_points, double sigma_px) {
-                            return SamplerOf(AtSigma(settings, sigma_px), num_points);
-                          }});
+    conditions.push_back(
+        {DescribeCase(plan, levels), [study = plan.study, settings](int num_points, double sigma_px) {
+           return SamplerOf(study, AtSigma(settings, sigma_px), num_points);
+         }});
   }
   return conditions;
 }
