@@ -30,6 +30,7 @@
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/answer_check.h"
+#include "experiments/trial/severity_columns.h"
 #include "experiments/trial/trial.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
@@ -38,7 +39,6 @@
 #include "peers/outside_answer.h"
 #include "peers/peer_registry.h"
 #include "python/function_estimator.h"
-#include "experiments/trial/severity_columns.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -143,7 +143,7 @@ Study StudyFrom(const StudySource& source) {
 }
 
 StudyPlan PlanFrom(const StudySource& source, PlanEstimators estimators) {
-  return PlanOf(StudyFrom(source), source.Name(), estimators);
+  return MakePlan(StudyFrom(source), source.Name(), estimators);
 }
 
 py::dict LevelsOf(const StudyPlan& plan, const Condition& condition) {
@@ -287,7 +287,7 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   }
   const Study study = StudyFrom(WithFunctions(source, functions));
   RequireCases(study);
-  const StudyPlan plan = PlanOf(study, source.Name());
+  const StudyPlan plan = MakePlan(study, source.Name());
   options.seed = plan.study.seed;
   options.study = plan.study.name;
   options.study_identity = plan.identity;
@@ -299,7 +299,7 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
 py::dict TuneStudy(const StudySource& source, int threads) {
   const Study study = StudyFrom(source);
   if (!study.tuning) throw InputError(source.Name() + ": has no block 'tune' (estimator, target, options)");
-  const StudyPlan plan = PlanOf(study, source.Name());
+  const StudyPlan plan = MakePlan(study, source.Name());
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   const TuningWork work = PlanTuningWork(plan);
   Runner runner = Runner::InMemory(work.items, threads);

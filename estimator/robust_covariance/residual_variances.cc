@@ -137,7 +137,7 @@ struct Moments {
   std::array<Matrix5d, kNumParts> G;  // U' K_b U
 };
 
-Moments MomentsOf(const KeyPoints& points) {
+Moments ComputeMoments(const KeyPoints& points) {
   const PairSums pairs = VisitPairs(points);
   const Eigen::ArrayXd m = points.num_matches.array(), is_repeated = (m > 1.0).cast<double>();
   const Eigen::ArrayXd num_pairs = (m * (m - 1.0)).max(1.0);
@@ -226,7 +226,7 @@ ResidualVariances FitResidualVariances(const MatchScores& scores, std::span<cons
   const Eigen::LLT<Matrix5d> llt(scores.information);
   if (groups.empty() || llt.info() != Eigen::Success) return {};
   const Matrix5d L = llt.matrixL();
-  const Moments moments = MomentsOf(KeyPointsOf(scores, groups, L));
+  const Moments moments = ComputeMoments(KeyPointsOf(scores, groups, L));
   const Solution solution = SolveMoments(moments);
   ResidualVariances variances;
   variances.own = solution.v(kOwn);

@@ -158,7 +158,7 @@ code 75 (docs/many_machines.md):
   command
       ->add_option("--budget", arguments->budget,
                    "quick (minutes) or full (up to hours; prints an estimate first)")
-      ->check(OneOf({"quick", "full"}))
+      ->check(IsOneOf({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,
                       "folder for the results, created if missing; with --shard the file of the part");

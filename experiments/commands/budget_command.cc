@@ -54,7 +54,7 @@ void RunBudget(const BudgetArguments& arguments) {
   CheckIsNoInput(arguments.out, {arguments.study});
   CheckCanBeWritten(arguments.out);
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
-  const StudyPlan plan = PlanOf(study, arguments.study);
+  const StudyPlan plan = MakePlan(study, arguments.study);
   CheckProcessEstimators(plan.study.estimators);
   const std::vector<TimedProblem> problems = TimedProblems(plan, 0, arguments.calls),
                                   fresh = TimedProblems(plan, arguments.calls, arguments.calls);

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <memory>
 
+#include "experiments/audit/contract/estimator_contract.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/audit/contract/estimator_contract.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -111,7 +111,7 @@ Examples:
   CLI::Option* only = command->add_option("--only", arguments->only, "checks a,b,...")
                           ->delimiter(',')
                           ->allow_extra_args(false)
-                          ->check(OneOf(CheckNames()));
+                          ->check(IsOneOf(CheckNames()));
   command
       ->add_option("--problem", arguments->problem,
                    "only the problem with this name, as printed by a failed check")

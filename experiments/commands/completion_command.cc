@@ -146,7 +146,7 @@ void AddCompletionCommand(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   command->add_option("shell", *shell, "bash, zsh or fish")
       ->required()
-      ->check(OneOf({"bash", "zsh", "fish"}));
+      ->check(IsOneOf({"bash", "zsh", "fish"}));
   command->callback([&app, shell] {
     fmt::print("{}", *shell == "bash" ? Bash(app) : *shell == "zsh" ? Zsh(app) : Fish(app));
   });

@@ -66,7 +66,7 @@ void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_
 void Export(const ExportArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
-  StudyPlan plan = PlanOf(study, arguments.study, PlanEstimators::kNotMade);
+  StudyPlan plan = MakePlan(study, arguments.study, PlanEstimators::kNotMade);
   TakeLock(arguments.study, arguments.lock, "", &plan);
   if (plan.NumTrials() > kMaxTrials) {
     throw InputError(fmt::format("{}: {} trials are too many to export; at most {} are allowed (--trials)",

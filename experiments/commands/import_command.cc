@@ -60,7 +60,7 @@ void Import(const ImportArguments& arguments) {
       throw InputError(fmt::format("--label: the study has an estimator '{}' already; give another", label));
     study.estimators.push_back(SpecOfAnswers(arguments.answers[i], label));
   }
-  StudyPlan plan = PlanOf(study, arguments.study);
+  StudyPlan plan = MakePlan(study, arguments.study);
   LockArguments lock = arguments.lock;
   if (lock.despite.empty() && !FindLock(arguments.study, lock).empty())
     lock.despite = fmt::format("answers were imported: {}", fmt::join(arguments.labels, ", "));

@@ -182,9 +182,9 @@ void AddListCommand(CLI::App& app) {
   auto format = std::make_shared<std::string>("table");
   command
       ->add_option("what", *what, "which list; default: all except studies, populations and estimator_files")
-      ->check(OneOf(names));
+      ->check(IsOneOf(names));
   command->add_option("--format", *format, "table: columns for a terminal; markdown: as in docs/reference")
-      ->check(OneOf({"table", "markdown"}))
+      ->check(IsOneOf({"table", "markdown"}))
       ->capture_default_str();
   command->callback([what, format] {
     for (const auto& [name, lister] : kLists) {

@@ -31,7 +31,7 @@ void Lock(const LockCommandArguments& arguments) {
         fmt::format("{}: key 'ademp' is missing: a lock holds aims, data, estimands, methods and "
                     "performance (rcme list keys)",
                     path));
-  const StudyLock lock = MakeLock(PlanOf(study, path, PlanEstimators::kNotMade));
+  const StudyLock lock = MakeLock(MakePlan(study, path, PlanEstimators::kNotMade));
   WriteFileWhole(out, ToYaml(lock));
   fmt::print("{}\n", lock.sha256);
   PrintMessage(

@@ -28,7 +28,7 @@ void RunModelChoice(const ModelChoiceArguments& arguments) {
   StartTimeLimit(arguments.max_time);
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = arguments.trials;
-  const StudyPlan plan = PlanOf(study, arguments.study, PlanEstimators::kNotMade);
+  const StudyPlan plan = MakePlan(study, arguments.study, PlanEstimators::kNotMade);
   MakeResultFolder(arguments.out);
   Runner runner =
       Runner::WithCheckpoint(PlanChoices(plan), FindCheckpointInFolder(arguments.out), arguments.threads);

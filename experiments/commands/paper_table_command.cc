@@ -4,9 +4,9 @@
 #include <map>
 #include <memory>
 
-#include "experiments/core/files/file_output.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/twin_commands.h"
+#include "experiments/core/files/file_output.h"
 #include "experiments/real/paper_table/paper_table_output.h"
 
 namespace rcme {
@@ -65,10 +65,10 @@ Examples:
   command
       ->add_option("--clusters", arguments->clusters,
                    "which pairs are dependent: those that share images, or all of a sequence")
-      ->check(OneOf({"images", "sequences"}))
+      ->check(IsOneOf({"images", "sequences"}))
       ->capture_default_str();
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(OneOf({"table", "csv", "json"}))
+      ->check(IsOneOf({"table", "csv", "json"}))
       ->capture_default_str();
   command->callback([arguments] { RunPaperTable(*arguments); });
 }

@@ -47,7 +47,7 @@ void RunRare(const RareArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.max_time);
   const bool is_splitting = arguments.method == "splitting";
-  const StudyPlan plan = PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
+  const StudyPlan plan = MakePlan(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
   CheckProcessEstimators(plan.study.estimators);
   MakeResultFolder(arguments.out);
   Runner runner =
@@ -97,7 +97,7 @@ Examples:
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   command->add_option("--method", arguments->method, "splitting (default) or stratified")
-      ->check(OneOf({"splitting", "stratified"}));
+      ->check(IsOneOf({"splitting", "stratified"}));
   command
       ->add_option("--trials", arguments->stratified.num_trials,
                    "stratified: trials drawn per condition (default: 100000)")

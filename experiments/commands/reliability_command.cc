@@ -3,10 +3,10 @@
 
 #include <memory>
 
-#include "experiments/statistics/forecast_output.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/statistics/forecast_output.h"
 
 namespace rcme {
 
@@ -40,7 +40,7 @@ Examples:
   command->add_option("--by", arguments->by,
                       "factor of the study: a line per level instead of one for all trials");
   command->add_option("--format", arguments->format, "table (for people) or json (for programs and figures)")
-      ->check(OneOf({"table", "json"}))
+      ->check(IsOneOf({"table", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {

@@ -138,7 +138,7 @@ void Run(const RunArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.max_time);
   const Shard shard = arguments.shard.empty() ? Shard() : ParseShard(arguments.shard, ThisEnvironment());
-  StudyPlan plan = PlanOf(StudyFrom(arguments), arguments.study);
+  StudyPlan plan = MakePlan(StudyFrom(arguments), arguments.study);
   TakeLock(arguments.study, arguments.lock, arguments.until.empty() ? "" : "--until " + arguments.until,
            &plan);
   const bool keeps_counts = arguments.keep == "counts";
@@ -208,7 +208,7 @@ void AddRunCommand(CLI::App& app) {
   command
       ->add_option("--until-event", arguments->until_event,
                    "event of --until: failure, refusal or failure_or_refusal")
-      ->check(OneOf(TrialEventNames()))
+      ->check(IsOneOf(TrialEventNames()))
       ->capture_default_str()
       ->needs(until);
   command
@@ -232,7 +232,7 @@ void AddRunCommand(CLI::App& app) {
           "--keep", arguments->keep,
           "all: every trial; counts: the exact sums that `rcme summarize` needs and a few complete trials, "
           "in a file that does not grow with the number of trials")
-      ->check(OneOf({"all", "counts"}))
+      ->check(IsOneOf({"all", "counts"}))
       ->capture_default_str()
       ->excludes(until)
       ->excludes(repeats);
@@ -242,7 +242,7 @@ void AddRunCommand(CLI::App& app) {
           "run trials with these statuses again and replace them: no_answer,timed_out,unreadable_answer; "
           "the file records how many")
       ->delimiter(',')
-      ->check(OneOf(NamesOfMissingAnswers()))
+      ->check(IsOneOf(NamesOfMissingAnswers()))
       ->excludes(until);
   AddTimeLimit(command, "trials", &arguments->max_time);
   command

@@ -41,7 +41,7 @@ bool IsResultFile(const std::string& path) {
 
 StudyPlan PlanFrom(const ShowArguments& arguments) {
   if (!IsResultFile(arguments.study)) {
-    return PlanOf(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
+    return MakePlan(LoadChangedStudy(arguments.study, arguments.changes), arguments.study);
   }
   if (arguments.changes.AreAny()) {
     throw InputError(

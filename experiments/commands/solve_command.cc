@@ -14,6 +14,7 @@
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/search/crossing_output.h"
+#include "experiments/study/find_estimator.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -52,12 +53,7 @@ void SetRange(const Study& study, const CLI::Option& from, const CLI::Option& to
 
 void KeepEstimators(const std::vector<std::string>& labels, Study* study) {
   if (labels.empty()) return;
-  std::string known;
-  for (const EstimatorSpec& spec : study->estimators) known += (known.empty() ? "" : ", ") + spec.label;
-  for (const std::string& label : labels) {
-    if (std::ranges::count(study->estimators, label, &EstimatorSpec::label) == 0)
-      throw InputError(fmt::format("--estimator: the study has no '{}'; it has: {}", label, known));
-  }
+  for (const std::string& label : labels) FindEstimator(study->estimators, label, "--estimator: the study");
   std::erase_if(study->estimators,
                 [&](const EstimatorSpec& spec) { return std::ranges::count(labels, spec.label) == 0; });
 }
@@ -131,9 +127,9 @@ Examples:
           ->add_option("--to", arguments->question.to, "greatest level; default: that of the study's factor")
           ->transform(NumberIn());
   command->add_option("--scale", arguments->scale, "linear (default) or log: how levels are spaced")
-      ->check(OneOf({"linear", "log"}));
+      ->check(IsOneOf({"linear", "log"}));
   command->add_option("--quantity", arguments->quantity, "event whose rate is meant; default: failure")
-      ->check(OneOf(TrialEventNames()));
+      ->check(IsOneOf(TrialEventNames()));
   command->add_option("--at", arguments->question.rate, "the rate")
       ->transform(NumberIn({1e-6, 1.0 - 1e-6}))
       ->capture_default_str();

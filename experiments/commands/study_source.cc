@@ -64,7 +64,7 @@ StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, 
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }
-  return PlanOf(study, path, estimators);
+  return MakePlan(study, path, estimators);
 }
 
 StudyPlan PlanOfStored(const ResultStore& store, bool allow_process) {

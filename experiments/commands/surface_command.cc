@@ -25,14 +25,14 @@ struct SurfaceArguments {
   bool has_no_figures = false;
 };
 
-MarginalQuantity QuantityOf(const std::string& name) {
+MarginalQuantity FindQuantity(const std::string& name) {
   if (name == "failure") return MarginalQuantity::kFailure;
   if (name == "coverage") return MarginalQuantity::kSureCoverage;
   return MarginalQuantity::kFailedLessStated;
 }
 
 void MakeSurface(const SurfaceArguments& arguments) {
-  SurfaceOptions options{arguments.estimator, QuantityOf(arguments.quantity), 0};
+  SurfaceOptions options{arguments.estimator, FindQuantity(arguments.quantity), 0};
   if (arguments.num_proposed > 0)
     options.num_candidates =
         std::clamp(kCandidatesPerProposal * arguments.num_proposed, kLeastCandidates, kMostCandidates);
@@ -78,7 +78,7 @@ Examples:
   command->add_option("runs", arguments->runs, "result files of `rcme run`, with the same factors")
       ->required();
   command->add_option("--quantity", arguments->quantity, "failure, coverage or P-y")
-      ->check(OneOf({"failure", "coverage", "P-y"}))
+      ->check(IsOneOf({"failure", "coverage", "P-y"}))
       ->capture_default_str();
   command->add_option("--estimator", arguments->estimator, "its label; default: the study's first");
   command->add_option("--propose", arguments->num_proposed, "so many further draws of the population")

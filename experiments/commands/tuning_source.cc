@@ -51,7 +51,7 @@ StudyPlan TuningPlanOf(const TuningArguments& arguments) {
   const auto scene = std::ranges::find(study.data, "scene", &Settings::value_type::first);
   const bool is_simulated = scene == study.data.end() || scene->second != kMatchFilesScene;
   if (is_simulated) Override(&study, "severity", "skipped");  // no one looks at it here
-  return PlanOf(study, arguments.study);
+  return MakePlan(study, arguments.study);
 }
 
 }  // namespace rcme

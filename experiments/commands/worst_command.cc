@@ -12,6 +12,7 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/yaml_input.h"
+#include "experiments/study/find_estimator.h"
 #include "experiments/study/population.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -30,7 +31,7 @@ struct WorstArguments {
 
 // The study with the estimators that are compared alone, in this order, and no conditions but its
 // population's draws.
-Study StudyOfSearch(const WorstArguments& arguments) {
+Study MakeSearchStudy(const WorstArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (!study.population || !study.factors.empty() || study.population->design == PointSet::kLatinHypercube)
     throw InputError(
@@ -38,12 +39,7 @@ Study StudyOfSearch(const WorstArguments& arguments) {
   std::vector<EstimatorSpec> chosen;
   for (const std::string& label : {arguments.estimator, arguments.against}) {
     if (label.empty()) continue;
-    const auto spec = std::ranges::find(study.estimators, label, &EstimatorSpec::label);
-    std::string known;
-    for (const EstimatorSpec& other : study.estimators) known += (known.empty() ? "" : ", ") + other.label;
-    if (spec == study.estimators.end())
-      throw InputError(fmt::format("worst: the study has no estimator '{}'; it has: {}", label, known));
-    chosen.push_back(*spec);
+    chosen.push_back(study.estimators[FindEstimator(study.estimators, label, "worst: the study")]);
   }
   study.estimators = chosen;
   study.population->draws.clear();
@@ -57,7 +53,7 @@ Study StudyOfSearch(const WorstArguments& arguments) {
 
 // Draws that are conditions, with their levels.
 std::string PoolAsCsv(const Study& study) {
-  std::string text = fmt::format("draw,{}\n", fmt::join(KeysOf(*study.population), ","));
+  std::string text = fmt::format("draw,{}\n", fmt::join(ListDrawnKeys(*study.population), ","));
   for (const PopulationDraw& draw : DrawPopulation(study)) {
     if (draw.outside_of.empty()) text += fmt::format("{},{}\n", draw.number, fmt::join(draw.levels, ","));
   }
@@ -67,7 +63,7 @@ std::string PoolAsCsv(const Study& study) {
 void FindWorst(const WorstArguments& arguments) {
   if ((arguments.quantity == "difference") == arguments.against.empty())
     throw InputError("worst: --against goes with --quantity difference, and that with --against");
-  const Study study = StudyOfSearch(arguments);
+  const Study study = MakeSearchStudy(arguments);
   MakeResultFolder(arguments.out);
   const std::filesystem::path folder(arguments.out);
   const std::string text = ToYaml(study), study_path = (folder / "study.yaml").string();
@@ -134,7 +130,7 @@ Examples:
   command->add_option("--estimator", arguments->estimator, "its label")->required();
   command->add_option("--against", arguments->against, "label of the estimator that a difference is from");
   command->add_option("--quantity", arguments->quantity, "failure, sure_failure, coverage or difference")
-      ->check(OneOf({"failure", "sure_failure", "coverage", "difference"}))
+      ->check(IsOneOf({"failure", "sure_failure", "coverage", "difference"}))
       ->capture_default_str();
   CLI::Option* trials =
       command->add_option("--trials", arguments->trials, "how many may be spent; default: 5000")

@@ -7,23 +7,12 @@
 #include "experiments/statistics/compared_pairs.h"
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scenes_of_run.h"
+#include "experiments/study/find_estimator.h"
 #include "parameters/input_error.h"
-#include "parameters/suggestion.h"
 #include "stats/multiple_testing.h"
 
 namespace rcme {
 namespace {
-
-size_t IndexOf(const std::string& label, const RunDescription& run) {
-  if (label.empty()) return 0;
-  std::vector<std::string> labels;
-  for (const DescribedEstimator& estimator : run.estimators) {
-    if (estimator.label == label) return labels.size();
-    labels.push_back(estimator.label);
-  }
-  throw InputError(fmt::format("--against: study '{}' has no estimator '{}'{}; allowed: {}", run.study, label,
-                               DidYouMean(label, labels), fmt::join(labels, ", ")));
-}
 
 // The pairs of every group, estimator and thing compared; of the reference with itself too, which no one
 // reads.
@@ -107,7 +96,10 @@ void AdjustForAllTests(std::vector<ComparisonRow>* rows) {
 Comparison Compare(const ResultStore& store, const std::string& reference, const CompareOptions& options) {
   const RunDescription run = store.Description();
   const std::vector<DescribedEstimator>& estimators = run.estimators;
-  const size_t reference_index = IndexOf(reference, run);
+  const size_t reference_index =
+      reference.empty()
+          ? 0
+          : FindEstimator(run.estimators, reference, fmt::format("--against: study '{}'", run.study));
   const std::vector<Compared> compared = ComparedByName(options.compared);
   const bool is_anytime_valid = options.is_anytime_valid || !run.stopping_rule.empty();
   const bool is_pooled = options.pooling == Pooling::kPooled;

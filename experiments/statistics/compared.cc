@@ -16,7 +16,7 @@ namespace {
 Compared Event(const TrialEvent& event) {
   return {ComparedKind::kEvent, event.name, event.doc,
           [event](const TrialRecord& record, const FailureBounds& bounds) -> std::optional<double> {
-            if (!event.IsOf(record)) return std::nullopt;
+            if (!event.IsKnownFor(record)) return std::nullopt;
             return event.has_happened(record, bounds) ? 1.0 : 0.0;
           }};
 }

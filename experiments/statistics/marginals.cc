@@ -11,6 +11,7 @@
 
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/statistics/trial_groups.h"
+#include "experiments/study/find_estimator.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
@@ -215,16 +216,11 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
 
 std::vector<size_t> ChooseEstimators(const RunDescription& run, const std::vector<std::string>& labels) {
   std::vector<size_t> chosen;
-  std::vector<std::string> known;
-  for (size_t e = 0; e < run.estimators.size(); ++e) {
-    known.push_back(run.estimators[e].label);
-    if (labels.empty() || std::ranges::count(labels, known.back()) > 0) chosen.push_back(e);
-  }
-  for (const std::string& label : labels) {
-    if (std::ranges::count(known, label) == 0)
-      throw InputError(
-          fmt::format("--estimator: the run has no '{}'; it has: {}", label, fmt::join(known, ", ")));
-  }
+  for (const std::string& label : labels)
+    chosen.push_back(FindEstimator(run.estimators, label, "--estimator: the run"));
+  for (size_t e = 0; labels.empty() && e < run.estimators.size(); ++e) chosen.push_back(e);
+  std::ranges::sort(chosen);
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   return chosen;
 }
 

@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-Moments MomentsOf(const ExactMoments& exact) {
+Moments ComputeMoments(const ExactMoments& exact) {
   return Moments::FromStatistics(exact.n(), exact.mean(), exact.variance());
 }
 
@@ -87,8 +87,8 @@ void TakeIntervalOfPopulation(const std::vector<const QuantityCounts*>& draws, S
   std::vector<Moments> moments;
   for (const QuantityCounts* draw : draws) {
     moments.push_back(row->kind == SummaryRow::Kind::kScore
-                          ? MomentsOf(std::get<ExactScores>(*draw).moments())
-                          : MomentsOf(std::get<ExactMoments>(*draw)));
+                          ? ComputeMoments(std::get<ExactScores>(*draw).moments())
+                          : ComputeMoments(std::get<ExactMoments>(*draw)));
   }
   TakeMean(moments, row);
 }

@@ -27,7 +27,7 @@ SceneSplit::SceneSplit(int repeats_per_scene)
 void SceneSplit::Add(const TrialRecord& record, const FailureBounds& bounds) {
   for (size_t v = 0; v < counts_.size(); ++v) {
     const TrialEvent& event = TrialEvents()[v];
-    if (!event.IsOf(record)) continue;
+    if (!event.IsKnownFor(record)) continue;
     ++counts_[v].num_trials;
     counts_[v].num_events += event.has_happened(record, bounds);
   }

@@ -33,7 +33,7 @@ TrialQuantity StatusRate(MotionStatus status, const std::string& doc) {
           [status](const TrialRecord& r, const FailureBounds&) { return Yes(r.status == status); }};
 }
 
-TrialQuantity QuantityOf(const TrialMeasure& measure, SummaryRow::Kind kind) {
+TrialQuantity MakeQuantity(const TrialMeasure& measure, SummaryRow::Kind kind) {
   return {measure.name, kind, measure.doc,
           [measure](const TrialRecord& r, const FailureBounds&) { return measure.Of(r); }};
 }
@@ -157,9 +157,9 @@ const std::vector<TrialQuantity>& TrialQuantities() {
   static const std::vector<TrialQuantity> all = [] {
     std::vector<TrialQuantity> quantities = OwnQuantities();
     for (const TrialMeasure& score : TrialScores())
-      quantities.push_back(QuantityOf(score, SummaryRow::Kind::kScore));
+      quantities.push_back(MakeQuantity(score, SummaryRow::Kind::kScore));
     for (const TrialMeasure& error : TrialErrors())
-      quantities.push_back(QuantityOf(error, SummaryRow::Kind::kMedian));
+      quantities.push_back(MakeQuantity(error, SummaryRow::Kind::kMedian));
     for (TrialQuantity& quantity : quantities) LeaveOutNotSimulated(&quantity);
     return quantities;
   }();

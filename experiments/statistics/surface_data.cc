@@ -11,6 +11,7 @@
 
 #include "experiments/core/text/json_output.h"
 #include "experiments/run/store/result_store.h"
+#include "experiments/study/find_estimator.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
 
@@ -54,16 +55,6 @@ Json FactorsAsJson(const RunDescription& run, const Study& study) {
   for (const std::string& name : run.factors)
     if (name != kDrawFactor) factors.push_back(FactorAsJson(name, study.population));
   return factors;
-}
-
-size_t FindEstimator(const RunDescription& run, const std::string& path, const std::string& label) {
-  std::vector<std::string> known;
-  for (size_t e = 0; e < run.estimators.size(); ++e) {
-    if (label.empty() || run.estimators[e].label == label) return e;
-    known.push_back(run.estimators[e].label);
-  }
-  throw InputError(
-      fmt::format("--estimator: {} has no '{}'; it has: {}", path, label, fmt::join(known, ", ")));
 }
 
 std::string NameOfQuantity(MarginalQuantity quantity) {
@@ -140,7 +131,8 @@ std::string SurfaceDataAsJson(const std::vector<std::string>& runs, const Surfac
     if (!first) first = run, study = stored;
     RequireSameFactors(*first, run, runs[i]);
     num_drawn = std::max(num_drawn, CountDrawn(stored));
-    const size_t e = FindEstimator(run, runs[i], estimator);
+    const size_t e =
+        estimator.empty() ? 0 : FindEstimator(run.estimators, estimator, "--estimator: " + runs[i]);
     estimator = run.estimators[e].label;
     files.push_back(
         {{"path", runs[i]}, {"study", run.study}, {"is_sample", IsSampleOfPopulation(run.identity)}});

@@ -67,7 +67,7 @@ bool Meets(const Settings& resolved, const Restriction& restriction) {
 class Drawer {
  public:
   explicit Drawer(const Study& study)
-      : study_(study), population_(*study.population), keys_(KeysOf(population_)) {
+      : study_(study), population_(*study.population), keys_(ListDrawnKeys(population_)) {
     std::vector<std::uint64_t> hashes;
     for (const std::string& key : keys_) hashes.push_back(HashToStreamKey(key));
     points_ = DrawPoints(population_.design, NumPoints(), hashes, study.seed,
@@ -146,7 +146,7 @@ class Drawer {
 
 }  // namespace
 
-std::vector<std::string> KeysOf(const Population& population) {
+std::vector<std::string> ListDrawnKeys(const Population& population) {
   std::vector<std::string> keys;
   for (const DrawnKey& drawn : population.keys) {
     if (std::ranges::count(keys, drawn.key) == 0) keys.push_back(drawn.key);

@@ -57,14 +57,14 @@ struct Population {
 };
 
 // The keys, each once, in the order of their axes.
-std::vector<std::string> KeysOf(const Population& population);
+std::vector<std::string> ListDrawnKeys(const Population& population);
 
 // Of the draws; a chosen one of sobol or random may be beyond Population::number.
 int CountDraws(const Population& population);
 
 struct PopulationDraw {
   int number = 0;
-  std::vector<std::string> levels;  // one per key of KeysOf; kNotDrawn
+  std::vector<std::string> levels;  // one per key of ListDrawnKeys; kNotDrawn
   std::string outside_of;           // the restriction it does not meet; empty: none
 };
 

@@ -87,7 +87,7 @@ std::vector<std::string> FactorNames(const Study& study) {
   std::vector<std::string> names;
   if (study.population) {
     names.push_back(kDrawFactor);
-    for (const std::string& key : KeysOf(*study.population)) names.push_back(key);
+    for (const std::string& key : ListDrawnKeys(*study.population)) names.push_back(key);
   }
   for (const Factor& factor : study.factors) names.push_back(factor.key);
   return names;

@@ -41,7 +41,7 @@ std::vector<std::string> DigestsIn(const std::string& text, bool is_of_real_pair
   return lines;
 }
 
-bool IsOfRealPairs(const YAML::Node& study) {
+bool HasRealPairs(const YAML::Node& study) {
   const YAML::Node data = study["data"];
   return data && data.IsMap() && data["scene"] && data["scene"].IsScalar() &&
          data["scene"].Scalar() == kMatchFilesScene;
@@ -245,7 +245,7 @@ std::vector<std::string> DeviationsFrom(const StudyLock& lock, const std::string
   } catch (const YAML::Exception&) {
     return {"the study: is not one that this program can compare with the lock"};
   }
-  if (DigestsIn(lock.text, IsOfRealPairs(locked)) != DigestsIn(identity, IsOfRealPairs(run)))
+  if (DigestsIn(lock.text, HasRealPairs(locked)) != DigestsIn(identity, HasRealPairs(run)))
     deviations.emplace_back("the pairs: are others than those that were locked");
   if (!stopping_rule.empty())
     deviations.push_back(fmt::format("trials: as many as a stopping rule gave ({})", stopping_rule));

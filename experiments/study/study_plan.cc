@@ -156,7 +156,10 @@ StreamName NameOfScene(const StudyPlan& plan, const Condition& condition, std::u
   return NameOfTrial(plan, condition, trial / static_cast<std::uint32_t>(plan.study.repeats_per_scene));
 }
 
-StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
+namespace {
+
+// The plan without its conditions and estimators.
+StudyPlan BeginPlan(const Study& given, PlanEstimators estimators) {
   if (estimators == PlanEstimators::kMade) RequireAllowedCommands(given.estimators);
   Study study = given;
   study.data = WithCalibration(given.data);
@@ -171,22 +174,38 @@ StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
   StudyPlan plan;
   plan.study = study;
   plan.factor_names = FactorNames(study);
-  if (study.population) {
+  return plan;
+}
+
+void MakeEstimators(StudyPlan* plan) {
+  for (const EstimatorSpec& spec : plan->study.estimators) plan->estimators.push_back(Make(spec));
+  MakeEstimatorsOfConditions(plan);
+}
+
+}  // namespace
+
+StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
+  StudyPlan plan = BeginPlan(given, estimators);
+  if (plan.study.population) {
     AppendPopulation(&plan);
   } else {
-    for (const std::vector<std::string>& levels : DesignRows(study))
-      Append(ConditionsOf(study, levels), &plan);
+    for (const std::vector<std::string>& levels : DesignRows(plan.study))
+      Append(ConditionsOf(plan.study, levels), &plan);
   }
-  if (estimators == PlanEstimators::kMade) {
-    for (const EstimatorSpec& spec : study.estimators) plan.estimators.push_back(Make(spec));
-    MakeEstimatorsOfConditions(&plan);
-  }
-  plan.study_yaml = ToYaml(study);
+  if (estimators == PlanEstimators::kMade) MakeEstimators(&plan);
+  plan.study_yaml = ToYaml(plan.study);
   plan.identity = Identity(plan);
   return plan;
 }
 
-StudyPlan PlanOf(const Study& study, const std::string& path, PlanEstimators estimators) {
+StudyPlan MakeConditionPlan(const Study& study, const std::vector<std::string>& levels) {
+  StudyPlan plan = BeginPlan(study, PlanEstimators::kMade);
+  Append(ConditionsOf(plan.study, levels), &plan);
+  MakeEstimators(&plan);
+  return plan;
+}
+
+StudyPlan MakePlan(const Study& study, const std::string& path, PlanEstimators estimators) {
   try {
     return MakePlan(study, estimators);
   } catch (const InputError& error) {

@@ -56,7 +56,10 @@ enum class PlanEstimators {
 // the trials of a draw can be simulated shows when they are made.
 StudyPlan MakePlan(const Study& study, PlanEstimators estimators = PlanEstimators::kMade);
 // The same for the study of a file, which the message then names.
-StudyPlan PlanOf(const Study& study, const std::string& path,
-                 PlanEstimators estimators = PlanEstimators::kMade);
+StudyPlan MakePlan(const Study& study, const std::string& path,
+                   PlanEstimators estimators = PlanEstimators::kMade);
+// The plan of one condition alone, of number 0: that with these levels, one per factor of the study's whole
+// plan. Nothing of the others is made, and the plan has no identity.
+StudyPlan MakeConditionPlan(const Study& study, const std::vector<std::string>& levels);
 
 }  // namespace rcme

@@ -15,7 +15,9 @@ struct TrialEvent {
 
   // Whether the record says if it has happened: not of a trial that was not simulated, nor, if it needs the
   // truth, of one that is not scored.
-  bool IsOf(const TrialRecord& record) const { return needs_truth ? IsScored(record) : WasSimulated(record); }
+  bool IsKnownFor(const TrialRecord& record) const {
+    return needs_truth ? IsScored(record) : WasSimulated(record);
+  }
 };
 const std::vector<TrialEvent>& TrialEvents();
 std::vector<std::string> TrialEventNames();

@@ -97,7 +97,7 @@ TEST_F(SolveProgram, SaysWhatIsWrong) {
                "--scale log needs --from above 0");
   expect_error({"--over", "outlier_ratio", "--from", "0", "--to", "2"}, "outlier_ratio");
   expect_error({"--over", "sigma_px", "--from", "0.1", "--to", "2", "--estimator", "nobody"},
-               "the study has no 'nobody'");
+               "the study has no estimator 'nobody'");
   expect_error({"--over", "sigma_px", "--from", "0.1", "--to", "2", "--set", "repeats_per_scene=2"},
                "repeats");
 }

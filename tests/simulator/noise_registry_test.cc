@@ -38,7 +38,8 @@ TEST_P(NoiseContract, SigmaIsTheRootMeanSquareOverTheCoordinates) {
   const auto law = WithSettings(GetParam().make(), {{"sigma_px", "0.75"}});
   const std::vector<Eigen::Vector4d> noise = SampleNoise(*law, 100'000);
   const double stated = 0.75 * 0.75, rounding = GetParam().name == "quantised" ? 1.0 / 12.0 : 0.0;
-  const Moments square = MomentsOf(noise, [](const Eigen::Vector4d& e) { return e.squaredNorm() / 4.0; });
+  const Moments square =
+      ComputeMoments(noise, [](const Eigen::Vector4d& e) { return e.squaredNorm() / 4.0; });
   EXPECT_LT(std::abs(ZAgainst(square, stated + rounding)), kNoiseZ);
   EXPECT_GT(std::abs(ZAgainst(square, 1.05 * 1.05 * stated + rounding)), kNoiseZ) << "no power";
   EXPECT_GT(std::abs(ZAgainst(square, stated / (1.05 * 1.05) + rounding)), kNoiseZ) << "no power";
@@ -51,7 +52,7 @@ TEST_P(NoiseContract, IsCentredAndIndependentFromMatchToMatch) {
   const auto law = GetParam().make();
   const std::vector<Eigen::Vector4d> noise = SampleNoise(*law, 50'000);
   Moments values, sizes;
-  const Moments size = MomentsOf(noise, [](const Eigen::Vector4d& e) { return e.norm(); });
+  const Moments size = ComputeMoments(noise, [](const Eigen::Vector4d& e) { return e.norm(); });
   for (size_t i = 1; i < noise.size(); ++i) {
     values.Add(noise[i].dot(noise[i - 1]));
     sizes.Add((noise[i].norm() - size.mean()) * (noise[i - 1].norm() - size.mean()));
@@ -59,7 +60,7 @@ TEST_P(NoiseContract, IsCentredAndIndependentFromMatchToMatch) {
   EXPECT_LT(std::abs(ZAgainst(values, 0.0)), kNoiseZ);
   EXPECT_LT(std::abs(ZAgainst(sizes, 0.0)), kNoiseZ);
   for (int k = 0; k < 4; ++k) {
-    const Moments mean = MomentsOf(noise, [&](const Eigen::Vector4d& e) { return e(k); });
+    const Moments mean = ComputeMoments(noise, [&](const Eigen::Vector4d& e) { return e(k); });
     EXPECT_LT(std::abs(ZAgainst(mean, 0.0)), kNoiseZ) << k;
   }
 }

@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-Moments MomentsOf(const std::vector<double>& numbers) {
+Moments ComputeMoments(const std::vector<double>& numbers) {
   Moments moments;
   for (const double x : numbers) moments.Add(x);
   return moments;
@@ -18,7 +18,7 @@ Moments MomentsOf(const std::vector<double>& numbers) {
 
 TEST(Moments, KnownAnswers) {
   // Mean 5, sum of squares 32 (by hand).
-  const Moments moments = MomentsOf({2, 4, 4, 4, 5, 5, 7, 9});
+  const Moments moments = ComputeMoments({2, 4, 4, 4, 5, 5, 7, 9});
   EXPECT_EQ(moments.n(), 8);
   EXPECT_DOUBLE_EQ(moments.mean(), 5.0);
   EXPECT_DOUBLE_EQ(moments.variance(), 32.0 / 7.0);
@@ -45,7 +45,7 @@ TEST(Moments, AgreesWithTwoPasses) {
   for (double& x : numbers) sum += x = 3.0 + 0.2 * rng.Normal();
   const long double mean = sum / 1000.0L;
   for (const double x : numbers) squares += (x - mean) * (x - mean);
-  const Moments moments = MomentsOf(numbers);
+  const Moments moments = ComputeMoments(numbers);
   EXPECT_NEAR(moments.mean(), static_cast<double>(mean), 1e-14);
   EXPECT_NEAR(moments.variance(), static_cast<double>(squares / 999.0L), 1e-14);
 }
@@ -55,32 +55,32 @@ TEST(Moments, TooFewNumbersAreNan) {
   EXPECT_TRUE(std::isnan(Moments().mean()));
   EXPECT_TRUE(std::isnan(Moments().variance()));
   EXPECT_TRUE(std::isnan(Moments().standard_error()));
-  const Moments one = MomentsOf({3.0});
+  const Moments one = ComputeMoments({3.0});
   EXPECT_EQ(one.mean(), 3.0);
   EXPECT_TRUE(std::isnan(one.variance()));
   EXPECT_TRUE(std::isnan(one.standard_error()));
-  EXPECT_EQ(MomentsOf({3.0, 3.0}).variance(), 0.0);
+  EXPECT_EQ(ComputeMoments({3.0, 3.0}).variance(), 0.0);
 }
 
 TEST(Moments, InfiniteNumbersMakeTheMeanInfiniteWhereverTheyStand) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& numbers :
        {std::vector<double>{kInf}, {kInf, 1, 2}, {1, kInf, 2}, {1, 2, kInf}, {kInf, 1, kInf, kInf}}) {
-    const Moments moments = MomentsOf(numbers);
+    const Moments moments = ComputeMoments(numbers);
     EXPECT_EQ(moments.mean(), kInf);
     EXPECT_TRUE(std::isnan(moments.variance()));
     EXPECT_TRUE(std::isnan(moments.standard_error()));
-    Moments before = MomentsOf({3.0, 4.0}), after = moments, both = moments;
+    Moments before = ComputeMoments({3.0, 4.0}), after = moments, both = moments;
     before.Merge(moments);
-    after.Merge(MomentsOf({3.0, 4.0}));
+    after.Merge(ComputeMoments({3.0, 4.0}));
     both.Merge(moments);
     for (const Moments& merged : {before, after, both}) {
       EXPECT_EQ(merged.mean(), kInf);
       EXPECT_TRUE(std::isnan(merged.variance()));
     }
   }
-  EXPECT_EQ(MomentsOf({1.0, -kInf, 2.0}).mean(), -kInf);
-  EXPECT_TRUE(std::isnan(MomentsOf({-kInf, 1.0, kInf, 2.0}).mean()));
+  EXPECT_EQ(ComputeMoments({1.0, -kInf, 2.0}).mean(), -kInf);
+  EXPECT_TRUE(std::isnan(ComputeMoments({-kInf, 1.0, kInf, 2.0}).mean()));
 }
 
 TEST(Moments, MergedPartsEqualOnePass) {
@@ -91,9 +91,9 @@ TEST(Moments, MergedPartsEqualOnePass) {
     std::vector<double> numbers(1000);
     for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = (i < split ? 1e3 : 1.0) + rng.Normal();
     const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(split);
-    Moments merged = MomentsOf({numbers.begin(), middle});
-    merged.Merge(MomentsOf({middle, numbers.end()}));
-    const Moments whole = MomentsOf(numbers);
+    Moments merged = ComputeMoments({numbers.begin(), middle});
+    merged.Merge(ComputeMoments({middle, numbers.end()}));
+    const Moments whole = ComputeMoments(numbers);
     EXPECT_EQ(merged.n(), 1000);
     EXPECT_NEAR(merged.mean(), whole.mean(), 1e-12 * whole.mean());
     EXPECT_NEAR(merged.variance(), whole.variance(), 1e-12 * whole.variance());

@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const StudyPlan plan = PlanOf(LoadChangedStudy(argv[1], {{argv[2]}, {}, -1}), argv[1]);
+    const StudyPlan plan = MakePlan(LoadChangedStudy(argv[1], {{argv[2]}, {}, -1}), argv[1]);
     Repeat(plan, NumberOf<double>(argv[3]), argv[4], argc == 6 ? NumberOf<int>(argv[5]) : 200);
   } catch (const std::exception& error) {
     fmt::print(stderr, "rcme_rare_coverage: {}\n", error.what());

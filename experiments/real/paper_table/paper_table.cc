@@ -136,7 +136,7 @@ bool Meets(const std::string& pattern, const std::string& name) {
   return pattern.ends_with('*') ? name.starts_with(pattern.substr(0, pattern.size() - 1)) : name == pattern;
 }
 
-bool IsOf(const SceneGroup& group, const SceneEvents& scene) {
+bool IsInGroup(const SceneGroup& group, const SceneEvents& scene) {
   return std::ranges::any_of(group.patterns, [&](const std::string& pattern) {
     return std::ranges::any_of(scene.levels, [&](const std::string& level) { return Meets(pattern, level); });
   });
@@ -192,7 +192,7 @@ PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>&
   for (const SceneGroup& group : groups) {
     std::vector<const SceneEvents*> of_group;
     for (const SceneEvents& scene : scenes) {
-      if (IsOf(group, scene)) of_group.push_back(&scene);
+      if (IsInGroup(group, scene)) of_group.push_back(&scene);
     }
     if (!of_group.empty()) table.rows.push_back(RowOf(group.name, true, of_group));
   }

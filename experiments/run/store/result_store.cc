@@ -112,7 +112,7 @@ StudyPlan ResultStore::Plan(const Study& stored, PlanEstimators estimators) cons
   if (estimators == PlanEstimators::kMade) RequireAllowedCommands(stored.estimators);
   const RunDescription run = Description();
   if (!run.stopping_rule.empty()) CheckTrials();
-  StudyPlan plan = NamingProgram(run, [&] { return PlanOf(stored, path, estimators); });
+  StudyPlan plan = NamingProgram(run, [&] { return MakePlan(stored, path, estimators); });
   if (plan.identity != run.identity) {
     throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
                                  FirstDifference(run.identity, plan.identity)));

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "experiments/core/files/checksum.h"
-#include "experiments/run/store/trial_checksum.h"
 #include "experiments/run/store/schema.h"
+#include "experiments/run/store/trial_checksum.h"
 #include "experiments/study/study_file.h"
 
 namespace rcme {
@@ -103,7 +103,7 @@ Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
     CheckTables(file_.database, {"problems", "trials"});
     if (!study) CheckFormat(file_.database, path);
     stored = ReadStored();
-    description_ = study    ? Describe(PlanOf(*study, path, PlanEstimators::kNotMade))
+    description_ = study    ? Describe(MakePlan(*study, path, PlanEstimators::kNotMade))
                    : stored ? *stored
                             : DescribeStudy();
   });
@@ -149,7 +149,7 @@ RunDescription Salvage::DescribeStudy() {
   study.description.clear();
   study.ademp.reset();
   study.hypotheses.clear();
-  return Describe(PlanOf(study, file_.path, PlanEstimators::kNotMade));
+  return Describe(MakePlan(study, file_.path, PlanEstimators::kNotMade));
 }
 
 std::vector<SalvagedCondition> Salvage::ForEachSoundTrial(

@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-StudyPlan PlanOf(const std::string& scene) {
+StudyPlan MakeScenePlan(const std::string& scene) {
   return MakePlan(ParseStudy("name: moves\nseed: 5\ntrials: 10\ndata: {scene: " + scene +
                                  ", num_matches: 25, outlier_ratio: 0.1, sigma_px: 0.5, severity: skipped}\n"
                                  "estimators:\n  - {name: standard, options: {num_iterations: 5}}\n",
@@ -18,7 +18,7 @@ StudyPlan PlanOf(const std::string& scene) {
 }
 
 TEST(FailingMotion, DrawsFourNumbersForEachPoint) {
-  const StudyPlan plan = PlanOf("uniform_volume");
+  const StudyPlan plan = MakeScenePlan("uniform_volume");
   RandomStream rng({.seed = 1, .purpose = 77});
   const MotionInputs state = FailingMotion(plan, plan.conditions[0], 0).Draw(rng);
   EXPECT_EQ(state.noise.size(), 4 * state.scene->points_in_cam1.size());
@@ -28,7 +28,8 @@ TEST(FailingMotion, DrawsFourNumbersForEachPoint) {
 // 100 numbers the mean square of z' stays that of z, and its product with z is sqrt(1 - step^2) of it
 // (z-tests at 1e-4).
 TEST(FailingMotion, MovesOfTheNoiseKeepItsLaw) {
-  const StudyPlan plan = PlanOf("plane_and_parallax");  // points are not free: local moves are of the noise
+  const StudyPlan plan =
+      MakeScenePlan("plane_and_parallax");  // points are not free: local moves are of the noise
   const FailingMotion system(plan, plan.conditions[0], 0);
   RandomStream rng({.seed = 1, .purpose = 78});
   for (const double step : {0.3, 0.8}) {

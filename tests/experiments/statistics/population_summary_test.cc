@@ -37,9 +37,9 @@ Study DrawnStudy(const std::string& more = "") {
       "drawn.yaml");
 }
 
-// In the trials of draw d the first estimator fails with probability FailureOf(d) on every trial, the second
-// on half of these.
-double FailureOf(size_t draw) { return draw % 4 == 0 ? 0.9 : 0.1; }
+// In the trials of draw d the first estimator fails with probability ComputeFailure(d) on every trial, the
+// second on half of these.
+double ComputeFailure(size_t draw) { return draw % 4 == 0 ? 0.9 : 0.1; }
 
 class PopulationSummary : public testing::Test {
  protected:
@@ -50,7 +50,7 @@ class PopulationSummary : public testing::Test {
     for (const Condition& condition : plan.conditions) {
       const size_t draw = condition.index / 2;
       for (std::uint32_t trial = 0; trial < 5; ++trial) {
-        const bool fails = rng.Uniform() < FailureOf(draw), other_fails = fails && rng.Uniform() < 0.5;
+        const bool fails = rng.Uniform() < ComputeFailure(draw), other_fails = fails && rng.Uniform() < 0.5;
         std::vector<TrialRecord> records;
         for (const bool has_failed : {fails, other_fails}) {
           TrialRecord record = Motion(trial, has_failed ? 90.0 : 0.1, 0.1, 4.0);

@@ -45,7 +45,7 @@ std::string MessageOf(const std::string& conditions, const std::string& more = "
 
 // The level of a key in a draw.
 std::string LevelOf(const Study& study, const PopulationDraw& draw, const std::string& key) {
-  const std::vector<std::string> keys = KeysOf(*study.population);
+  const std::vector<std::string> keys = ListDrawnKeys(*study.population);
   return draw.levels[static_cast<size_t>(std::ranges::find(keys, key) - keys.begin())];
 }
 
@@ -69,7 +69,8 @@ TEST(Population, DrawsEachKeyFromItsRange) {
   const std::vector<PopulationDraw> draws = DrawPopulation(study);
   ASSERT_EQ(draws.size(), 64U);
   for (const PopulationDraw& draw : draws) {
-    for (const std::string& key : KeysOf(*study.population)) seen[key].insert(LevelOf(study, draw, key));
+    for (const std::string& key : ListDrawnKeys(*study.population))
+      seen[key].insert(LevelOf(study, draw, key));
     const double sigma_px = std::stod(LevelOf(study, draw, "sigma_px"));
     EXPECT_TRUE(sigma_px >= 0.1 && sigma_px <= 3.0);
     sum_of_logs += std::log(sigma_px);
@@ -250,7 +251,7 @@ TEST(Population, SetFixesAKey) {
   Override(&study, "scene", "room");
   for (const PopulationDraw& draw : DrawPopulation(study))
     EXPECT_NE(LevelOf(study, draw, "num_boxes"), kNotDrawn);
-  EXPECT_EQ(std::ranges::count(KeysOf(*study.population), "plane_depth_m"), 0);
+  EXPECT_EQ(std::ranges::count(ListDrawnKeys(*study.population), "plane_depth_m"), 0);
   EXPECT_THROW(Override(&study, "conditions.size", "3"), InputError);
 }
 
@@ -310,7 +311,7 @@ TEST_P(ReadyMade, SaysWhyAndWhence) {
   EXPECT_FALSE(text.description.empty());
   EXPECT_FALSE(text.source.empty());
   EXPECT_FALSE(text.reasons.empty());
-  const std::vector<std::string> keys = KeysOf(population);
+  const std::vector<std::string> keys = ListDrawnKeys(population);
   for (const auto& [key, reason] : text.reasons) EXPECT_EQ(std::ranges::count(keys, key), 1) << key;
 }
 
@@ -352,7 +353,7 @@ class DocumentedRanges : public testing::Test {
     }
   }
   void ExpectKey(const std::string& key) {
-    const std::vector<std::string> keys = KeysOf(population_);
+    const std::vector<std::string> keys = ListDrawnKeys(population_);
     EXPECT_TRUE(std::ranges::count(keys, key) > 0 || IsLeftOut(key))
         << key << " is new: add it to populations/documented_ranges.yaml";
   }

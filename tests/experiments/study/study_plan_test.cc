@@ -26,7 +26,7 @@ std::uint64_t KeyOf(const StudyPlan& plan, const std::vector<std::string>& level
   return 0;
 }
 
-std::vector<std::uint64_t> KeysOf(const StudyPlan& plan) {
+std::vector<std::uint64_t> ListStreamKeys(const StudyPlan& plan) {
   std::vector<std::uint64_t> keys;
   for (const Condition& condition : plan.conditions) keys.push_back(condition.stream_key);
   return keys;
@@ -54,21 +54,21 @@ TEST(StreamKey, DiffersBetweenConditions) {
   const StudyPlan plan = PlanOfText(
       "data: {num_matches: 60}\n"
       "factors: {scene: [uniform_volume, room], outlier_ratio: [0.1, 0.5], sigma_px: [0.5, 1]}\n");
-  const std::vector<std::uint64_t> keys = KeysOf(plan);
+  const std::vector<std::uint64_t> keys = ListStreamKeys(plan);
   EXPECT_EQ(std::set(keys.begin(), keys.end()).size(), 8u);
   for (const std::uint64_t key : keys) EXPECT_LT(key, 1ULL << 48);
 }
 
 TEST(StreamKey, DoesNotDependOnWhatIsOnlyMeasured) {
-  EXPECT_EQ(KeysOf(PlanOfText("data: {scene: room, severity: skipped}\n")),
-            KeysOf(PlanOfText("data: {scene: room, severity: measured}\n")));
+  EXPECT_EQ(ListStreamKeys(PlanOfText("data: {scene: room, severity: skipped}\n")),
+            ListStreamKeys(PlanOfText("data: {scene: room, severity: measured}\n")));
 }
 
 TEST(CommonScenes, AreThoseOfAllLevelsThatDoNotShapeTheScene) {
   const StudyPlan plan = PlanOfText(
       "common_scenes: true\ndata: {scene: uniform_volume}\n"
       "factors: {num_matches: [60, 80], outlier_ratio: [0.1, 0.5], sigma_px: [0.5, 1]}\n");
-  const std::vector<std::uint64_t> keys = KeysOf(plan);
+  const std::vector<std::uint64_t> keys = ListStreamKeys(plan);
   EXPECT_EQ(std::set(keys.begin(), keys.begin() + 4).size(), 1u);
   EXPECT_EQ(std::set(keys.begin() + 4, keys.end()).size(), 1u);
   EXPECT_NE(keys.front(), keys.back());

@@ -53,11 +53,11 @@ TEST(AnisotropicNoise, HasTheCovarianceOfItsDefinition) {
     EXPECT_LT(WhitenedPValue(noise, 1.21 * expected), 1e-10) << "no power";
     for (int i = 0; i < 4; ++i) {
       for (int j = i; j < 4; ++j) {
-        const Moments product = MomentsOf(noise, [&](const Eigen::Vector4d& e) { return e(i) * e(j); });
+        const Moments product = ComputeMoments(noise, [&](const Eigen::Vector4d& e) { return e(i) * e(j); });
         EXPECT_LT(std::abs(ZAgainst(product, expected(i, j))), kNoiseZ) << i << " " << j;
       }
     }
-    const Moments xy = MomentsOf(noise, [](const Eigen::Vector4d& e) { return e(0) * e(1); });
+    const Moments xy = ComputeMoments(noise, [](const Eigen::Vector4d& e) { return e(0) * e(1); });
     for (const Eigen::Matrix4d& wrong :
          {Covariance(ratio, deg + 30.0, correlation), Covariance(ratio, -deg, correlation),
           Covariance(1.0, deg, correlation)}) {

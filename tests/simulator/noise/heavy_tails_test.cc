@@ -24,8 +24,8 @@ double LawPValue(const NoiseModel& law, const Cdf& cdf) {
 
 // Whether large errors come together: the mean of e1^2 e2^2, 1 if they do not.
 Moments JointSquares(const NoiseModel& law) {
-  return MomentsOf(SampleNoise(law, 100'000),
-                   [](const Eigen::Vector4d& e) { return e(0) * e(0) * e(3) * e(3); });
+  return ComputeMoments(SampleNoise(law, 100'000),
+                        [](const Eigen::Vector4d& e) { return e(0) * e(0) * e(3) * e(3); });
 }
 
 // t with `dof` degrees of freedom, scaled to variance 1.

@@ -50,7 +50,7 @@ inline std::vector<double> Coordinate(const std::vector<Eigen::Vector4d>& noise,
 
 // Mean and standard error of a function of the noise of a match.
 template <typename Function>
-Moments MomentsOf(const std::vector<Eigen::Vector4d>& noise, Function function) {
+Moments ComputeMoments(const std::vector<Eigen::Vector4d>& noise, Function function) {
   Moments moments;
   for (const Eigen::Vector4d& e : noise) moments.Add(function(e));
   return moments;

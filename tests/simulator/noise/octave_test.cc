@@ -58,8 +58,8 @@ TEST(OctaveNoise, IsTheMixtureOverTheLevelsOfThePyramid) {
 // The mean of e1^2 e2^2 is E s^4 if both images share the level and 1 if they do not; z-test at 1e-4.
 TEST(OctaveNoise, HasTheSameLevelInBothImages) {
   const auto law = WithSettings(MakeOctaveNoise(), {{"sigma_px", "1"}});
-  const Moments product = MomentsOf(SampleNoise(*law, 100'000),
-                                    [](const Eigen::Vector4d& e) { return e(0) * e(0) * e(3) * e(3); });
+  const Moments product = ComputeMoments(SampleNoise(*law, 100'000),
+                                         [](const Eigen::Vector4d& e) { return e(0) * e(0) * e(3) * e(3); });
   EXPECT_LT(std::abs(ZAgainst(product, Pyramid(8, 1.2).MeanFourthPower())), kNoiseZ);
   EXPECT_GT(ZAgainst(product, 1.0), 2.0 * kNoiseZ) << "no power";
 }

@@ -50,7 +50,8 @@ TEST(QuantisedNoise, IsNormalPlusUniform) {
   }
   // What sigma_px does not tell.
   EXPECT_EQ(law->sigma_px(), kSigma);
-  const Moments square = MomentsOf(noise, [](const Eigen::Vector4d& e) { return e.squaredNorm() / 4.0; });
+  const Moments square =
+      ComputeMoments(noise, [](const Eigen::Vector4d& e) { return e.squaredNorm() / 4.0; });
   EXPECT_LT(std::abs(ZAgainst(square, kSigma * kSigma + 1.5 * 1.5 / 12.0)), kNoiseZ);
   EXPECT_GT(ZAgainst(square, kSigma * kSigma), 2.0 * kNoiseZ) << "no power";
 }
