@@ -50,11 +50,28 @@ class Scale {
   bool is_whole_;
 };
 
-StudyPlan PlanAt(const Study& study, const CrossingQuestion& question, const std::string& level) {
-  Study at_level = study;
-  Override(&at_level, question.setting, level);
-  at_level.common_scenes = false;
-  return MakePlan(at_level);
+Study MakeStudyAt(Study study, const CrossingQuestion& question, const std::string& level) {
+  Override(&study, question.setting, level);
+  study.common_scenes = false;
+  return study;
+}
+
+// The levels of the conditions, the same wherever the setting is. Whole plans are made here alone, in the
+// middle and at both ends: what is not allowed is said before any trial.
+StudyPlan PlanConditions(const Study& study, const CrossingQuestion& question, const Scale& scale) {
+  const auto plan_at = [&](double place) {
+    return MakePlan(MakeStudyAt(study, question, scale.TextAt(place)));
+  };
+  StudyPlan plan = plan_at(0.5);
+  for (const double end : {0.0, 1.0}) {
+    const StudyPlan at_end = plan_at(end);
+    if (!std::ranges::equal(plan.conditions, at_end.conditions, {}, &Condition::levels, &Condition::levels))
+      throw InputError(
+          fmt::format("solve: conditions: `given` leaves other draws at {} = {} than at {}; give "
+                      "other --from and --to",
+                      question.setting, scale.TextAt(end), scale.TextAt(0.5)));
+  }
+  return plan;
 }
 
 // Whether the setting has no values but whole numbers: then the middle between two of them is refused.
@@ -83,9 +100,9 @@ void CheckTrial(const TrialResult& result, const CrossingQuestion& question) {
 // Asks one estimator in one condition.
 class Asker {
  public:
-  Asker(const Study& study, const CrossingQuestion& question, const Scale& scale, size_t condition,
-        size_t estimator, int num_threads, KeptSteps* steps, std::optional<Progress>* progress,
-        std::int64_t total, std::int64_t* num_done)
+  Asker(const Study& study, const CrossingQuestion& question, const Scale& scale,
+        const std::vector<std::string>& condition, size_t estimator, int num_threads, KeptSteps* steps,
+        std::optional<Progress>* progress, std::int64_t total, std::int64_t* num_done)
       : study_(study),
         question_(question),
         scale_(scale),
@@ -101,7 +118,7 @@ class Asker {
   // Of the trials those that could be simulated.
   EventsAtLevel Ask(double place, std::int64_t num_trials) {
     const std::string level = scale_.TextAt(place);
-    std::int64_t& next = next_trials_[level];
+    std::int64_t& next = levels_[level].next_trial;
     const StepForm<Events> form = {
         [](const Events& events) { return fmt::format("[{},{}]", events.num_events, events.num_trials); },
         [&](const std::string& json) {
@@ -125,8 +142,10 @@ class Asker {
   // Of the trials first, ..., first + num_trials - 1.
   Events Count(const std::string& level, std::int64_t first, std::int64_t num_trials) {
     if (!*progress_) progress_->emplace("trials", total_, *num_done_);
-    const StudyPlan plan = PlanAt(study_, question_, level);
-    const Condition& condition = plan.conditions.at(condition_);
+    std::optional<StudyPlan>& made = levels_[level].plan;
+    if (!made) made = MakeConditionPlan(MakeStudyAt(study_, question_, level), condition_);
+    const StudyPlan& plan = *made;
+    const Condition& condition = plan.conditions.front();
     std::atomic<std::int64_t> num_events = 0, num_simulated = 0;
     ForEachIndex(num_trials, num_threads_, [&](std::int64_t index) {
       const TrialResult result = RunTrialOfDraw(plan, condition, static_cast<std::uint32_t>(first + index));
@@ -142,13 +161,17 @@ class Asker {
   Study study_;
   const CrossingQuestion& question_;
   const Scale& scale_;
-  size_t condition_;
+  std::vector<std::string> condition_;  // its levels
   int num_threads_;
   KeptSteps* steps_;
   std::optional<Progress>* progress_;  // begins with the first trial that is not kept
   std::int64_t total_;
   std::int64_t* num_done_;
-  std::map<std::string, std::int64_t> next_trials_;  // by level
+  struct Level {
+    std::optional<StudyPlan> plan;  // of the condition alone, made for its first trial
+    std::int64_t next_trial = 0;
+  };
+  std::map<std::string, Level> levels_;
 };
 
 void RequireIndependentTrials(const StudyPlan& plan) {
@@ -161,17 +184,6 @@ void RequireIndependentTrials(const StudyPlan& plan) {
           "solve: scene: match_files: the pairs of a folder repeat, but its intervals require independent "
           "trials; give a simulated scene");
   }
-}
-
-// The place of the setting among the factors; their number if it is none.
-size_t FindFactor(const StudyPlan& plan, const std::string& setting) {
-  return static_cast<size_t>(std::ranges::find(plan.factor_names, setting) - plan.factor_names.begin());
-}
-
-template <typename T>
-std::vector<T> Without(std::vector<T> values, size_t place) {
-  if (place < values.size()) values.erase(values.begin() + static_cast<std::ptrdiff_t>(place));
-  return values;
 }
 
 }  // namespace
@@ -196,23 +208,21 @@ WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question) {
 CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& question, int num_threads,
                              KeptSteps* steps) {
   const Scale scale(question, IsWhole(study, question));
-  const StudyPlan plan = PlanAt(study, question, scale.TextAt(0.5));
+  const StudyPlan plan = PlanConditions(study, question, scale);
   RequireIndependentTrials(plan);
-  PlanAt(study, question, scale.TextAt(0.0));
-  PlanAt(study, question, scale.TextAt(1.0));
-  const size_t factor = FindFactor(plan, question.setting);
-  CrossingAnswer answer{Without(plan.factor_names, factor), {}};
+  CrossingAnswer answer{plan.factor_names, {}};
   std::optional<Progress> progress;
   std::int64_t num_done = 0;
   const auto total =
       static_cast<std::int64_t>(plan.conditions.size() * study.estimators.size()) * question.num_trials;
-  for (size_t c = 0; c < plan.conditions.size(); ++c) {
+  for (const Condition& condition : plan.conditions) {
     for (size_t e = 0; e < study.estimators.size(); ++e) {
-      Asker asker(study, question, scale, c, e, num_threads, steps, &progress, total, &num_done);
+      Asker asker(study, question, scale, condition.levels, e, num_threads, steps, &progress, total,
+                  &num_done);
       Crossing found =
           FindCrossing([&](double place, std::int64_t number) { return asker.Ask(place, number); },
                        question.rate, question.num_trials);
-      answer.crossings.push_back({Without(plan.conditions[c].levels, factor), study.estimators[e].label,
+      answer.crossings.push_back({condition.levels, study.estimators[e].label,
                                   scale.SettingAt(found.estimate), scale.SettingsIn(found.interval),
                                   scale.SettingsIn(found.logistic_interval),
                                   scale.SettingsOfEvents(std::move(found.searched)),

@@ -1,0 +1,75 @@
+#include "experiments/search/rate_crossing.h"
+
+#include <gtest/gtest.h>
+
+#include "experiments/study/study_file.h"
+#include "tests/test_support/expect_input_error.h"
+
+namespace rcme {
+namespace {
+
+Study ParseSolved(const std::string& conditions) {
+  return ParseStudy("name: solved\ntrials: 10\n" + conditions +
+                        "estimators: [{name: standard, options: {num_iterations: 10}}, {name: msac}]\n",
+                    "solved.yaml");
+}
+
+// A condition that is planned alone is that of the whole plan: the same scenes and the same estimators.
+TEST(MakeConditionPlan, IsTheConditionOfTheWholePlan) {
+  for (const char* conditions :
+       {"data: {scene: plane, motion: sideways, parallax_deg: 2, num_matches: 20}\n"
+        "factors: {outlier_ratio: [0, 0.3], standard.num_iterations: [5, 10]}\n",
+        "conditions: {number: 4, ranges: {scene: [plane, uniform_volume], num_matches: [20, 30]}}\n"}) {
+    const Study study = ParseSolved(conditions);
+    const StudyPlan whole = MakePlan(study);
+    ASSERT_EQ(whole.conditions.size(), 4U);
+    for (const Condition& condition : whole.conditions) {
+      const StudyPlan alone = MakeConditionPlan(study, condition.levels);
+      ASSERT_EQ(alone.conditions.size(), 1U);
+      EXPECT_EQ(alone.factor_names, whole.factor_names);
+      EXPECT_EQ(alone.conditions[0].levels, condition.levels);
+      EXPECT_EQ(alone.conditions[0].stream_key, condition.stream_key);
+      EXPECT_EQ(alone.conditions[0].num_trials, 10);
+      EXPECT_EQ(alone.estimators.size(), 2U);
+      EXPECT_EQ(alone.conditions[0].estimators.size(), condition.estimators.size());
+    }
+  }
+}
+
+// The rates of a level do not depend on the conditions beside it.
+TEST(FindCrossings, AreTheSameWithFewerConditions) {
+  CrossingQuestion question;
+  question.setting = "outlier_ratio";
+  question.to = 0.9;
+  question.rate = 0.5;
+  question.num_trials = 100;
+  const std::string data = "data: {scene: plane, motion: sideways, num_matches: 20}\n";
+  const CrossingAnswer both =
+      FindCrossings(ParseSolved(data + "factors: {parallax_deg: [2, 4]}\n"), question, 2, nullptr);
+  const CrossingAnswer second =
+      FindCrossings(ParseSolved(data + "factors: {parallax_deg: [4]}\n"), question, 1, nullptr);
+  ASSERT_EQ(both.crossings.size(), 4U);
+  ASSERT_EQ(second.crossings.size(), 2U);
+  for (size_t e = 0; e < 2; ++e) {
+    EXPECT_EQ(both.crossings[2 + e].levels, std::vector<std::string>{"4"});
+    EXPECT_EQ(both.crossings[2 + e].estimate, second.crossings[e].estimate);
+    EXPECT_EQ(both.crossings[2 + e].interval.lower, second.crossings[e].interval.lower);
+  }
+}
+
+// Which draws are conditions must not depend on the level.
+TEST(FindCrossings, RefusesDrawsThatSomeLevelsLack) {
+  CrossingQuestion question;
+  question.setting = "max_depth_m";
+  question.from = 2.0;
+  question.to = 10.0;
+  question.num_trials = 100;
+  const Study study = ParseSolved(
+      "conditions: {number: 8, ranges: {scene: uniform_volume, min_depth_m: [1, 3], max_depth_m: [4, 6]}, "
+      "given: [min_depth_m < max_depth_m]}\n");
+  EXPECT_TRUE(ThrowsInputError([&] { FindCrossings(study, question, 1, nullptr); },
+                               {"given", "max_depth_m = 2", "give other --from and --to"}));
+}
+
+}  // namespace
+}  // namespace rcme
