@@ -13,7 +13,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,9 +58,5 @@ std::optional<Preregistration> DescribePreregistered(const RunDescription& run, 
 
 // A verdict from where the interval lies.
 HypothesisVerdict Decide(const StatedHypothesis& hypothesis, const Interval& interval);
-
-// For people, and for programs.
-std::string PreregistrationAsText(const Preregistration& preregistration);
-nlohmann::ordered_json PreregistrationAsJson(const Preregistration& preregistration);
 
 }  // namespace rcme

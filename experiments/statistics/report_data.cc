@@ -11,7 +11,7 @@
 #include "experiments/statistics/forecast_output.h"
 #include "experiments/statistics/marginals_output.h"
 #include "experiments/statistics/population_summary.h"
-#include "experiments/statistics/preregistration.h"
+#include "experiments/statistics/preregistration_output.h"
 #include "experiments/statistics/report_findings.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/trial/trial_event.h"

@@ -9,6 +9,7 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/statistics/preregistration_output.h"
 #include "experiments/statistics/quantity_table.h"
 
 namespace rcme {

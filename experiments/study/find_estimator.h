@@ -6,8 +6,8 @@
 
 namespace rcme {
 
-// The place of a label among those of the estimators. Throws InputError that begins with `owner` ("--estimator:
-// the study") and lists them.
+// The place of a label among those of the estimators. Throws InputError that begins with `owner`
+// ("--estimator: the study") and lists them.
 size_t FindLabel(const std::vector<std::string>& labels, const std::string& label, const std::string& owner);
 
 // The same of anything that has a label: EstimatorSpec, DescribedEstimator.

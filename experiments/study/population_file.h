@@ -41,14 +41,6 @@ Population LoadPopulation(const std::string& name, PopulationText* text = nullpt
 // The block of a study, whose place is `place`.
 Population ReadPopulation(const Place& place, const YAML::Node& node);
 
-// Throws InputError with the line of `node` unless every key that is drawn exists, and every end of its range
-// is allowed, with each scene and law it may be drawn with; also where `data` has a key that one of these
-// lacks. Makes single words and numbers what their parameters write.
-void SettlePopulation(const Place& place, const YAML::Node& node, Study* study);
-
-// Settings of a draw that there could be: the first word of each choice, beside `data`.
-Settings FirstSettingsOf(const Study& study);
-
 // The block with everything written out: ReadPopulation gives the same population back.
 void WritePopulation(const Population& population, YAML::Emitter* out);
 

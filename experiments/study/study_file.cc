@@ -14,6 +14,7 @@
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/population_file.h"
+#include "experiments/study/settle_study.h"
 #include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
 #include "parameters/plain_text.h"
@@ -99,103 +100,6 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
   }
 }
 
-// A study's settings with the first level of every factor: enough to know which keys there are.
-Settings FirstSettings(const Study& study) {
-  Settings settings = FirstSettingsOf(study);
-  for (const Factor& factor : study.factors) {
-    if (!IsEstimatorOption(factor.key)) settings.emplace_back(factor.key, factor.levels.front());
-  }
-  return settings;
-}
-
-// The value of a setting as its parameter writes it, so that equal values are equal texts.
-std::string Canonical(Settings settings, const std::string& key, const std::string& value) {
-  settings.emplace_back(key, value);
-  const Settings resolved = ResolveSettings(settings);
-  return std::ranges::find(resolved, key, &Settings::value_type::first)->second;
-}
-
-// The levels of an option of an estimator, as the option writes them.
-void SettleOption(const Place& place, const YAML::Node& line, const Study& study, Factor* factor) {
-  const size_t dot = factor->key.rfind('.');
-  const std::string label = factor->key.substr(0, dot), option = factor->key.substr(dot + 1);
-  std::vector<std::string> labels;
-  for (const EstimatorSpec& spec : study.estimators) {
-    labels.push_back(spec.label);
-    if (spec.label != label) continue;
-    if (IsCommand(spec, option))
-      place.Fail(line, fmt::format("factors: {}: a command cannot vary; leave it out", factor->key));
-    for (std::string& level : factor->levels) {
-      EstimatorSpec varied = spec;
-      place.At(line, [&] {
-        SetOptions(&varied, {{option, level}});
-        Configure(varied)->Make();
-      });
-      level = std::ranges::find(varied.options, option, &Settings::value_type::first)->second;
-    }
-    return;
-  }
-  place.Fail(line,
-             fmt::format("factors: {}: the study has no estimator {}{}; its estimators: {}", factor->key,
-                         Quoted(label), DidYouMean(label, labels), fmt::join(labels, ", ")));
-}
-
-void RequireDifferentLevels(const Place& place, const YAML::Node& line, const Factor& factor,
-                            const std::vector<std::string>& given) {
-  std::set<std::string> seen;
-  for (size_t i = 0; i < given.size(); ++i) {
-    if (!seen.insert(factor.levels[i]).second)
-      place.Fail(line, fmt::format("factors: {}: level '{}' stands twice", factor.key, given[i]));
-  }
-}
-
-// Data settings are checked one by one, each with the study's choices, so that an error names its line; then
-// each level of each factor. All become canonical.
-void SettleData(const Place& place, const YAML::Node& root, Study* of) {
-  Study& study = *of;
-  place.At(root["factors"] ? root["factors"] : root,
-           [&] { FactorRows(study); });  // before the work per level
-  const auto line_of = [&](const char* block, const std::string& key) -> YAML::Node {
-    const YAML::Node map = root[block];
-    return map && map.IsMap() && map[key] ? map[key] : root;
-  };
-  const Settings first = FirstSettings(study);
-  const auto scene = std::ranges::find(first, "scene", &Settings::value_type::first);
-  if (scene == first.end())
-    place.Fail(root["data"] ? root["data"] : root, "data: key 'scene' is missing (see `rcme list scenes`)");
-  Settings choices;
-  for (const auto& choice : first) {
-    if (!IsChoice(choice.first)) continue;
-    choices.push_back(choice);
-    const bool is_in_data = root["data"] && root["data"][choice.first];
-    place.At(line_of(is_in_data ? "data" : "factors", choice.first), [&] {
-      ResolveSettings({*scene, choice});
-    });
-  }
-  for (auto& [key, value] : study.data) {
-    place.At(line_of("data", key),
-             [&, &key = key, &value = value] { value = Canonical(choices, key, value); });
-  }
-  for (Factor& factor : study.factors) {
-    const YAML::Node line = line_of("factors", factor.key);
-    const std::vector<std::string> given = factor.levels;
-    if (IsEstimatorOption(factor.key)) {
-      SettleOption(place, line, study, &factor);
-      RequireDifferentLevels(place, line, factor, given);
-      continue;
-    }
-    for (std::string& level : factor.levels) {
-      if (factor.key == "scene" && level == kMatchFilesScene)
-        place.Fail(line,
-                   "factors: scene: match_files is not a simulated scene; write a separate study for it");
-      const std::string text = level;
-      place.At(line, [&] { level = Canonical(IsChoice(factor.key) ? first : choices, factor.key, text); });
-    }
-    RequireDifferentLevels(place, line, factor, given);
-  }
-  if (study.population) SettlePopulation(place, root["conditions"], &study);
-}
-
 // What the hypotheses of a study may name, after its factors' levels are canonical.
 StatableNames NamesOf(const Study& study) {
   StatableNames names;
@@ -230,7 +134,7 @@ Settings WrittenData(const Study& study) {
 
 std::vector<std::string> DataKeys(const Study& study) {
   std::vector<std::string> keys;
-  for (const auto& [key, value] : ResolveSettings(FirstSettings(study))) keys.push_back(key);
+  for (const auto& [key, value] : ResolveSettings(ChooseFirstSettings(study))) keys.push_back(key);
   return keys;
 }
 
@@ -262,7 +166,7 @@ void OverridePopulation(const std::string& key, const std::string& value, Popula
 }
 
 void OverrideData(const std::string& key, const std::string& value, Study* study) {
-  const std::string canonical = Canonical(FirstSettings(*study), key, value);
+  const std::string canonical = MakeCanonical(ChooseFirstSettings(*study), key, value);
   std::erase_if(study->data, [&](const auto& setting) { return setting.first == key; });
   study->data.emplace_back(key, canonical);
   std::erase_if(study->factors, [&](const Factor& factor) { return factor.key == key; });

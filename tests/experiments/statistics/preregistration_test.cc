@@ -1,4 +1,4 @@
-#include "experiments/statistics/preregistration.h"
+#include "experiments/statistics/preregistration_output.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

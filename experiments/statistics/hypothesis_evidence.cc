@@ -1,0 +1,139 @@
+#include "experiments/statistics/hypothesis_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "experiments/statistics/trial_groups.h"
+
+namespace rcme {
+namespace {
+
+const TrialQuantity& FindQuantity(const std::string& name) {
+  const auto found = std::ranges::find(TrialQuantities(), name, &TrialQuantity::name);
+  if (found == TrialQuantities().end()) throw std::logic_error("no quantity of trials: " + name);
+  return *found;
+}
+
+std::optional<size_t> FindIfPresent(const RunDescription& run, const std::string& label) {
+  const auto found = std::ranges::find(run.estimators, label, &DescribedEstimator::label);
+  if (found == run.estimators.end()) return std::nullopt;
+  return static_cast<size_t>(found - run.estimators.begin());
+}
+
+std::vector<bool> ConditionsWhere(const RunDescription& run, const Settings& where) {
+  std::vector<bool> has(run.conditions.size(), true);
+  for (const auto& [factor, level] : where) {
+    const auto found = std::ranges::find(run.factors, factor);
+    const auto f = static_cast<size_t>(found - run.factors.begin());
+    for (size_t c = 0; c < has.size(); ++c)
+      has[c] = has[c] && found != run.factors.end() && run.conditions[c].levels[f] == level;
+  }
+  return has;
+}
+
+}  // namespace
+
+HypothesisEvidence::HypothesisEvidence(const RunDescription& run, const StatedHypothesis& stated)
+    : quantity_(FindQuantity(stated.quantity)),
+      estimator_(FindIfPresent(run, stated.estimator)),
+      against_(FindIfPresent(run, stated.against)),
+      is_paired_(!stated.against.empty()),
+      is_of_means_(run.repeats_per_scene > 1 || quantity_.kind == SummaryRow::Kind::kScore),
+      bounds_(run.failure),
+      has_(ConditionsWhere(run, stated.where)),
+      cluster_of_(NumberDraws(run)),
+      clusters_(run.conditions.size()),
+      scores_(is_paired_ ? Interval{-1.0, 1.0} : Interval{0.0, 1.0}) {}
+
+std::int64_t HypothesisEvidence::CountConditions() const { return std::ranges::count(has_, true); }
+
+void HypothesisEvidence::Add(std::uint32_t condition, const std::vector<TrialRecord>& records) {
+  if (!has_[condition]) return;
+  const std::optional<double> first = quantity_.contribution(records[*estimator_], bounds_);
+  const std::optional<double> second =
+      is_paired_ ? quantity_.contribution(records[*against_], bounds_) : std::optional(0.0);
+  if (!first || !second) return;
+  if (is_of_means_) return scene_.Add(*first - *second);
+  const bool is_first = *first != 0.0, is_second = *second != 0.0;
+  Cluster& cluster = clusters_[cluster_of_[condition]];
+  cluster.count.num_events += is_first;
+  ++cluster.count.num_trials;
+  cluster.pair.num_first_only += is_first && !is_second;
+  cluster.pair.num_second_only += is_second && !is_first;
+  ++cluster.pair.num_trials;
+  pairs_.Add(is_first, is_second);
+}
+
+void HypothesisEvidence::EndScene(std::uint32_t condition) {
+  const std::optional<double> mean = scene_.Take();
+  if (!mean || !has_[condition]) return;
+  clusters_[cluster_of_[condition]].moments.Add(*mean);
+  scores_.Add(*mean);
+}
+
+template <typename Field>
+std::vector<Field> HypothesisEvidence::Clusters(Field Cluster::*field) const {
+  std::vector<Field> all;
+  for (const Cluster& cluster : clusters_) all.push_back(cluster.*field);
+  return all;
+}
+
+MeasuredHypothesis HypothesisEvidence::Measure(bool is_of_population, double confidence) const {
+  MeasuredHypothesis measured =
+      is_of_population ? MeasureForPopulation(confidence) : MeasureForConditions(confidence);
+  measured.n = is_of_means_ ? scores_.n() : pairs_.n();
+  if (measured.n == 0) measured.value = std::nan("");
+  return measured;
+}
+
+MeasuredHypothesis HypothesisEvidence::MeasureForConditions(double confidence) const {
+  if (is_of_means_) return {scores_.mean(), scores_.Sequence(confidence)};
+  if (is_paired_) return {pairs_.RiskDifference(), RiskDifferenceInterval(pairs_, confidence)};
+  const std::int64_t num_events = pairs_.both + pairs_.first_only;
+  return {static_cast<double>(num_events) / static_cast<double>(pairs_.n()),
+          ExactBinomialInterval(num_events, pairs_.n(), confidence)};
+}
+
+MeasuredHypothesis HypothesisEvidence::MeasureForPopulation(double confidence) const {
+  const auto pair_up = [](const auto& measured) {
+    return MeasuredHypothesis{measured.value, measured.interval};
+  };
+  constexpr ConditionWeights kWeights = ConditionWeights::kByTrials;  // as in a pooled summary
+  if (is_of_means_) return pair_up(MeasurePopulationMean(Clusters(&Cluster::moments), kWeights, confidence));
+  if (is_paired_) return pair_up(MeasurePopulationDifference(Clusters(&Cluster::pair), kWeights, confidence));
+  return pair_up(MeasurePopulationRate(Clusters(&Cluster::count), kWeights, confidence));
+}
+
+std::vector<std::int64_t> CountTrialsBefore(const RunDescription& run, int trials) {
+  std::vector<std::int64_t> num_trials;
+  for (const DescribedCondition& condition : run.conditions) {
+    // Of a folder of pairs, a pass has several trials.
+    const std::int64_t per_pass =
+        run.stopping_rule.empty() && run.trials > 0 ? condition.num_trials / run.trials : 1;
+    num_trials.push_back(std::max<std::int64_t>(per_pass, 1) * trials);
+  }
+  return num_trials;
+}
+
+EvidenceTrials ReadEvidence(const ResultStore& store, const RunDescription& run,
+                            const std::vector<std::int64_t>& before,
+                            std::vector<HypothesisEvidence>* evidence) {
+  EvidenceTrials read{std::vector<std::int64_t>(run.conditions.size())};
+  ForEachTrialByScene(
+      store, run.repeats_per_scene,
+      [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool) {
+        if (problem.trial >= before[problem.condition]) return;
+        ++read.num_trials[problem.condition];
+        read.is_weighted = read.is_weighted || problem.weight != 1.0;
+        for (HypothesisEvidence& one : *evidence) {
+          if (one.HasEstimators()) one.Add(problem.condition, records);
+        }
+      },
+      [&](std::uint32_t condition) {
+        for (HypothesisEvidence& one : *evidence) one.EndScene(condition);
+      });
+  return read;
+}
+
+}  // namespace rcme

@@ -1,0 +1,91 @@
+#include "experiments/study/settle_population.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/data/calibration_file.h"
+#include "experiments/data/make_data.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+// What can be drawn: `data` with the first word of each choice, and that with each other word of one choice.
+std::vector<Settings> PossibleSettings(const Study& study) {
+  const Settings first = ChooseFirstDraw(study);
+  std::vector<Settings> all = {first};
+  for (const DrawnKey& drawn : study.population->keys) {
+    if (!IsChoice(drawn.key)) continue;
+    for (const std::string& word : drawn.range.words) {
+      Settings settings = first;
+      settings.insert(settings.end(), drawn.with.begin(), drawn.with.end());
+      settings.emplace_back(drawn.key, word);
+      all.push_back(std::move(settings));
+    }
+  }
+  return all;
+}
+
+bool Has(const Settings& resolved, const Settings& with) {
+  return std::ranges::all_of(with,
+                             [&](const auto& choice) { return std::ranges::count(resolved, choice) > 0; });
+}
+
+// With each setting of `possible` that has the key: the ends of its range are allowed. Words become
+// canonical.
+void SettleKey(const std::vector<std::pair<Settings, Settings>>& possible, DrawnKey* drawn) {
+  bool is_anywhere = false;
+  for (const auto& [settings, resolved] : possible) {
+    const bool has_key = std::ranges::count(resolved, drawn->key, &Settings::value_type::first) > 0;
+    if (!has_key || !Has(resolved, drawn->with)) continue;
+    is_anywhere = true;
+    const auto canonical = [&, &settings = settings](const std::string& value) {
+      Settings with_it = settings;
+      with_it.emplace_back(drawn->key, value);
+      const Settings written = ResolveSettings(with_it);
+      return std::ranges::find(written, drawn->key, &Settings::value_type::first)->second;
+    };
+    for (std::string& word : drawn->range.words) word = canonical(word);
+    if (drawn->range.kind == DrawnRange::Kind::kAnyOf) continue;
+    for (const double end : {drawn->range.from, drawn->range.to}) canonical(fmt::format("{}", end));
+  }
+  if (is_anywhere) return;
+  std::string where;
+  for (const auto& [choice, name] : drawn->with) where += fmt::format(" with {}: {}", choice, name);
+  throw InputError(
+      fmt::format("ranges: {}: no draw has this key{}{}", drawn->key, where, ChoicesWith(drawn->key)));
+}
+
+}  // namespace
+
+Settings ChooseFirstDraw(const Study& study) {
+  Settings settings = study.data;
+  if (!study.population) return settings;
+  for (const DrawnKey& drawn : study.population->keys) {
+    if (IsChoice(drawn.key) && Has(settings, drawn.with))
+      settings.emplace_back(drawn.key, drawn.range.words.front());
+  }
+  return settings;
+}
+
+void SettlePopulation(const Place& place, const YAML::Node& node, Study* study) {
+  place.At(node, [&] {
+    for (const DrawnKey& drawn : study->population->keys) {
+      const std::vector<std::string> words =
+          IsChoice(drawn.key) ? drawn.range.words : std::vector<std::string>();
+      for (const std::string& word : words) {
+        if (word == kMatchFilesScene || word == kCamerasFromFile)
+          throw InputError(fmt::format("ranges: {}: {} cannot be drawn", drawn.key, word));
+      }
+      if (IsChoice(drawn.key) && words.empty())
+        throw InputError(fmt::format("ranges: {}: names are needed, not numbers", drawn.key));
+    }
+    std::vector<std::pair<Settings, Settings>> possible;
+    for (const Settings& settings : PossibleSettings(*study))
+      possible.emplace_back(settings, ResolveSettings(settings));
+    for (DrawnKey& drawn : study->population->keys) SettleKey(possible, &drawn);
+  });
+}
+
+}  // namespace rcme
