@@ -4,9 +4,9 @@
 #include <functional>
 #include <vector>
 
-#include "experiments/statistics/population_median.h"
 #include "stats/constants.h"
 #include "stats/population_mean.h"
+#include "stats/population_median.h"
 #include "stats/population_rate.h"
 
 namespace rcme {

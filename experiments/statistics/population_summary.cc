@@ -4,11 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "experiments/statistics/population_median.h"
 #include "experiments/statistics/summary_quantities.h"
 #include "experiments/study/population.h"
 #include "stats/constants.h"
 #include "stats/population_mean.h"
+#include "stats/population_median.h"
 #include "stats/population_rate.h"
 
 namespace rcme {

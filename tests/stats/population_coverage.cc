@@ -15,7 +15,9 @@
 
 #include "stats/calibration_error.h"
 #include "stats/constants.h"
+#include "stats/distributions.h"
 #include "stats/population_mean.h"
+#include "stats/population_median.h"
 #include "stats/population_rate.h"
 #include "tests/test_support/condition_laws.h"
 
@@ -236,12 +238,17 @@ struct MeanLaw {
   const char* name;
   double truth;
   double (*draw)(RandomStream& rng);  // the mean of a condition
+  double (*quantile)(double p);       // of that
 };
 const MeanLaw kMeanLaws[] = {
-    {"normal", 0.0, [](RandomStream& rng) { return rng.Normal(); }},
-    {"uniform", 0.0, [](RandomStream& rng) { return rng.Uniform(-1.7, 1.7); }},
-    {"exponential", 1.0, [](RandomStream& rng) { return -std::log(1.0 - rng.Uniform()); }},
-    {"lognormal", 1.6487212707, [](RandomStream& rng) { return std::exp(rng.Normal()); }}};
+    {"normal", 0.0, [](RandomStream& rng) { return rng.Normal(); },
+     [](double p) { return NormalQuantile(p); }},
+    {"uniform", 0.0, [](RandomStream& rng) { return rng.Uniform(-1.7, 1.7); },
+     [](double p) { return 1.7 * (2.0 * p - 1.0); }},
+    {"exponential", 1.0, [](RandomStream& rng) { return -std::log(1.0 - rng.Uniform()); },
+     [](double p) { return -std::log(1.0 - p); }},
+    {"lognormal", 1.6487212707, [](RandomStream& rng) { return std::exp(rng.Normal()); },
+     [](double p) { return std::exp(NormalQuantile(p)); }}};
 
 void MeasureMeans(int repetitions, Tables* tables) {
   std::uint32_t number = 0;
@@ -260,6 +267,48 @@ void MeasureMeans(int repetitions, Tables* tables) {
         coverage.Add(MeasurePopulationMean(conditions).interval, law.truth, StudentInterval(all));
       }
       tables->Add({"mean", "asked", "common", law.name, "20", m, 0.5, law.truth}, coverage);
+    }
+  }
+}
+
+// ---- medians
+
+// The law of the numbers of a population whose conditions have the means of a MeanLaw, each with standard
+// normal noise.
+double ComputeMedian(const MeanLaw& law) {
+  constexpr int kNumStrata = 20'000;
+  const auto share_up_to = [&](double x) {
+    double sum = 0.0;
+    for (int i = 0; i < kNumStrata; ++i) sum += NormalCdf(x - law.quantile((i + 0.5) / kNumStrata));
+    return sum / kNumStrata;
+  };
+  double low = -10.0, high = 10.0;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (share_up_to(middle) < 0.5 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+void MeasureMedians(const std::string& grid, const std::vector<int>& all_conditions, int repetitions,
+                    std::uint32_t number, Tables* tables) {
+  for (const MeanLaw& law : kMeanLaws) {
+    const double truth = ComputeMedian(law);
+    for (const int m : all_conditions) {
+      RandomStream rng = StreamOf(number++, 166);
+      Coverage coverage;
+      for (int repetition = 0; repetition < repetitions; ++repetition) {
+        std::vector<StreamMedian> conditions(static_cast<size_t>(m));
+        std::vector<const StreamMedian*> pointers;
+        for (StreamMedian& numbers : conditions) {
+          const double own = law.draw(rng);
+          for (int i = 0; i < 20; ++i) numbers.Add(own + rng.Normal());
+          pointers.push_back(&numbers);
+        }
+        const PopulationMedian median = MeasurePopulationMedian(pointers);
+        coverage.Add(median.interval, truth, median.of_these_conditions);
+      }
+      tables->Add({"median", grid, "common", law.name, "20", m, 0.5, truth}, coverage);
     }
   }
 }
@@ -327,6 +376,8 @@ bool Measure(const std::string& folder, int repetitions) {
   MeasureRates("other", {12, 100}, {0.0, 0.1, 0.5}, {each_20, unequal}, repetitions, 1000, &tables);
   MeasureDifferences(repetitions, &tables);
   MeasureMeans(repetitions, &tables);
+  MeasureMedians("asked", {6, 30, 200}, repetitions, 0, &tables);
+  MeasureMedians("other", {12, 100}, repetitions, 1000, &tables);
   MeasureCalibrationErrors(std::max(1, repetitions / 4), &tables);
   return Write(folder + "/population_coverage.csv", tables.Cells()) &&
          Write(folder + "/population_summary.csv", tables.Summary());

@@ -11,7 +11,6 @@
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/count_study.h"
 #include "experiments/statistics/forecast_measures.h"
-#include "experiments/statistics/population_median.h"
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/study/study_file.h"
@@ -167,29 +166,6 @@ TEST(PopulationSummaryOfCounts, IsThatOfTheTrials) {
   EXPECT_EQ(row("not_simulated").n, 40);
   EXPECT_GT(row("not_simulated").value, 0.0);
   EXPECT_EQ(row("failure").n, std::llround(40 * (1.0 - row("not_simulated").value)));
-}
-
-// Numbers of 30 draws whose logarithms differ by as much between draws as within: the interval of the
-// population covers the median 1 in 400 samples as often as it says, that of independent numbers does not.
-TEST(PopulationMedianTest, CoversWhereDrawsDiffer) {
-  constexpr int kNumSamples = 400;
-  int num_covered = 0, num_covered_as_independent = 0;
-  for (std::uint32_t sample = 0; sample < kNumSamples; ++sample) {
-    RandomStream rng({7, sample, 0, 0});
-    std::vector<StreamMedian> draws(30);
-    for (StreamMedian& draw : draws) {
-      const double center = rng.Normal();
-      for (int i = 0; i < 40; ++i) draw.Add(std::exp(center + rng.Normal()));
-    }
-    std::vector<const StreamMedian*> pointers;
-    for (const StreamMedian& draw : draws) pointers.push_back(&draw);
-    const PopulationMedian median = MeasurePopulationMedian(pointers);
-    num_covered += median.interval.Contains(1.0);
-    num_covered_as_independent += median.of_these_conditions.Contains(1.0);
-  }
-  // More than 367 with probability .996 at a coverage of .95, .10 at .90, .006 at .88.
-  EXPECT_GE(num_covered, 368);
-  EXPECT_LT(num_covered_as_independent, 250);
 }
 
 }  // namespace

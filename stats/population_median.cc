@@ -1,4 +1,4 @@
-#include "experiments/statistics/population_median.h"
+#include "stats/population_median.h"
 
 #include <vector>
 
