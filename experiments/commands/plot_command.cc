@@ -27,6 +27,7 @@ const std::vector<Kind>& Kinds() {
        "stated probabilities of failure and what happened, from `rcme reliability`"},
       {"tune", "TUNE.json", "the figures of `rcme tune --figures`"},
       {"transfer", "TRANSFER.json", "the figures of `rcme transfer`"},
+      {"crossings", "CROSSINGS.json", "where a rate crosses a value, over a factor, from `rcme solve --out`"},
       {"audit", "FOLDER", "the figures of `rcme audit`"},
       {"validity_map", "FOLDER", "where first-order covariances hold, from `rcme map`"},
       {"validation", "VALIDATION.json", "the figure of `rcme validate`"},

@@ -107,7 +107,8 @@ OUT/unfinished.part until the end.
 Examples:
   rcme solve failure_vs_outliers --over outlier_ratio --at 0.1
   rcme solve failure_vs_outliers --over sigma_px --from 0.1 --to 10 --scale log --at 0.05
-  rcme solve STUDY --over num_matches --from 10 --to 200 --falling --at 0.01 --out few)");
+  rcme solve STUDY --over num_matches --from 10 --to 200 --falling --at 0.01 --out few
+  rcme plot crossings few/crossings.json --x scene --out few/crossings)");
   auto arguments = std::make_shared<SolveArguments>();
   command
       ->add_option("study", arguments->study,

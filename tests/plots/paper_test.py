@@ -21,6 +21,7 @@ from unittest import mock
 
 from plot_test_case import PLOTS, PlotTestCase
 
+import crossings_test
 import fake_audit
 import fake_reliability
 import fake_tune
@@ -82,6 +83,7 @@ def cases(folder):
         ("benchmarks", [written("benchmarks.json", benchmarks())], False),
         ("tune", [written("tune.json", fake_tune.tune([fake_tune.option("mu", ("0", "1", "2"), "nats"), fake_tune.option("lambda", ("0.5", "2"))]))], False),
         ("transfer", [written("transfer.json", fake_tune.transfer(3))], False),
+        ("crossings", [written("crossings.json", crossings_test.crossings()), "--x", "outlier_ratio"], False),
         ("validity_map", [str(RESULTS / "validity_map")], True),
         ("audit", [str(pathlib.Path(written("audited/audit.json", few_claims())).parent)], True)]
 
