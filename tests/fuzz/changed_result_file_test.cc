@@ -19,8 +19,8 @@ class ChangedResultFile : public DamagedResultFile {
 
 TEST_F(ChangedResultFile, TheSoundOneIsRead) {
   Write(*bytes_);
-  EXPECT_EQ(Read("sound"), Outcome::kSame);
-  EXPECT_EQ(Resume("sound"), Outcome::kSame);
+  EXPECT_EQ(Read("sound"), FileOutcome::kSame);
+  EXPECT_EQ(Resume("sound"), FileOutcome::kSame);
   EXPECT_EQ(SaveAndComplete("sound"), 2 * kTrials);
 }
 
@@ -70,9 +70,9 @@ TEST_F(ChangedResultFile, EveryColumnOfEveryTable) {
         ++num_impossible;  // NOT NULL, or a key that is there already
         continue;
       }
-      const Outcome outcome = Read(sql);  // the same: it was that value already
+      const FileOutcome outcome = Read(sql);  // the same: it was that value already
       EXPECT_EQ(Resume(sql), outcome) << sql;
-      (outcome == Outcome::kRefused ? num_refused : num_same) += 1;
+      (outcome == FileOutcome::kRefused ? num_refused : num_same) += 1;
     }
   }
   fmt::print("{} changes of a column: {} refused, {} changed nothing, {} not taken by SQLite\n",

@@ -21,10 +21,10 @@ TEST_F(CorruptedResultFile, CutOffAnywhere) {
   for (size_t size = 300; size < bytes_->size(); size += 509) {
     const std::string what = fmt::format("{} of {} bytes", size, bytes_->size());
     Write(bytes_->substr(0, size));
-    const Outcome outcome = Read(what);
+    const FileOutcome outcome = Read(what);
     EXPECT_EQ(Resume(what), outcome) << what;
-    EXPECT_TRUE(outcome == Outcome::kRefused || size + kPage > bytes_->size()) << what;
-    (outcome == Outcome::kRefused ? num_refused : num_same) += 1;
+    EXPECT_TRUE(outcome == FileOutcome::kRefused || size + kPage > bytes_->size()) << what;
+    (outcome == FileOutcome::kRefused ? num_refused : num_same) += 1;
   }
   fmt::print("{} lengths: {} refused, {} cut unused space\n", num_refused + num_same, num_refused, num_same);
 }
@@ -56,7 +56,7 @@ TEST_F(CorruptedResultFile, JournalsLeftOver) {
        {std::string(), std::string("x"), std::string(5000, '\0'), std::string(5000, '\xd9')}) {
     Write(*bytes_);
     folder_->Write("run.sqlite-journal", journal);
-    EXPECT_EQ(Read("a journal of nonsense"), Outcome::kSame);
+    EXPECT_EQ(Read("a journal of nonsense"), FileOutcome::kSame);
   }
   // The journal of a transaction that changes everything, taken before its end, with the file as it was then.
   const std::string other = folder_->Path("other.sqlite");
@@ -74,7 +74,7 @@ TEST_F(CorruptedResultFile, JournalsLeftOver) {
   ExpectRefused("half-way through a transaction, its journal lost");
   Write(half_way);
   folder_->Write("run.sqlite-journal", journal);
-  EXPECT_EQ(Read("half-way through a transaction"), Outcome::kSame);
+  EXPECT_EQ(Read("half-way through a transaction"), FileOutcome::kSame);
   Write(half_way);
   folder_->Write("run.sqlite-journal", journal.substr(0, journal.size() / 2));
   Read("half of its journal");
@@ -107,12 +107,12 @@ TEST_F(CorruptedResultFile, AThousandHitsChangeNothingInSilence) {
     std::string what;
     const std::string damaged = hits.Damage(*bytes_, &what);
     Write(damaged);
-    const Outcome read = Read(what);
-    (read == Outcome::kRefused ? num_refused : num_same) += 1;
+    const FileOutcome read = Read(what);
+    (read == FileOutcome::kRefused ? num_refused : num_same) += 1;
     Write(damaged);
-    const Outcome run = Resume(what);
-    num_refused_by_run += run == Outcome::kRefused;
-    EXPECT_FALSE(run == Outcome::kSame && read == Outcome::kRefused) << what << ": done, but not readable";
+    const FileOutcome run = Resume(what);
+    num_refused_by_run += run == FileOutcome::kRefused;
+    EXPECT_FALSE(run == FileOutcome::kSame && read == FileOutcome::kRefused) << what << ": done, but not readable";
   }
   fmt::print("1000 hits: {} refused, {} in unused space; run refuses {}\n", num_refused, num_same,
              num_refused_by_run);

@@ -105,7 +105,7 @@ class DamagedParts : public testing::Test {
     check.targets.back().kind = Target::Kind::kBoundedMean;
     check.targets.back().planned_spread = 0.29;
     check.limits = {200, 200, 200};
-    check.trial = [](const StreamName& name) -> Outcome {
+    check.trial = [](const StreamName& name) -> std::vector<double> {
       RandomStream rng(name);
       const double u = rng.Uniform();
       return {u < 0.3 ? 1.0 : 0.0, u};

@@ -52,7 +52,7 @@ inline std::string ResultsOf(const std::string& path) {
   return text;
 }
 
-enum class Outcome { kSame, kRefused };
+enum class FileOutcome { kSame, kRefused };
 
 class DamagedResultFile : public testing::Test {
  protected:
@@ -85,30 +85,30 @@ class DamagedResultFile : public testing::Test {
 
   // What reading the file at path_ gives; anything but the same results or a refusal that names it is a
   // failure.
-  Outcome Read(const std::string& what) {
+  FileOutcome Read(const std::string& what) {
     try {
       EXPECT_EQ(ResultsOf(path_) == *results_, true) << what << ": changed in silence";
-      return Outcome::kSame;
+      return FileOutcome::kSame;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << what << ": " << error.what();
-      return Outcome::kRefused;
+      return FileOutcome::kRefused;
     }
   }
   // What resuming its run gives: refused, or done, and then it reads as before.
-  Outcome Resume(const std::string& what) {
+  FileOutcome Resume(const std::string& what) {
     try {
       ResultStore store = ResultStore::OpenForRun(path_, *plan_);
       EXPECT_EQ(RunStudy(*plan_, 1, &store).num_run_now, 0) << what << ": trials were lost in silence";
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << what << ": " << error.what();
-      return Outcome::kRefused;
+      return FileOutcome::kRefused;
     }
-    EXPECT_EQ(Read(what), Outcome::kSame) << what << ": done, but not readable";
-    return Outcome::kSame;
+    EXPECT_EQ(Read(what), FileOutcome::kSame) << what << ": done, but not readable";
+    return FileOutcome::kSame;
   }
   void ExpectRefused(const std::string& what) {
-    EXPECT_EQ(Read(what), Outcome::kRefused) << what;
-    EXPECT_EQ(Resume(what), Outcome::kRefused) << what;
+    EXPECT_EQ(Read(what), FileOutcome::kRefused) << what;
+    EXPECT_EQ(Resume(what), FileOutcome::kRefused) << what;
   }
   // Saves what is sound in the file at path_ and runs the rest; returns how many trials were saved.
   std::int64_t SaveAndComplete(const std::string& what) {

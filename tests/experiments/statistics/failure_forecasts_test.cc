@@ -22,7 +22,7 @@ namespace rcme {
 namespace {
 
 // A motion of estimator 0 ("standard") with its probability (NaN: none) and share of inliers of 100 matches.
-TrialRecord Motion(std::uint32_t trial, double probability, int num_inliers, bool failed) {
+TrialRecord StatedMotion(std::uint32_t trial, double probability, int num_inliers, bool failed) {
   TrialRecord record;
   record.trial = trial;
   record.status = MotionStatus::kOk;
@@ -35,7 +35,7 @@ TrialRecord Motion(std::uint32_t trial, double probability, int num_inliers, boo
 }
 
 TrialRecord Refusal(std::uint32_t trial) {
-  TrialRecord record = Motion(trial, 0.9, 3, false);
+  TrialRecord record = StatedMotion(trial, 0.9, 3, false);
   record.status = MotionStatus::kTooUncertain;
   return record;
 }
@@ -64,10 +64,11 @@ class FailureForecastsTest : public testing::Test {
 };
 
 TEST_F(FailureForecastsTest, StatedOnesAreOfScoredAnswers) {
-  std::vector<TrialRecord> records = {Motion(0, 0.25, 50, true), Motion(1, 0.0, 50, false), Refusal(2),
-                                      Motion(3, kNaN, 50, true), Motion(4, 0.5, 50, false)};
+  std::vector<TrialRecord> records = {StatedMotion(0, 0.25, 50, true), StatedMotion(1, 0.0, 50, false),
+                                      Refusal(2), StatedMotion(3, kNaN, 50, true),
+                                      StatedMotion(4, 0.5, 50, false)};
   records[4].rotation_error_deg = kNaN;  // its truth is not known
-  records.push_back(Motion(5, 0.125, 50, false));
+  records.push_back(StatedMotion(5, 0.125, 50, false));
   records.back().status = MotionStatus::kInvalidCovariance;
   const FailureForecasts stated = Collected(records);
   EXPECT_EQ(stated.estimator, "standard");
@@ -88,8 +89,8 @@ TEST_F(FailureForecastsTest, StatedOnesAreOfScoredAnswers) {
 TEST_F(FailureForecastsTest, AScenesTrialsAreOneCluster) {
   study_.repeats_per_scene = 2;
   std::vector<TrialRecord> records;
-  for (std::uint32_t trial = 0; trial < 4; ++trial) records.push_back(Motion(trial, 0.1, 50, false));
-  records.push_back(Motion(0, 0.1, 50, false));
+  for (std::uint32_t trial = 0; trial < 4; ++trial) records.push_back(StatedMotion(trial, 0.1, 50, false));
+  records.push_back(StatedMotion(0, 0.1, 50, false));
   records.back().condition = 1;
   const std::vector<Forecast> forecasts = Collected(records).forecasts;
   EXPECT_EQ(forecasts[0].cluster, forecasts[1].cluster);
@@ -100,8 +101,8 @@ TEST_F(FailureForecastsTest, AScenesTrialsAreOneCluster) {
 
 TEST_F(FailureForecastsTest, ConditionsThatShareTheirScenesShareClusters) {
   study_.common_scenes = true;
-  std::vector<TrialRecord> records = {Motion(0, 0.1, 50, false), Motion(1, 0.1, 50, false),
-                                      Motion(0, 0.1, 50, false)};
+  std::vector<TrialRecord> records = {StatedMotion(0, 0.1, 50, false), StatedMotion(1, 0.1, 50, false),
+                                      StatedMotion(0, 0.1, 50, false)};
   records[2].condition = 1;
   const std::vector<Forecast> forecasts = Collected(records).forecasts;
   EXPECT_EQ(forecasts[0].cluster, forecasts[2].cluster);
@@ -116,7 +117,7 @@ TEST_F(FailureForecastsTest, SharesOfInliersAreRecalibratedOnTheOtherHalf) {
     const std::uint32_t k = trial / 2;  // 0..7 within its half
     const bool is_even = trial % 2 == 0, is_good = k < 4;
     const bool failed = is_even ? (is_good ? k == 0 : true) : (is_good ? false : k < 6);
-    records.push_back(Motion(trial, kNaN, is_good ? 80 : 20, failed));
+    records.push_back(StatedMotion(trial, kNaN, is_good ? 80 : 20, failed));
   }
   records.push_back(Refusal(16));
   records.back().failure_probability = kNaN;
@@ -128,12 +129,12 @@ TEST_F(FailureForecastsTest, SharesOfInliersAreRecalibratedOnTheOtherHalf) {
     EXPECT_EQ(proxy.forecasts[trial].probability, is_even ? (is_good ? 0.0 : 0.5) : (is_good ? 0.25 : 1.0))
         << trial;
   }
-  EXPECT_EQ(Collected({Motion(0, kNaN, 80, false)}).num_without, 1) << "no other half to learn from";
+  EXPECT_EQ(Collected({StatedMotion(0, kNaN, 80, false)}).num_without, 1) << "no other half to learn from";
 }
 
 TEST_F(FailureForecastsTest, GroupsAreTheLevelsOfAFactor) {
-  std::vector<TrialRecord> records = {Motion(0, 0.1, 50, false), Motion(0, 0.2, 50, false),
-                                      Motion(1, 0.3, 50, true)};
+  std::vector<TrialRecord> records = {StatedMotion(0, 0.1, 50, false), StatedMotion(0, 0.2, 50, false),
+                                      StatedMotion(1, 0.3, 50, true)};
   records[1].condition = records[2].condition = 1;
   const ResultStore store = Stored(records);
   const std::vector<FailureForecasts> groups = CollectFailureForecasts(store, "outlier_ratio");
@@ -153,7 +154,7 @@ TEST_F(FailureForecastsTest, MeasuresOfRightProbabilities) {
   std::vector<TrialRecord> records;
   for (std::uint32_t trial = 0; trial < 3000; ++trial) {
     const double p = 0.4 * rng.Uniform();
-    records.push_back(Motion(trial, p, 50, rng.Uniform() < p));
+    records.push_back(StatedMotion(trial, p, 50, rng.Uniform() < p));
   }
   for (std::uint32_t trial = 3000; trial < 3300; ++trial) records.push_back(Refusal(trial));
   const ForecastMeasures m = MeasureForecasts(Collected(records), 7);
@@ -209,8 +210,8 @@ TEST(AddForecastsOfRun, RefusesProbabilitiesOfTwoKinds) {
 }
 
 TEST_F(FailureForecastsTest, TableAndFileSayTheSame) {
-  const ResultStore store =
-      Stored({Motion(0, 0.05, 50, false), Motion(1, 0.75, 50, true), Motion(2, 0.05, 50, true), Refusal(3)});
+  const ResultStore store = Stored({StatedMotion(0, 0.05, 50, false), StatedMotion(1, 0.75, 50, true),
+                                    StatedMotion(2, 0.05, 50, true), Refusal(3)});
   const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(store);
   const std::string table = ForecastsAsTable(measures);
   EXPECT_THAT(table, testing::HasSubstr("standard"));
