@@ -11,6 +11,7 @@ namespace {
 constexpr double kMostLogOdds = 11.5;  // of the posterior: what lies beyond is not told apart
 constexpr size_t kFirstSlope = 3, kEndOfSlopes = 8;
 constexpr double kLeastSlope = 0.02;
+static_assert(kFailureTerms[2].weight >= 0.0, "P falls with the posterior");
 
 double LogOdds(double p) {
   if (!(p > 0.0)) return -kMostLogOdds;
@@ -90,7 +91,8 @@ double CheckedFailureProbability(double posterior, const ModelCheck& check) {
 bool IsInDomain(double posterior, const ModelCheck& check) {
   const std::array<double, kNumFailureTerms> terms = FailureTerms(posterior, check);
   for (size_t k = 0; k < kNumFailureTerms; ++k) {
-    if (terms[k] < kFailureTerms[k].least || terms[k] > kFailureTerms[k].most) return false;
+    const bool is_within = terms[k] >= kFailureTerms[k].least && terms[k] <= kFailureTerms[k].most;
+    if (!is_within) return false;
   }
   return true;
 }

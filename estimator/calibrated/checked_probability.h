@@ -1,12 +1,13 @@
 // What the check of the model makes of the posterior's probability of failure and of the covariance.
 //
-//   logit P = sum_k b_k x_k,  x = 1, l, p, l c_1, ..., l c_5, c_6, ...,   l = logit p
+//   logit P = max(b_1 + sum_k b_k c_k, 0.02) l + b_0 + b_2 p + sum_m b_m c_m,   l = logit p
 //
-// p is the probability by the modes, c the quantities of the check (model_check.h). The products l c_k temper
-// the log-odds: evidence of matches whose errors go together, that lie close to each other, on a plane, or of
+// p is the probability by the modes, c the quantities of the check (model_check.h). The first sum tempers the
+// log-odds: evidence of matches whose errors go together, that lie close to each other, on a plane, or of
 // which few hold the parallax, is worth less than its nats. The other terms are what may be wrong although
-// the modes do not know it. The covariance grows by exp(sum a_k y_k) where that exceeds 1, y = 1, the
-// neighbours' z where that is positive, the log design effect of 4x4 blocks.
+// the modes do not know it. The covariance of a mode, where it is a sandwich, grows by exp(sum a_k y_k) where
+// that exceeds 1, y = 1, the root of the neighbours' z where that is positive, the log design effect of 4x4
+// blocks.
 //
 // b is a logistic regression of failure, a the regression of the 0.95 quantile of NEES, on trials of a
 // population of conditions and of the families; scripts/fit_calibrated makes both (fitted_constants.h).
@@ -26,7 +27,7 @@ extern const std::array<const char*, kNumSpreadTerms> kSpreadTermNames;
 std::array<double, kNumFailureTerms> FailureTerms(double posterior, const ModelCheck& check);
 std::array<double, kNumSpreadTerms> SpreadTerms(const ModelCheck& check);
 
-// Grows with `posterior` whatever the check says.
+// Of the default failure bounds, 3 and 15 deg. Grows with `posterior` whatever the check says.
 double CheckedFailureProbability(double posterior, const ModelCheck& check);
 // Whether every term lies where it did in all but the lowest and the highest 0.5 % of the trials that the
 // constants were fitted to.

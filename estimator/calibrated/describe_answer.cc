@@ -46,10 +46,10 @@ Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weig
 
 namespace {
 
-// What the check of the model says first of all.
+// The first of the check's signs that stands out.
 std::string ModelDoubt(const ModelCheck& check) {
   const double noise = std::exp(check.log_noise_ratio);
-  if (check.neighbour_z > 3.0) return ": neighbouring matches err alike";
+  if (check.neighbour_z > 5.0) return ": neighbouring matches err alike";
   if (noise > 1.25 || noise < 0.8) return fmt::format(": the noise is {:.2g} times the assumed", noise);
   if (check.wrong_share > 0.1 && check.wrong_coherence > 0.5) return ": wrong matches move together";
   if (check.log_parallax_share < std::log(0.25)) return ": a small part of the image holds the parallax";

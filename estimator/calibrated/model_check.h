@@ -13,7 +13,9 @@ namespace rcme {
 struct ModelCheck {
   double log_noise_ratio = 0.0;  // ln(sigma found / sigma assumed)
   // Mean product of the residuals, cut at 3, of a right match and its nearest right neighbour in image 1, and
-  // the same times the square root of the number of pairs: about N(0, 1) where residuals are independent.
+  // the same times the square root of the number of pairs: of mean 0 and standard deviation 1.4 to 1.7 where
+  // residuals are independent, as two matches that are each other's nearest count twice and s is a little
+  // less than their standard deviation.
   double neighbour_correlation = 0.0, neighbour_z = 0.0;
   // Of the right matches: those whose second point lies within four standard deviations of where the
   // homography of one plane (twisted_pair.h) takes the first.
@@ -24,8 +26,9 @@ struct ModelCheck {
   // ln of the share of the 4x4 blocks of image 1 with right matches that hold the parallax: (sum b)^2 / sum
   // b^2 over their number (Kish 1965), b the sum of z^2 in a block, z > 0.
   double log_parallax_share = 0.0;
-  // ln of the design effect of 2x2 and of 4x4 blocks: by how much the motion moves where a block is left out,
-  // squared and summed over the blocks, over the same of single matches (tr in units of the information).
+  // ln of the design effect of 2x2 and of 4x4 blocks, in units of the information: how far the motion moves
+  // where a block is left out, squared and summed over the blocks, over the sum of the squared scores of
+  // single matches. Some tenths above 0 where residuals are independent.
   double log_design_2 = 0.0, log_design_4 = 0.0;
   double wrong_share = 0.0;  // of all matches
   // Of the wrong matches: those that move as their nearest wrong neighbour does, the two displacements no
@@ -35,7 +38,7 @@ struct ModelCheck {
   double num_rivals = 0.0;       // modes beyond the bounds around the answer, at most six
   double greatest_rival = 0.0;   // the greatest weight of one
   double direction_mass = 1.0;   // within the bound, of the posterior of the direction; 1: not asked
-  double low_depth = 0.0;        // a twentieth of the right matches have a smaller z, within [-3, 3]
+  double low_depth = 0.0;        // a twentieth of the right matches have a smaller z / s, within [-3, 3]
   double usual_depth = 0.0;      // a fifth have a greater one (direction_posterior.h)
 };
 

@@ -3,6 +3,7 @@
 namespace rcme {
 
 ModeWeights ReweighModes(ModeWeights weights, const Verdict& verdict) {
+  if (verdict.failure_probability == verdict.by_modes) return weights;
   const bool is_greater = verdict.failure_probability > verdict.by_modes;
   const double factor = is_greater ? (1.0 - verdict.failure_probability) / (1.0 - verdict.by_modes)
                                    : verdict.failure_probability / verdict.by_modes;

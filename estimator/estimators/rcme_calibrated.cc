@@ -124,14 +124,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
           SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
     }
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
-    ModelCheck check;
-    if (is_checked || checked != nullptr) check = CheckModel(shuffled, modes, weights, direction_mass);
+    const ModelCheck check = CheckModel(shuffled, modes, weights, direction_mass);
     Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, check, rng);
     if (checked != nullptr) *checked = {check, verdict.by_modes};
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
-    if (is_checked)
-      estimate.probability_domain = IsInDomain(verdict.by_modes, check) ? ProbabilityDomain::kVerified
-                                                                        : ProbabilityDomain::kExtrapolated;
+    if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check);
     FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
     FillMatches(modes[weights.answer].explanation, order, &estimate);
     FillOtherModes(modes, ReweighModes(weights, verdict), &estimate);
@@ -167,6 +164,18 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
  private:
   MotionBounds Bounds() const {
     return {kRadPerDeg * options_.max_rotation_error_deg, kRadPerDeg * options_.max_direction_error_deg};
+  }
+
+  // The constants of the check were fitted to the default options.
+  ProbabilityDomain Domain(double by_modes, const ModelCheck& check) const {
+    const CalibratedOptions usual;
+    const bool is_usual = options_.max_rotation_error_deg == usual.max_rotation_error_deg &&
+                          options_.max_direction_error_deg == usual.max_direction_error_deg &&
+                          options_.num_modes == usual.num_modes && options_.sigma == usual.sigma &&
+                          options_.second_motion_odds == usual.second_motion_odds &&
+                          options_.leave_out == usual.leave_out;
+    return is_usual && IsInDomain(by_modes, check) ? ProbabilityDomain::kVerified
+                                                   : ProbabilityDomain::kExtrapolated;
   }
 
   // The covariance is the second moment, about the answer, of the modes within the bounds.

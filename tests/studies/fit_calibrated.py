@@ -19,12 +19,16 @@ import numpy as np
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADER = ROOT / "estimator/calibrated/fitted_constants.h"
 FAMILIES = ["indoor", "outdoor", "low_parallax", "planarity", "moving_object", "hard", "few_matches", "noise_laws", "outlier_laws",
-            "uniform", "forward", "parallax", "clustered_inliers"]
+            "uniform", "forward", "parallax", "clustered_inliers", "assumed_sigma"]
 LESS = 0.3  # weight of a trial with a wrong calibration, or of a family, which are easy and many
 RIDGE = 5e-4  # of the standardised terms' weights, per trial
+NUM_SPREAD_TERMS = 3
 OUTSIDE = 0.005  # share of the training trials beyond either end of a term's domain
 QUANTILE_95 = 11.0705  # of chi-square with five degrees of freedom
 SURE = 0.05  # the covariance is fitted where the probability of failure is at most this
+SLOPES = slice(3, 8)  # the terms that are the posterior's log-odds times something
+LEAST_SLOPE = 0.02  # of the log-odds (kLeastSlope of checked_probability.cc)
+LEAST_CONDITIONS = 5  # for an interval over conditions
 DEPENDENT_NOISE = {"correlated", "duplicated", "anisotropic"}
 COHERENT_OUTLIERS = {"moving_object", "clustered_both", "repeated_texture", "mixture"}
 
@@ -49,10 +53,10 @@ def sources(scale):
     return training, held_out
 
 
-def make_trials(source, program, folder):
-    """The CSV of a source's trials, made where it is not there yet."""
+def make_trials(source, program, folder, keeps):
+    """The CSV of a source's trials; one that is there is taken as it is if `keeps`."""
     made = folder / f"{source.name()}.csv"
-    if made.exists():
+    if keeps and made.exists():
         return made
     text = (ROOT / source.study).read_text()
     if source.number is not None:
@@ -106,6 +110,15 @@ def logistic(x):
     return 1.0 / (1.0 + np.exp(-np.clip(x, -40, 40)))
 
 
+def probability(x, b):
+    """P of the terms, as CheckedFailureProbability has it."""
+    log_odds = x[:, 1]
+    slope = b[1] + np.divide(x[:, SLOPES] @ b[SLOPES], log_odds, out=np.zeros(len(x)), where=log_odds != 0)
+    rest = np.ones(x.shape[1], bool)
+    rest[1], rest[SLOPES] = False, False
+    return logistic(np.maximum(slope, LEAST_SLOPE) * log_odds + x[:, rest] @ b[rest])
+
+
 def fit_failure(x, failed, weight):
     """Weights of a ridge logistic regression by Newton's method; the first column is the constant."""
     scale = x.std(axis=0)
@@ -123,15 +136,15 @@ def fit_failure(x, failed, weight):
     return b / scale
 
 
-def fit_spread(y, nees, level=0.95):
+def fit_spread(y, nees, weight, level=0.95):
     """Weights of the regression of the quantile of log(nees / its 0.95 quantile), by reweighted least squares."""
     target = np.log(nees / QUANTILE_95)
     a = np.zeros(y.shape[1])
     a[0] = np.quantile(target, level)
     for _ in range(200):
         rest = target - y @ a
-        weight = np.where(rest > 0, level, 1 - level) / np.maximum(np.abs(rest), 0.02)
-        a = np.linalg.solve((y * weight[:, None]).T @ y + 1e-9 * np.eye(y.shape[1]), (y * weight[:, None]).T @ target)
+        w = weight * np.where(rest > 0, level, 1 - level) / np.maximum(np.abs(rest), 0.02)
+        a = np.linalg.solve((y * w[:, None]).T @ y + 1e-9 * np.eye(y.shape[1]), (y * w[:, None]).T @ target)
     return a
 
 
@@ -158,90 +171,86 @@ def area(p, failed):
 
 
 def bootstrap(trials, statistic, select, repetitions=400):
-    """95 % interval of a statistic of chosen trials, conditions being the sample."""
-    random = np.random.default_rng(1)
+    """A statistic of chosen trials with its 95 % interval, conditions being the sample. Where every condition gives 0 or every
+    one 1, the interval ends 3 / (number of conditions) away (P(none of m) = .05); "-" for fewer than five conditions."""
     chosen = np.flatnonzero(select)
-    if len(chosen) == 0:
-        return "-"
     clusters, places = np.unique(trials.cluster[chosen], return_inverse=True)
+    if len(clusters) < LEAST_CONDITIONS:
+        return "-"
+    random = np.random.default_rng(1)
     members = [chosen[places == k] for k in range(len(clusters))]
     values = []
     for _ in range(repetitions):
         picked = np.concatenate([members[k] for k in random.integers(0, len(clusters), len(clusters))])
         values.append(statistic(picked))
     low, high = np.nanquantile(values, [0.025, 0.975])
-    return f"{statistic(chosen):.3f} [{low:.3f}, {high:.3f}]"
+    value, away = statistic(chosen), 3 / len(clusters)
+    low, high = (low, min(1, away)) if high == value == 0 else (max(0, 1 - away), high) if low == value == 1 else (low, high)
+    return f"{value:.3f} [{low:.3f}, {high:.3f}]"
 
 
-def report(title, trials, p, factor):
-    """Rows (population, regime, quantity, before, after)."""
+def in_domain(x, domain):
+    """Whether all terms lie in the domain that the constants state (IsInDomain)."""
+    return ((x >= domain[:, 0]) & (x <= domain[:, 1])).all(axis=1)
+
+
+def report(title, trials, p, factor, is_verified):
+    """Rows (population, regime, conditions, quantity, before, after)."""
     rows = []
     covered = trials.nees <= QUANTILE_95, trials.nees / factor <= QUANTILE_95
     mean = lambda of: lambda i: of[i].mean() if len(i) else float("nan")
     everything = np.ones(len(p), bool)
     both = [("before", trials.posterior, covered[0]), ("after", p, covered[1])]
-    for regime in ["all"] + sorted(set(trials.regime)):
-        here = everything if regime == "all" else trials.regime == regime
-        rows.append([title, regime, "failed"] + [bootstrap(trials, mean(trials.failed), here)] * 2)
-        rows.append([title, regime, "stated"] + [bootstrap(trials, mean(q), here) for _, q, _ in both])
-        rows.append([title, regime, "kept at P <= 0.1"] + [bootstrap(trials, lambda i, q=q: (q[i] <= 0.1).mean(), here) for _, q, _ in both])
-        rows.append([title, regime, "failed at P <= 0.1"] + [bootstrap(trials, mean(trials.failed), here & (q <= 0.1)) for _, q, _ in both])
-        rows.append([title, regime, "covered at P <= 0.01"] +
-                    [bootstrap(trials, mean(c.astype(float)), here & (q <= 0.01)) for _, q, c in both])
+    regimes = [("all", everything), ("verified", is_verified), ("extrapolated", ~is_verified)]
+    regimes += [(regime, trials.regime == regime) for regime in sorted(set(trials.regime))]
+    for regime, here in regimes:
+        def add(quantity, values):
+            rows.append([title, regime, len(np.unique(trials.cluster[here])), quantity, *values])
+        add("failed", [bootstrap(trials, mean(trials.failed), here)] * 2)
+        add("stated", [bootstrap(trials, mean(q), here) for _, q, _ in both])
+        add("kept at P <= 0.1", [bootstrap(trials, lambda i, q=q: (q[i] <= 0.1).mean(), here) for _, q, _ in both])
+        add("failed at P <= 0.1", [bootstrap(trials, mean(trials.failed), here & (q <= 0.1)) for _, q, _ in both])
+        add("covered at P <= 0.1", [bootstrap(trials, mean(c.astype(float)), here & (q <= 0.1)) for _, q, c in both])
+        add("covered at P <= 0.01", [bootstrap(trials, mean(c.astype(float)), here & (q <= 0.01)) for _, q, c in both])
         if regime == "all":
-            rows.append([title, regime, "ECE"] + [bootstrap(trials, lambda i, q=q: calibration_error(q[i], trials.failed[i]), here) for _, q, _ in both])
-            rows.append([title, regime, "AUC"] + [bootstrap(trials, lambda i, q=q: area(q[i], trials.failed[i]), here, 100) for _, q, _ in both])
-            rows.append([title, regime, "Brier"] + [bootstrap(trials, lambda i, q=q: ((q[i] - trials.failed[i]) ** 2).mean(), here) for _, q, _ in both])
+            add("ECE", [bootstrap(trials, lambda i, q=q: calibration_error(q[i], trials.failed[i]), here) for _, q, _ in both])
+            add("AUC", [bootstrap(trials, lambda i, q=q: area(q[i], trials.failed[i]), here, 100) for _, q, _ in both])
+            add("Brier", [bootstrap(trials, lambda i, q=q: ((q[i] - trials.failed[i]) ** 2).mean(), here) for _, q, _ in both])
     return rows
 
 
 def write_header(training, train, b, a):
     said = "\n".join(f"//   {s.study}, seed {s.seed}, " + (f"{s.number} draws, " if s.number else "") + f"{s.trials} trials of each condition"
                      + (f", weight {s.weight}" if s.weight != 1 else "")
-                     + ("" if s.fits_covariance else ", not for the covariance") for s in training)
+                     + ("" if s.fits_covariance else ", for P alone") for s in training)
     terms = lambda keys, prefix, weights, x: "".join(
-        f'    {{"{key[len(prefix):]}", {weight:.6g}, {least:.4g}, {most:.4g}}},\n'
+        f'    {{"{key[len(prefix):]}", {weight:.6g}, {least:.6g}, {most:.6g}}},\n'
         for key, weight, least, most in zip(keys, weights, *np.quantile(x, [OUTSIDE, 1 - OUTSIDE], axis=0)))
     HEADER.write_text(
-        "// Constants of the check of rcme_calibrated's model (checked_probability.h), made by scripts/fit_calibrated from\n"
-        f"{said}\n"
+        "// Constants of the check of rcme_calibrated's model (checked_probability.h), made by scripts/fit_calibrated from\n//\n"
+        f"{said}\n//\n"
         "#pragma once\n\nnamespace rcme {\n\nstruct FittedTerm {\n  const char* name;\n  double weight;\n  double least, most;  // of the trials, but for half a per cent on either side\n};\n\n"
         "inline constexpr FittedTerm kFailureTerms[] = {\n" + terms(train.names, "failure_", b, train.x) + "};\n\n"
         "inline constexpr FittedTerm kSpreadTerms[] = {\n" + terms(train.spread_names, "spread_", a, train.spread) + "};\n\n}  // namespace rcme\n")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", default=ROOT / "build/release/bin/rcme_calibrated_terms", help="the program that makes the trials")
-    parser.add_argument("--trials", default=ROOT / "build/fit_calibrated", type=pathlib.Path, help="folder of the trials, kept")
-    parser.add_argument("--out", default=ROOT / "results/right_calibration", type=pathlib.Path, help="folder of the tables")
-    parser.add_argument("--scale", type=float, default=1.0, help="share of the trials, to try the script")
-    parser.add_argument("--report-only", action="store_true", help="leave the constants as they are")
-    arguments = parser.parse_args()
-    arguments.trials.mkdir(parents=True, exist_ok=True)
-    training, held_out = sources(arguments.scale)
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        futures = [pool.submit(make_trials, source, arguments.program, arguments.trials) for source in training + held_out]
-        for k, future in enumerate(futures, 1):
-            future.result()
-            print(f"{k} of {len(futures)} populations and families", file=sys.stderr)
-    files = [future.result() for future in futures]
-    train = Trials(files[:len(training)], training)
-    b = fit_failure(train.x, train.failed, train.weight)
-    p = logistic(train.x @ b)
-    sure = train.fits_covariance & (p <= SURE) & (train.failed == 0) & np.isfinite(train.nees) & (train.nees > 0)
-    a = fit_spread(train.spread[sure], train.nees[sure])
-    if not arguments.report_only:
-        write_header(training, train, b, a)
-    tests = [Trials([path], [source]) for path, source in zip(files[len(training):], held_out)]
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    with open(arguments.out / "held_out.csv", "w", newline="") as file:
+def read_header():
+    """(b, its domain, a) of the constants as they are in the program."""
+    rows = re.findall(r'\{"(\w+)", ([-\d.e+]+), ([-\d.e+]+), ([-\d.e+]+)\}', HEADER.read_text())
+    values = np.array([[float(x) for x in row[1:]] for row in rows])
+    return values[:-NUM_SPREAD_TERMS, 0], values[:-NUM_SPREAD_TERMS, 1:], values[-NUM_SPREAD_TERMS:, 0]
+
+
+def write_tables(folder, train, held_out, tests):
+    b, domain, a = read_header()
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "held_out.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(["population", "regime", "quantity", "before", "after"])
+        table.writerow(["population", "regime", "conditions", "quantity", "before", "after"])
         for source, test in zip(held_out, tests):
             factor = np.maximum(1.0, np.exp(test.spread @ a))
-            table.writerows(report(pathlib.Path(source.study).stem, test, logistic(test.x @ b), factor))
-    with open(arguments.out / "terms.csv", "w", newline="") as file:
+            table.writerows(report(pathlib.Path(source.study).stem, test, probability(test.x, b), factor, in_domain(test.x, domain)))
+    with open(folder / "terms.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["term", "weight", "log_loss_more_without"])
         base = log_loss(logistic(tests[0].x @ b), tests[0].failed, tests[0].weight)
@@ -252,6 +261,36 @@ def main():
             table.writerow([name[len("failure_"):], f"{b[k]:.4g}", f"{cost:.4f}" if k else ""])
         for name, weight in zip(train.spread_names, a):
             table.writerow(["covariance: " + name[len("spread_"):], f"{weight:.4g}", ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", default=ROOT / "build/release/bin/rcme_calibrated_terms", help="the program that makes the trials")
+    parser.add_argument("--trials", default=ROOT / "build/fit_calibrated", type=pathlib.Path, help="folder of the trials")
+    parser.add_argument("--resume", action="store_true", help="take trials that are there as they are")
+    parser.add_argument("--out", default=ROOT / "results/right_calibration", type=pathlib.Path, help="folder of the tables")
+    parser.add_argument("--scale", type=float, default=1.0, help="share of the trials, to try the script")
+    parser.add_argument("--report-only", action="store_true", help="leave the constants as they are; exit code 1 if a fit gives others")
+    arguments = parser.parse_args()
+    arguments.trials.mkdir(parents=True, exist_ok=True)
+    training, held_out = sources(arguments.scale)
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        futures = [pool.submit(make_trials, source, arguments.program, arguments.trials, arguments.resume) for source in training + held_out]
+        for k, future in enumerate(futures, 1):
+            future.result()
+            print(f"{k} of {len(futures)} populations and families", file=sys.stderr)
+    files = [future.result() for future in futures]
+    train = Trials(files[:len(training)], training)
+    b = fit_failure(train.x, train.failed, train.weight)
+    sure = train.fits_covariance & (probability(train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
+    a = fit_spread(train.spread[sure], train.nees[sure], train.weight[sure])
+    if not arguments.report_only:
+        write_header(training, train, b, a)
+    tests = [Trials([path], [source]) for path, source in zip(files[len(training):], held_out)]
+    write_tables(arguments.out, train, held_out, tests)
+    now_b, _, now_a = read_header()
+    if not np.allclose(now_b, b, rtol=1e-4, atol=1e-6) or not np.allclose(now_a, a, rtol=1e-4, atol=1e-6):
+        sys.exit("fit_calibrated: the constants of estimator/calibrated/fitted_constants.h are not those of this fit")
 
 
 if __name__ == "__main__":

@@ -61,7 +61,7 @@ TEST(DescribeAnswer, TheModelsDoubtIsTheOneThatTheCheckFound) {
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("wrong matches move together"));
   check.log_noise_ratio = std::log(3.0);
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("the noise is 3 times the assumed"));
-  check.neighbour_z = 5.0;
+  check.neighbour_z = 6.0;
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("neighbouring matches err alike"));
 }
 

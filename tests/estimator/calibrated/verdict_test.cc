@@ -1,4 +1,4 @@
-// The weights after the check are still probabilities, and say what the probability of failure says.
+// The weights after the check are still probabilities.
 #include "estimator/calibrated/verdict.h"
 
 #include <gtest/gtest.h>
@@ -48,6 +48,16 @@ TEST(ReweighModes, ModesWithoutADoubtAreDoubtedAllTheSame) {
   const ModeWeights after = ReweighModes(weights, {.by_modes = 0.0, .failure_probability = 0.01});
   EXPECT_NEAR(after.of_modes[0], 0.99, 1e-12);
   EXPECT_NEAR(after.of_no_motion, 0.01, 1e-12);
+}
+
+// Without the check both are the same, 0 and 1 among them.
+TEST(ReweighModes, NothingChangesWithoutTheCheck) {
+  for (const double p : {0.0, 0.3, 1.0}) {
+    const ModeWeights before = SomeWeights(),
+                      after = ReweighModes(before, {.by_modes = p, .failure_probability = p});
+    EXPECT_EQ(after.of_modes, before.of_modes);
+    EXPECT_EQ(after.of_no_motion, before.of_no_motion);
+  }
 }
 
 }  // namespace
