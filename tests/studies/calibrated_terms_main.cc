@@ -55,8 +55,9 @@ int Run(int argc, char** argv) {
   if (argc > 2) study.seed = std::strtoull(argv[2], nullptr, 10);
   if (argc > 3) study.trials = std::atoi(argv[3]);
   const StudyPlan plan = MakePlan(study, PlanEstimators::kNotMade);
-  const std::unique_ptr<MotionEstimator> estimator =
-      MakeRcmeCalibrated({.leave_out = CalibratedStep::kModelCheck});
+  CalibratedOptions options;
+  options.leave_out = CalibratedStep::kModelCheck;
+  const std::unique_ptr<MotionEstimator> estimator = MakeRcmeCalibrated(options);
   const WeightInspection* inspection = FindWeightInspection(*estimator);
   PrintHeader(plan);
   for (const Condition& condition : plan.conditions) {
