@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/files/sha256.h"
-#include "experiments/statistics/preregistration.h"
+#include "experiments/statistics/preregistration_output.h"
 #include "experiments/study/study_lock.h"
 #include "experiments/study/study_plan.h"
 #include "parameters/plain_text.h"
