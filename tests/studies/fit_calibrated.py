@@ -61,6 +61,7 @@ def make_trials(source, program, folder, keeps):
     text = (ROOT / source.study).read_text()
     if source.number is not None:
         text = re.sub(r"number: \d+", f"number: {source.number}", text)
+    text = re.sub(r"(?m)^    (# All motions.*|motion:.*(\n      .*)+)\n", "", text)  # those of the population: see PrintTrial
     text = re.sub(r"population: (\w+)", rf"population: {ROOT}/populations/\1.yaml", text)
     text = re.sub(r"(?m)^estimators:\n(  .*\n)+", "estimators:\n  - {name: rcme_calibrated}\n", text)
     study = folder / f"{source.name()}.yaml"
