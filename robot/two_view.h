@@ -26,7 +26,7 @@ struct TwoViewOptions {
   cv::Mat K1, K2;         // 3x3, CV_32F or CV_64F, [fx 0 cx; 0 fy cy; 0 0 1], px
   cv::Size size1, size2;  // of the images, px
   double sigma_px = 0.5;  // assumed noise per coordinate; rcme_calibrated, the default, estimates it and
-                          // takes this as a guess
+                          // takes this as a guess, one that is far off as a reason for doubt
   double greatest_failure_probability = 0.05;  // a motion that is more likely wrong is kDoubtful
   std::string estimator = "rcme_calibrated";   // any of `rcme list estimators` but those of other libraries
   // By name, as `rcme list options` has them.

@@ -9,7 +9,7 @@ namespace rcme {
 
 // What is known of the noise level before the residuals are seen.
 enum class SigmaKnowledge {
-  kEstimated,  // the assumed sigma is a guess, good to a factor of about four
+  kEstimated,  // the assumed sigma is a guess, good to a factor of about four; one that is far off raises P
   kAssumed,    // it is right
 };
 

@@ -41,7 +41,7 @@ int main() {
   rcme::TwoViewOptions options;
   options.K1 = options.K2 = K;
   options.size1 = options.size2 = cv::Size(752, 480);
-  options.greatest_failure_probability = 0.01;
+  options.sigma_px = 0.3;
   const rcme::TwoViewInitializer initializer(options);
 
   const Frame first = See(points, 0.0, rng);
