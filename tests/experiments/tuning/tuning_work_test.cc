@@ -132,23 +132,24 @@ TEST_F(TuneParts, DamageIsNamed) {
   const auto erase = [](PartJson* result) { result->erase(0); };
   EXPECT_TRUE(is_refused(0, erase, "no list of 4"));
   EXPECT_TRUE(is_refused(
-      3, [](PartJson* r) { r->at(0).erase(1); }, "no list of 4"));
+      3, [](PartJson* r) { r->at(0).erase(1); }, "no list of 5"));
   EXPECT_TRUE(is_refused(
       3, [](PartJson* r) { r->at(0).at(1) = 11; }, "a count of 11, not of 0 to 10"));
   EXPECT_TRUE(is_refused(
       4, [](PartJson* r) { r->at(0).at(1) = -1; }, "a count of -1, not of 0 to 10"));
   EXPECT_TRUE(is_refused(
       4, [](PartJson* r) { r->at(0).at(1) = "x"; }, "number"));
-  // [failures, refusals, good, false refusals] of ten trials; the first is what a random damage made of [0,
-  // 7, 3, 0].
+  // [trials, failures, refusals, good, false refusals]; the first is what a random damage made of [10, 0, 7,
+  // 3, 0].
   const auto counts = [&](const PartJson& of_setting, const std::string& word) {
     return is_refused(
         3, [&](PartJson* r) { r->at(0) = of_setting; }, word);
   };
-  EXPECT_TRUE(counts({0, 7, 3, 7}, "more false refusals than good trials"));
-  EXPECT_TRUE(counts({6, 5, 0, 0}, "more failures and refusals than trials"));
-  EXPECT_TRUE(counts({0, 2, 9, 3}, "more false refusals than refusals"));
-  EXPECT_TRUE(counts({0, 7, 9, 0}, "more good trials than were refused or not"));
+  EXPECT_TRUE(counts({10, 0, 7, 3, 7}, "more false refusals than good trials"));
+  EXPECT_TRUE(counts({10, 6, 5, 0, 0}, "more failures and refusals than trials"));
+  EXPECT_TRUE(counts({10, 0, 2, 9, 3}, "more false refusals than refusals"));
+  EXPECT_TRUE(counts({10, 0, 7, 9, 0}, "more good trials than were refused or not"));
+  EXPECT_TRUE(counts({9, 0, 2, 7, 0}, "fewer trials than there are"));
   EXPECT_TRUE(is_refused(6, erase, "no list of 2"));
   EXPECT_TRUE(is_refused(
       7,
