@@ -177,7 +177,7 @@ RareRow RowOf(const StratifiedCell& cell) {
               {}};
   if (cell.rate.num_effective_events < kLeastFailures) row.doubts = {"few_failures"};
   const auto has_trials = [](const StratumCount& count) { return count.num_trials > 0; };
-  if (!cell.strata.empty() && std::ranges::none_of(cell.strata, has_trials)) {
+  if (std::ranges::none_of(cell.strata, has_trials)) {
     row.estimate = std::nan("");
     row.interval = {0.0, 1.0};
     row.doubts = {StatusName(MotionStatus::kNotSimulated)};

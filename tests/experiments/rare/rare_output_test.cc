@@ -50,6 +50,7 @@ TEST(RowOf, KeepsWhatACellSays) {
 TEST(RowOf, OfStrataDoubtsFewFailures) {
   StratifiedCell cell;
   cell.num_run = 40;
+  cell.strata[0].num_trials = 40;
   cell.rate.estimate = 0.01;
   cell.rate.cautious_upper = 0.3;
   cell.rate.num_effective_events = 2.9;
