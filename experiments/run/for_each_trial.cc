@@ -4,9 +4,9 @@
 
 namespace rcme {
 
-void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work) {
+void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work, int num_threads) {
   const std::int64_t per_condition = trials.end - trials.first;
-  ForEachIndex(per_condition * std::ssize(plan.conditions), 1, [&](std::int64_t index) {
+  ForEachIndex(per_condition * std::ssize(plan.conditions), num_threads, [&](std::int64_t index) {
     const auto place = static_cast<std::uint32_t>(index % per_condition);
     work(plan.conditions[static_cast<size_t>(index / per_condition)], trials.first + place, index);
   });

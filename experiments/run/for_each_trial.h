@@ -1,4 +1,4 @@
-// The trials inside one item of long work, one after the other.
+// The same trials of every condition of a plan.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,9 @@ namespace rcme {
 // `index` counts from 0; `trials.end - trials.first` of them are of each condition.
 using TrialWork = std::function<void(const Condition& condition, std::uint32_t trial, std::int64_t index)>;
 
-// Calls `work` for the same trials of every condition, in the plan's order. A request to stop ends it, as
+// Calls `work` for each, in the plan's order where there is one thread, as inside an item of long work; from
+// several at once where `num_threads` (0: one per core) is another number. A request to stop ends it, as
 // Stopped.
-void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work);
+void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work, int num_threads = 1);
 
 }  // namespace rcme

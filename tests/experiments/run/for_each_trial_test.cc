@@ -25,6 +25,15 @@ TEST(ForEachTrial, TheSameTrialsOfEachCondition) {
   EXPECT_EQ(seen.size(), 4u);
 }
 
+TEST(ForEachTrial, SeveralThreadsVisitTheSame) {
+  std::vector<Visit> seen(4);
+  const auto add = [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
+    seen[static_cast<size_t>(index)] = {condition.index, trial, index};
+  };
+  ForEachTrial(MakePlan(SmallStudy()), {2, 4}, add, 3);
+  EXPECT_EQ(seen, (std::vector<Visit>{{0, 2, 0}, {0, 3, 1}, {1, 2, 2}, {1, 3, 3}}));
+}
+
 TEST(ForEachTrial, AnErrorEndsIt) {
   int num_calls = 0;
   const auto fail = [&](const Condition&, std::uint32_t, std::int64_t) {
