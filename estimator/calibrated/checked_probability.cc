@@ -1,17 +1,43 @@
 #include "estimator/calibrated/checked_probability.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string_view>
 
+#include "estimator/calibrated/check_terms.h"
 #include "estimator/calibrated/fitted_constants.h"
 
 namespace rcme {
 namespace {
 
 constexpr double kMostLogOdds = 11.5;  // of the posterior: what lies beyond is not told apart
-constexpr size_t kFirstSlope = 3, kEndOfSlopes = 8;
 constexpr double kLeastSlope = 0.02;
-static_assert(kFailureTerms[2].weight >= 0.0, "P falls with the posterior");
+
+// At compile time: a term without a constant is an error there.
+constexpr FittedTerm FindConstant(std::span<const FittedTerm> constants, std::string_view name) {
+  for (const FittedTerm& constant : constants) {
+    if (constant.name == name) return constant;
+  }
+  throw std::logic_error("a term has no constant; run scripts/fit_calibrated");
+}
+template <size_t N>
+constexpr std::array<FittedTerm, N> FindConstants(std::span<const FittedTerm> constants,
+                                                  const std::array<CheckTerm, N>& terms) {
+  std::array<FittedTerm, N> found;
+  for (size_t k = 0; k < N; ++k) found[k] = FindConstant(constants, terms[k].name);
+  return found;
+}
+
+constexpr FittedTerm kConstant = FindConstant(kFailureTerms, "constant");
+constexpr FittedTerm kOfLogOdds = FindConstant(kFailureTerms, "posterior_log_odds");
+constexpr FittedTerm kOfPosterior = FindConstant(kFailureTerms, "posterior");
+constexpr auto kOfSlopeTerms = FindConstants(kFailureTerms, kSlopeTerms);
+constexpr auto kOfAddedTerms = FindConstants(kFailureTerms, kAddedTerms);
+constexpr auto kOfCovarianceTerms = FindConstants(kSpreadTerms, kCovarianceTerms);
+static_assert(kOfPosterior.weight >= 0.0, "P falls with the posterior");
 
 double LogOdds(double p) {
   if (!(p > 0.0)) return -kMostLogOdds;
@@ -19,88 +45,47 @@ double LogOdds(double p) {
   return std::clamp(std::log(p / (1.0 - p)), -kMostLogOdds, kMostLogOdds);
 }
 
+// c_k as the fit has it, l c_k over l.
+double Tempering(double l, double c) { return l != 0.0 ? l * c / l : 0.0; }
+
 }  // namespace
 
-const std::array<const char*, kNumFailureTerms> kFailureTermNames = {
-    "constant",
-    "posterior_log_odds",
-    "posterior",
-    "log_odds_by_neighbour_correlation",
-    "log_odds_by_spread_in_matches",
-    "log_odds_by_planar_share",
-    "log_odds_by_log_parallax_share",
-    "log_odds_by_wrong_share",
-    "log_parallax_share",
-    "noise_above",
-    "noise_below",
-    "neighbour_root_z",
-    "log_design_2",
-    "log_design_4",
-    "num_rivals",
-    "greatest_rival",
-    "log_rotation_sd",
-    "wrong_coherence",
-    "spread_in_image",
-    "direction_mass",
-    "low_depth",
-};
-const std::array<const char*, kNumSpreadTerms> kSpreadTermNames = {"constant", "neighbour_root_z_above",
-                                                                   "log_design_4"};
-
-std::array<double, kNumFailureTerms> FailureTerms(double posterior, const ModelCheck& c) {
+std::vector<FitTerm> ListFailureTerms(double posterior, const ModelCheck& check) {
   const double l = LogOdds(posterior);
-  const double root_z = std::copysign(std::sqrt(std::abs(c.neighbour_z)), c.neighbour_z);
-  return {1.0,
-          l,
-          posterior,
-          l * std::clamp(c.neighbour_correlation, -1.0, 1.0),
-          l * c.spread_in_matches,
-          l * c.planar_share,
-          l * c.log_parallax_share,
-          l * c.wrong_share,
-          c.log_parallax_share,
-          std::clamp(c.log_noise_ratio, 0.0, 2.0),
-          std::clamp(-c.log_noise_ratio, 0.0, 2.0),
-          root_z,
-          c.log_design_2,
-          c.log_design_4,
-          c.num_rivals,
-          c.greatest_rival,
-          c.log_rotation_sd,
-          c.wrong_coherence,
-          c.spread_in_image,
-          c.direction_mass,
-          c.low_depth};
+  std::vector<FitTerm> terms = {{kConstant.name, 1.0}, {kOfLogOdds.name, l}, {kOfPosterior.name, posterior}};
+  for (const CheckTerm& term : kSlopeTerms) terms.push_back({term.name, l * term.value(check)});
+  for (const CheckTerm& term : kAddedTerms) terms.push_back({term.name, term.value(check)});
+  return terms;
 }
 
-std::array<double, kNumSpreadTerms> SpreadTerms(const ModelCheck& check) {
-  return {1.0, std::sqrt(std::max(check.neighbour_z, 0.0)), check.log_design_4};
+std::vector<FitTerm> ListSpreadTerms(const ModelCheck& check) {
+  std::vector<FitTerm> terms;
+  for (const CheckTerm& term : kCovarianceTerms) terms.push_back({term.name, term.value(check)});
+  return terms;
 }
 
 double CheckedFailureProbability(double posterior, const ModelCheck& check) {
-  const std::array<double, kNumFailureTerms> terms = FailureTerms(posterior, check);
-  double slope = kFailureTerms[1].weight, log_odds = 0.0;
-  for (size_t k = kFirstSlope; k < kEndOfSlopes; ++k)
-    slope += kFailureTerms[k].weight * (terms[1] != 0.0 ? terms[k] / terms[1] : 0.0);
-  log_odds = std::max(slope, kLeastSlope) * terms[1];
-  for (const size_t k : {size_t{0}, size_t{2}}) log_odds += kFailureTerms[k].weight * terms[k];
-  for (size_t k = kEndOfSlopes; k < kNumFailureTerms; ++k) log_odds += kFailureTerms[k].weight * terms[k];
+  const double l = LogOdds(posterior);
+  double slope = kOfLogOdds.weight;
+  for (size_t k = 0; k < kSlopeTerms.size(); ++k)
+    slope += kOfSlopeTerms[k].weight * Tempering(l, kSlopeTerms[k].value(check));
+  double log_odds = std::max(slope, kLeastSlope) * l + kConstant.weight + kOfPosterior.weight * posterior;
+  for (size_t k = 0; k < kAddedTerms.size(); ++k)
+    log_odds += kOfAddedTerms[k].weight * kAddedTerms[k].value(check);
   return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
 bool IsInDomain(double posterior, const ModelCheck& check) {
-  const std::array<double, kNumFailureTerms> terms = FailureTerms(posterior, check);
-  for (size_t k = 0; k < kNumFailureTerms; ++k) {
-    const bool is_within = terms[k] >= kFailureTerms[k].least && terms[k] <= kFailureTerms[k].most;
-    if (!is_within) return false;
-  }
-  return true;
+  return std::ranges::all_of(ListFailureTerms(posterior, check), [](const FitTerm& term) {
+    const FittedTerm constant = FindConstant(kFailureTerms, term.name);
+    return term.value >= constant.least && term.value <= constant.most;
+  });
 }
 
 double CovarianceFactor(const ModelCheck& check) {
-  const std::array<double, kNumSpreadTerms> terms = SpreadTerms(check);
   double log_factor = 0.0;
-  for (size_t k = 0; k < kNumSpreadTerms; ++k) log_factor += kSpreadTerms[k].weight * terms[k];
+  for (size_t k = 0; k < kCovarianceTerms.size(); ++k)
+    log_factor += kOfCovarianceTerms[k].weight * kCovarianceTerms[k].value(check);
   return std::max(1.0, std::exp(log_factor));
 }
 

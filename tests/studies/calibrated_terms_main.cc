@@ -33,8 +33,8 @@ namespace {
 std::string Header(const StudyPlan& plan) {
   std::string header = "condition,trial";
   for (const std::string& name : plan.factor_names) header += "," + name;
-  for (const char* name : kFailureTermNames) header += fmt::format(",failure_{}", name);
-  for (const char* name : kSpreadTermNames) header += fmt::format(",spread_{}", name);
+  for (const FitTerm& term : ListFailureTerms(0.5, {})) header += ",failure_" + term.name;
+  for (const FitTerm& term : ListSpreadTerms({})) header += ",spread_" + term.name;
   return header + ",posterior,homography_share,nees,failed\n";
 }
 
@@ -52,8 +52,9 @@ std::string FindRow(const StudyPlan& plan, const Condition& condition, std::uint
   if (estimate.status != MotionStatus::kOk || !data.truth.is_direction_known || !IsScored(record)) return {};
   std::string row = fmt::format("{},{}", condition.index, trial);
   for (const std::string& level : condition.levels) row += "," + level;
-  for (const double x : FailureTerms(verdict.by_modes, verdict.check)) row += fmt::format(",{:.9g}", x);
-  for (const double x : SpreadTerms(verdict.check)) row += fmt::format(",{:.9g}", x);
+  for (const FitTerm& x : ListFailureTerms(verdict.by_modes, verdict.check))
+    row += fmt::format(",{:.9g}", x.value);
+  for (const FitTerm& y : ListSpreadTerms(verdict.check)) row += fmt::format(",{:.9g}", y.value);
   return row + fmt::format(",{:.9g},{:.9g},{:.9g},{:d}\n", verdict.by_modes, data.severity.homography_share,
                            record.nees, HasFailed(record, plan.study.failure));
 }
