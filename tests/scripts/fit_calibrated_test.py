@@ -1,7 +1,9 @@
 """Whether scripts/fit_calibrated finds known weights, and measures what it says it measures."""
 
+import os
 import pathlib
 import sys
+import types
 import unittest
 
 import numpy as np
@@ -9,6 +11,8 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "studies"))
 
 import fit_calibrated as fit  # noqa: E402
+
+PROGRAMS = pathlib.Path(os.environ.get("PROGRAMS", fit.ROOT / "build/release/bin"))
 
 
 class Fits(unittest.TestCase):
@@ -43,25 +47,46 @@ class Fits(unittest.TestCase):
             here = (y[:, 1] >= low) & (y[:, 1] < high)
             self.assertAlmostEqual((nees[here] / np.exp(y[here] @ a) <= fit.QUANTILE_95).mean(), 0.95, delta=0.015)
 
-
     def test_the_slope_of_the_log_odds_has_a_least_value(self):
-        x = np.zeros((3, 21))
+        names = ["failure_constant", fit.LOG_ODDS, "failure_posterior", fit.SLOPE + "planar_share", "failure_noise_above"]
+        x = np.zeros((3, 5))
         x[:, 0], x[:, 1] = 1.0, [-5.0, -5.0, 0.0]
         x[1, 3] = -5.0 * 0.9  # a doubt that takes the slope below zero
-        b = np.zeros(21)
-        b[0], b[1], b[3] = 0.5, 0.3, -0.4
-        np.testing.assert_allclose(fit.probability(x, b), fit.logistic(np.array([0.5 - 1.5, 0.5 - 0.1, 0.5])))
+        b = np.array([0.5, 0.3, 0.0, -0.4, 0.0])
+        np.testing.assert_allclose(fit.probability(names, x, b), fit.logistic(np.array([0.5 - 1.5, 0.5 - 0.1, 0.5])))
+
+    def test_the_committed_constants_are_read(self):
+        b, domain, a = fit.read_header()
+        self.assertEqual(domain.shape, (len(b), 2))
+        self.assertTrue((domain[:, 0] <= domain[:, 1]).all())
+        self.assertEqual(domain[0].tolist(), [1, 1])
+        self.assertGreater(len(b), len(a))
 
 
 class Measures(unittest.TestCase):
-    def test_area_is_the_chance_of_the_right_order(self):
-        p, failed = np.array([0.1, 0.4, 0.35, 0.8]), np.array([0, 0, 1, 1])
-        self.assertEqual(fit.area(p, failed), 0.75)
-        self.assertEqual(fit.area(np.array([0.5, 0.5, 0.5]), np.array([0, 1, 0])), 0.5)  # ties by half
+    def measure(self, p, failed, covered=None, clusters=None):
+        """{quantity: value} before and after of trials of conditions of their own."""
+        n = len(p)
+        trials = types.SimpleNamespace(cluster=np.arange(n) if clusters is None else np.array(clusters), failed=np.array(failed, float))
+        covered = np.ones(n, bool) if covered is None else np.array(covered, bool)
+        rows = fit.measure(PROGRAMS, trials, (np.full(n, 0.5), np.array(p)), (np.zeros(n, bool), covered), np.ones(n, bool))
+        return {row[0]: [cell if cell == "-" else float(cell.split(" ")[0]) for cell in row[1:]] for row in rows}
 
-    def test_calibration_error_is_of_bins(self):
-        p, failed = np.array([0.05, 0.05, 0.95, 0.95]), np.array([0, 0, 1, 0])
-        self.assertAlmostEqual(fit.calibration_error(p, failed), 0.5 * 0.05 + 0.5 * 0.45)
+    def test_measures_are_of_the_probabilities(self):
+        of = self.measure([0.05, 0.05, 0.35, 0.4, 0.8, 0.95], [0, 0, 1, 0, 1, 1], [1, 0, 1, 1, 1, 1])
+        self.assertEqual(of["failed"], [0.5, 0.5])
+        self.assertEqual(of["stated"], [0.5, 0.433])
+        self.assertEqual(of["kept at P <= 0.1"], [0.0, 0.333])
+        self.assertEqual(of["failed at P <= 0.1"], ["-", "-"])  # fewer than five conditions
+        self.assertEqual(of["AUC"], [0.5, 0.889])  # ties by half
+        self.assertEqual(of["ECE"], [0.0, round((0.1 + 0.65 + 0.4 + 0.2 + 0.05) / 6, 3)])
+        self.assertEqual(of["Brier"], [0.25, round((2 * 0.05**2 + 0.65**2 + 0.4**2 + 0.2**2 + 0.05**2) / 6, 3)])
+
+    def test_rates_of_the_sure_are_of_them_alone(self):
+        of = self.measure([0.009] * 5 + [0.09] * 5 + [0.9] * 10, [0, 0, 0, 0, 1] + [0] * 5 + [1] * 10, [1, 1, 1, 1, 0] + [1] * 5 + [0] * 10)
+        self.assertEqual(of["failed at P <= 0.1"], ["-", 0.1])
+        self.assertEqual(of["covered at P <= 0.1"], ["-", 0.9])
+        self.assertEqual(of["covered at P <= 0.01"], ["-", 0.8])
 
     def test_a_regime_is_what_was_simulated(self):
         row = {"noise": "gaussian", "outliers": "uniform", "homography_share": "0.5"}

@@ -2,12 +2,11 @@
 
 Training: draws of studies/right_calibration.yaml and of studies/any_condition.yaml, and the families of studies/calibrated, with seeds
 of their own; the latter two count less. The covariance is fitted where the calibration is right: errors of the calibration are not for
-residuals to tell. Reported on draws with other seeds. Each trial's terms come from the program
-rcme_calibrated_terms; regimes are told apart by what was simulated, which the fit does not see.
+residuals to tell. Reported on draws with other seeds. Each trial's terms come from the program rcme_calibrated_terms, the measures of the
+report with their intervals from rcme_calibrated_measures; regimes are told apart by what was simulated, which the fit does not see.
 """
 
 import argparse
-import concurrent.futures
 import csv
 import pathlib
 import re
@@ -22,14 +21,13 @@ FAMILIES = ["indoor", "outdoor", "low_parallax", "planarity", "moving_object", "
             "uniform", "forward", "parallax", "clustered_inliers", "assumed_sigma"]
 LESS = 0.3  # weight of a trial with a wrong calibration, or of a family, which are easy and many
 RIDGE = 5e-4  # of the standardised terms' weights, per trial
-NUM_SPREAD_TERMS = 3
 OUTSIDE = 0.005  # share of the training trials beyond either end of a term's domain
 QUANTILE_95 = 11.0705  # of chi-square with five degrees of freedom
 SURE = 0.05  # the covariance is fitted where the probability of failure is at most this
-SLOPES = slice(3, 8)  # the terms that are the posterior's log-odds times something
+LOG_ODDS, SLOPE = "failure_posterior_log_odds", "failure_log_odds_by_"  # the posterior's, and terms that are it times something
 LEAST_SLOPE = 0.02  # of the log-odds (kLeastSlope of checked_probability.cc)
-LEAST_CONDITIONS = 5  # for an interval over conditions
 DEPENDENT_NOISE = {"correlated", "duplicated", "anisotropic"}
+OF_ALL = {"ECE", "AUC", "Brier"}  # measures that are reported of all regimes together
 COHERENT_OUTLIERS = {"moving_object", "clustered_both", "repeated_texture", "mixture"}
 
 
@@ -53,7 +51,7 @@ def sources(scale):
     return training, held_out
 
 
-def make_trials(source, program, folder, keeps):
+def make_trials(source, programs, folder, keeps):
     """The CSV of a source's trials; one that is there is taken as it is if `keeps`."""
     made = folder / f"{source.name()}.csv"
     if keeps and made.exists():
@@ -67,7 +65,7 @@ def make_trials(source, program, folder, keeps):
     study = folder / f"{source.name()}.yaml"
     study.write_text(text)
     with open(made.with_suffix(".part"), "w") as out:
-        subprocess.run([program, study, str(source.seed), str(source.trials)], stdout=out, check=True)
+        subprocess.run([programs / "rcme_calibrated_terms", study, str(source.seed), str(source.trials)], stdout=out, check=True)
     made.with_suffix(".part").rename(made)
     return made
 
@@ -111,12 +109,13 @@ def logistic(x):
     return 1.0 / (1.0 + np.exp(-np.clip(x, -40, 40)))
 
 
-def probability(x, b):
-    """P of the terms, as CheckedFailureProbability has it."""
-    log_odds = x[:, 1]
-    slope = b[1] + np.divide(x[:, SLOPES] @ b[SLOPES], log_odds, out=np.zeros(len(x)), where=log_odds != 0)
-    rest = np.ones(x.shape[1], bool)
-    rest[1], rest[SLOPES] = False, False
+def probability(names, x, b):
+    """P of the terms of these names, as CheckedFailureProbability has it."""
+    of_log_odds, slopes = names.index(LOG_ODDS), np.array([name.startswith(SLOPE) for name in names])
+    log_odds = x[:, of_log_odds]
+    slope = b[of_log_odds] + np.divide(x[:, slopes] @ b[slopes], log_odds, out=np.zeros(len(x)), where=log_odds != 0)
+    rest = ~slopes
+    rest[of_log_odds] = False
     return logistic(np.maximum(slope, LEAST_SLOPE) * log_odds + x[:, rest] @ b[rest])
 
 
@@ -154,69 +153,31 @@ def log_loss(p, failed, weight):
     return -np.average(failed * np.log(p) + (1 - failed) * np.log(1 - p), weights=weight)
 
 
-def calibration_error(p, failed):
-    """Expected calibration error, ten bins of equal width."""
-    bins = np.minimum((10 * p).astype(int), 9)
-    return sum(abs(p[bins == k].sum() - failed[bins == k].sum()) for k in range(10)) / len(p)
-
-
-def area(p, failed):
-    """Area under the ROC curve: the probability that a failure has the greater p, ties by half."""
-    order = np.argsort(p, kind="stable")
-    ranks = np.empty(len(p))
-    ranks[order] = np.arange(1, len(p) + 1)
-    for value in np.unique(p[np.concatenate([[False], np.diff(p[order]) == 0])[np.argsort(order)]]):
-        ranks[p == value] = ranks[p == value].mean()
-    n = failed.sum()
-    return (ranks[failed == 1].sum() - n * (n + 1) / 2) / (n * (len(p) - n))
-
-
-def bootstrap(trials, statistic, select, repetitions=400):
-    """A statistic of chosen trials with its 95 % interval, conditions being the sample. Where every condition gives 0 or every
-    one 1, the interval ends 3 / (number of conditions) away (P(none of m) = .05); "-" for fewer than five conditions."""
-    chosen = np.flatnonzero(select)
-    clusters, places = np.unique(trials.cluster[chosen], return_inverse=True)
-    if len(clusters) < LEAST_CONDITIONS:
-        return "-"
-    random = np.random.default_rng(1)
-    members = [chosen[places == k] for k in range(len(clusters))]
-    values = []
-    for _ in range(repetitions):
-        picked = np.concatenate([members[k] for k in random.integers(0, len(clusters), len(clusters))])
-        values.append(statistic(picked))
-    low, high = np.nanquantile(values, [0.025, 0.975])
-    value, away = statistic(chosen), 3 / len(clusters)
-    low, high = (low, min(1, away)) if high == value == 0 else (max(0, 1 - away), high) if low == value == 1 else (low, high)
-    return f"{value:.3f} [{low:.3f}, {high:.3f}]"
-
-
 def in_domain(x, domain):
     """Whether all terms lie in the domain that the constants state (IsInDomain)."""
     return ((x >= domain[:, 0]) & (x <= domain[:, 1])).all(axis=1)
 
 
-def report(title, trials, p, factor, is_verified):
+def measure(programs, trials, p, covered, here):
+    """Rows (quantity, before, after) of chosen trials; `p` and `covered` are pairs (before, after)."""
+    columns = [trials.cluster, trials.failed.astype(int), p[0], covered[0].astype(int), p[1], covered[1].astype(int)]
+    text = "".join(f"{c} {failed} {p0:.17g} {c0} {p1:.17g} {c1}\n" for c, failed, p0, c0, p1, c1 in zip(*(x[here] for x in columns)))
+    done = subprocess.run([programs / "rcme_calibrated_measures"], input=text, capture_output=True, text=True, check=True)
+    return list(csv.reader(done.stdout.splitlines()))[1:]
+
+
+def report(programs, title, trials, p, factor, is_verified):
     """Rows (population, regime, conditions, quantity, before, after)."""
     rows = []
     covered = trials.nees <= QUANTILE_95, trials.nees / factor <= QUANTILE_95
-    mean = lambda of: lambda i: of[i].mean() if len(i) else float("nan")
-    everything = np.ones(len(p), bool)
-    both = [("before", trials.posterior, covered[0]), ("after", p, covered[1])]
-    regimes = [("all", everything), ("verified", is_verified), ("extrapolated", ~is_verified)]
+    regimes = [("all", np.ones(len(p), bool)), ("verified", is_verified), ("extrapolated", ~is_verified)]
     regimes += [(regime, trials.regime == regime) for regime in sorted(set(trials.regime))]
     for regime, here in regimes:
-        def add(quantity, values):
-            rows.append([title, regime, len(np.unique(trials.cluster[here])), quantity, *values])
-        add("failed", [bootstrap(trials, mean(trials.failed), here)] * 2)
-        add("stated", [bootstrap(trials, mean(q), here) for _, q, _ in both])
-        add("kept at P <= 0.1", [bootstrap(trials, lambda i, q=q: (q[i] <= 0.1).mean(), here) for _, q, _ in both])
-        add("failed at P <= 0.1", [bootstrap(trials, mean(trials.failed), here & (q <= 0.1)) for _, q, _ in both])
-        add("covered at P <= 0.1", [bootstrap(trials, mean(c.astype(float)), here & (q <= 0.1)) for _, q, c in both])
-        add("covered at P <= 0.01", [bootstrap(trials, mean(c.astype(float)), here & (q <= 0.01)) for _, q, c in both])
-        if regime == "all":
-            add("ECE", [bootstrap(trials, lambda i, q=q: calibration_error(q[i], trials.failed[i]), here) for _, q, _ in both])
-            add("AUC", [bootstrap(trials, lambda i, q=q: area(q[i], trials.failed[i]), here, 100) for _, q, _ in both])
-            add("Brier", [bootstrap(trials, lambda i, q=q: ((q[i] - trials.failed[i]) ** 2).mean(), here) for _, q, _ in both])
+        if not here.any():
+            continue
+        for row in measure(programs, trials, (trials.posterior, p), covered, here):
+            if regime == "all" or row[0] not in OF_ALL:
+                rows.append([title, regime, len(np.unique(trials.cluster[here])), *row])
     return rows
 
 
@@ -237,12 +198,15 @@ def write_header(training, train, b, a):
 
 def read_header():
     """(b, its domain, a) of the constants as they are in the program."""
-    rows = re.findall(r'\{"(\w+)", ([-\d.e+]+), ([-\d.e+]+), ([-\d.e+]+)\}', HEADER.read_text())
-    values = np.array([[float(x) for x in row[1:]] for row in rows])
-    return values[:-NUM_SPREAD_TERMS, 0], values[:-NUM_SPREAD_TERMS, 1:], values[-NUM_SPREAD_TERMS:, 0]
+
+    def read(name):
+        array = re.search(rf"{name}\[\] = {{\n(.*?)\n}};", HEADER.read_text(), re.DOTALL)[1]
+        return np.array([[float(x) for x in row.rstrip("},").split(", ")[1:]] for row in array.splitlines()])
+    failure, spread = read("kFailureTerms"), read("kSpreadTerms")
+    return failure[:, 0], failure[:, 1:], spread[:, 0]
 
 
-def write_tables(folder, train, held_out, tests):
+def write_tables(programs, folder, train, held_out, tests):
     b, domain, a = read_header()
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "held_out.csv", "w", newline="") as file:
@@ -250,7 +214,8 @@ def write_tables(folder, train, held_out, tests):
         table.writerow(["population", "regime", "conditions", "quantity", "before", "after"])
         for source, test in zip(held_out, tests):
             factor = np.maximum(1.0, np.exp(test.spread @ a))
-            table.writerows(report(pathlib.Path(source.study).stem, test, probability(test.x, b), factor, in_domain(test.x, domain)))
+            p = probability(test.names, test.x, b)
+            table.writerows(report(programs, pathlib.Path(source.study).stem, test, p, factor, in_domain(test.x, domain)))
     with open(folder / "terms.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["term", "weight", "log_loss_more_without"])
@@ -266,7 +231,7 @@ def write_tables(folder, train, held_out, tests):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", default=ROOT / "build/release/bin/rcme_calibrated_terms", help="the program that makes the trials")
+    parser.add_argument("--programs", default=ROOT / "build/release/bin", type=pathlib.Path, help="folder of the two programs")
     parser.add_argument("--trials", default=ROOT / "build/fit_calibrated", type=pathlib.Path, help="folder of the trials")
     parser.add_argument("--resume", action="store_true", help="take trials that are there as they are")
     parser.add_argument("--out", default=ROOT / "results/right_calibration", type=pathlib.Path, help="folder of the tables")
@@ -275,20 +240,18 @@ def main():
     arguments = parser.parse_args()
     arguments.trials.mkdir(parents=True, exist_ok=True)
     training, held_out = sources(arguments.scale)
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        futures = [pool.submit(make_trials, source, arguments.program, arguments.trials, arguments.resume) for source in training + held_out]
-        for k, future in enumerate(futures, 1):
-            future.result()
-            print(f"{k} of {len(futures)} populations and families", file=sys.stderr)
-    files = [future.result() for future in futures]
+    files = []
+    for source in training + held_out:
+        files.append(make_trials(source, arguments.programs, arguments.trials, arguments.resume))
+        print(f"{len(files)} of {len(training + held_out)} populations and families", file=sys.stderr)
     train = Trials(files[:len(training)], training)
     b = fit_failure(train.x, train.failed, train.weight)
-    sure = train.fits_covariance & (probability(train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
+    sure = train.fits_covariance & (probability(train.names, train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
     a = fit_spread(train.spread[sure], train.nees[sure], train.weight[sure])
     if not arguments.report_only:
         write_header(training, train, b, a)
     tests = [Trials([path], [source]) for path, source in zip(files[len(training):], held_out)]
-    write_tables(arguments.out, train, held_out, tests)
+    write_tables(arguments.programs, arguments.out, train, held_out, tests)
     now_b, _, now_a = read_header()
     if not np.allclose(now_b, b, rtol=1e-4, atol=1e-6) or not np.allclose(now_a, a, rtol=1e-4, atol=1e-6):
         sys.exit("fit_calibrated: the constants of estimator/calibrated/fitted_constants.h are not those of this fit")
