@@ -64,8 +64,9 @@ struct ClusterMean {
 };
 
 // What both kinds of a cluster have in common: S11.
-double CovarianceOf(const std::vector<Placements>& positives, const std::vector<Placements>& negatives,
-                    const ClusterMean& positive_mean, const ClusterMean& negative_mean) {
+double ComputePlacementCovariance(const std::vector<Placements>& positives,
+                                  const std::vector<Placements>& negatives, const ClusterMean& positive_mean,
+                                  const ClusterMean& negative_mean) {
   double products = 0.0;
   for (size_t c = 0; c < positives.size(); ++c) {
     products += (positives[c].sum - positives[c].count * positive_mean.mean) *
@@ -94,7 +95,8 @@ Interval IntervalOf(double area, const std::vector<Placements>& positives,
     return area == 1.0 ? Interval{end, 1.0} : Interval{0.0, 1.0 - end};
   }
   const double centre = ((least - 1.0) * area + 0.5) / least;
-  const double variance = p.variance + n.variance + 2.0 * CovarianceOf(positives, negatives, p, n);
+  const double variance =
+      p.variance + n.variance + 2.0 * ComputePlacementCovariance(positives, negatives, p, n);
   const double degrees_of_freedom =
       variance * variance /
       (p.variance * p.variance / (p.num_clusters - 1.0) + n.variance * n.variance / (n.num_clusters - 1.0));
@@ -114,7 +116,8 @@ AreaUnderCurve MeasureClusteredAreaUnderCurve(const std::vector<ScoreCluster>& c
   const ClusterMean p(positives, 0.0), n(negatives, 0.0);
   AreaUnderCurve area;
   area.value = p.mean;
-  const double variance = p.variance + n.variance + 2.0 * CovarianceOf(positives, negatives, p, n);
+  const double variance =
+      p.variance + n.variance + 2.0 * ComputePlacementCovariance(positives, negatives, p, n);
   area.standard_error = std::sqrt(variance < 0.0 ? 0.0 : variance);  // below zero by rounding only
   area.interval = IntervalOf(area.value, positives, negatives, confidence);
   return area;

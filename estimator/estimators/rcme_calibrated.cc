@@ -202,7 +202,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
       verdict.pose_cov +=
-          weight * (CovarianceOf(problem, modes[i], curvature, check) + away * away.transpose());
+          weight * (ComputeCovariance(problem, modes[i], curvature, check) + away * away.transpose());
       within += weight;
     }
     verdict.pose_cov /= within;
@@ -211,8 +211,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return verdict;
   }
 
-  Matrix5d CovarianceOf(const MotionProblem& problem, const ExplainedMode& mode, const Matrix5d& curvature,
-                        const ModelCheck& check) const {
+  Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
+                             const Matrix5d& curvature, const ModelCheck& check) const {
     Matrix5d of_matches = options_.covariance == CovarianceKind::kInformation
                               ? mode.mode.inverse_hessian
                               : SandwichCovariance(mode.mode, mode.explanation, curvature);

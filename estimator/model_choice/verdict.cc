@@ -103,7 +103,7 @@ double MeanRootDeterminant(const MotionProblem& problem, const Eigen::Matrix3d& 
 }
 
 // The probability that a random match agrees with the model.
-double ChanceOf(TwoViewModel model, const MotionProblem& problem, const TwoViewFits& fits) {
+double ComputeModelChance(TwoViewModel model, const MotionProblem& problem, const TwoViewFits& fits) {
   const double threshold = ChiSquareQuantile(DimensionsOf(model).codimension(), 1.0 - kInlierLevel);
   if (model == TwoViewModel::kEssential) return ChanceOfAgreement(problem, fits.motion, threshold);
   return ChanceOfAgreementInEllipse(problem, threshold, MeanRootDeterminant(problem, fits[model].matrix));
@@ -145,7 +145,7 @@ void Decide(const MotionProblem& problem, const TwoViewFits& fits, const ModelCh
   choice->num_inliers = static_cast<int>(inliers.size());
   const double log_false_alarms =
       LogFalseAlarms(FamilyOf(choice->model), static_cast<int>(problem.matches.size()), choice->num_inliers,
-                     ChanceOf(choice->model, problem, fits));
+                     ComputeModelChance(choice->model, problem, fits));
   if (log_false_alarms > std::log(kChanceLevel)) {
     choice->status = MotionStatus::kNotBetterThanChance;
     choice->message = fmt::format("{} of {} matches agree with the best model, no more than chance explains",

@@ -24,7 +24,7 @@ Eigen::Matrix3d MinimizeOverRotation(
   return R;
 }
 
-Eigen::Matrix3d CovarianceOf(const RotationEquations& equations) {
+Eigen::Matrix3d ComputeRotationCovariance(const RotationEquations& equations) {
   return equations.hessian.llt().solve(Eigen::Matrix3d::Identity());
 }
 

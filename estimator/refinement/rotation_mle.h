@@ -27,7 +27,7 @@ Eigen::Matrix3d MinimizeOverRotation(
     const std::function<RotationEquations(const Eigen::Matrix3d& R, Loss loss)>& linearize);
 
 // The inverse of the Hessian; not finite where it is singular.
-Eigen::Matrix3d CovarianceOf(const RotationEquations& equations);
+Eigen::Matrix3d ComputeRotationCovariance(const RotationEquations& equations);
 
 // Most fits after the robust one.
 inline constexpr int kMaxRotationRefits = 10;
@@ -61,7 +61,7 @@ RotationFit FitRotation(const Matches& matches, const typename Matches::Set& set
   const RotationEquations at = matches.LinearizeRotation(fitted, fit.R, Loss::kSquared);
   fit.num_fitted = matches.Count(fitted);
   fit.energy = at.energy;
-  fit.rotation_cov = CovarianceOf(at);
+  fit.rotation_cov = ComputeRotationCovariance(at);
   return fit;
 }
 

@@ -31,14 +31,14 @@ struct RareTexts {
 RareTexts Split(const StudyPlan& plan, const RareArguments& arguments, Runner* runner) {
   const std::vector<RareCell> cells = SplitFailures(plan, plan.study.seed, arguments.splitting, runner);
   std::vector<RareRow> rows;
-  for (const RareCell& cell : cells) rows.push_back(RowOf(cell));
+  for (const RareCell& cell : cells) rows.push_back(MakeRareRow(cell));
   return {RareAsTable(plan, cells), RareAsCsv(plan, rows), RareAsJson(plan, arguments.splitting, cells)};
 }
 
 RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments, Runner* runner) {
   const std::vector<StratifiedCell> cells = StratifyFailures(plan, arguments.stratified, runner);
   std::vector<RareRow> rows;
-  for (const StratifiedCell& cell : cells) rows.push_back(RowOf(cell));
+  for (const StratifiedCell& cell : cells) rows.push_back(MakeRareRow(cell));
   return {StratifiedAsTable(plan, cells), RareAsCsv(plan, rows),
           StratifiedAsJson(plan, arguments.stratified, cells)};
 }

@@ -155,7 +155,7 @@ double RareRow::BruteForceShare() const {
   return static_cast<double>(num_calls) * estimate * relative_error * relative_error / (1.0 - estimate);
 }
 
-RareRow RowOf(const RareCell& cell) {
+RareRow MakeRareRow(const RareCell& cell) {
   const SplittingRate& rate = cell.rate;
   RareRow row{cell.condition,      cell.estimator,       rate.estimate,
               rate.standard_error, rate.interval,        rate.num_values,
@@ -165,7 +165,7 @@ RareRow RowOf(const RareCell& cell) {
   return row;
 }
 
-RareRow RowOf(const StratifiedCell& cell) {
+RareRow MakeRareRow(const StratifiedCell& cell) {
   RareRow row{cell.condition,
               cell.estimator,
               cell.rate.estimate,
@@ -187,7 +187,7 @@ RareRow RowOf(const StratifiedCell& cell) {
 
 std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cells) {
   std::vector<RareRow> rows;
-  for (const RareCell& cell : cells) rows.push_back(RowOf(cell));
+  for (const RareCell& cell : cells) rows.push_back(MakeRareRow(cell));
   Table table = MakeRateTable(plan, rows);
   table.columns.push_back(Column::Number("spread", {1.0, "", ".2f"}));
   std::string doubts;
@@ -213,7 +213,7 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
 
 std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells) {
   std::vector<RareRow> rows;
-  for (const StratifiedCell& cell : cells) rows.push_back(RowOf(cell));
+  for (const StratifiedCell& cell : cells) rows.push_back(MakeRareRow(cell));
   Table table = MakeRateTable(plan, rows);
   for (size_t k = 0; k < kNumStrata; ++k) {
     table.columns.push_back({fmt::format("1 in {}", 1 << k)});
@@ -262,7 +262,7 @@ std::string RareAsJson(const StudyPlan& plan, const RareEffort& effort, const st
   for (const RareCell& cell : cells) {
     Json estimates = Json::array();
     for (const SplittingReplicate& replicate : cell.replicates) estimates.push_back(replicate.estimate);
-    all.push_back(RowAsJson(plan, RowOf(cell)));
+    all.push_back(RowAsJson(plan, MakeRareRow(cell)));
     all.back().update({{"relative_spread", JsonNumber(cell.rate.relative_spread)},
                        {"num_ancestors", cell.rate.num_ancestors},
                        {"error_levels", LevelsOf(cell)},
@@ -289,7 +289,7 @@ std::string StratifiedAsJson(const StudyPlan& plan, const StratifiedEffort& effo
                         {"num_run", count.num_run},
                         {"num_failed", count.num_failed}});
     }
-    all.push_back(RowAsJson(plan, RowOf(cell)));
+    all.push_back(RowAsJson(plan, MakeRareRow(cell)));
     all.back()["strata"] = strata;
   }
   Json json = StudyAsJson(plan, "stratified");

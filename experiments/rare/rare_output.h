@@ -21,9 +21,9 @@ struct RareRow {
   // Calls, of those after which plain trials would have the same standard error.
   double BruteForceShare() const;
 };
-RareRow RowOf(const RareCell& cell);
+RareRow MakeRareRow(const RareCell& cell);
 // Doubted ("few_failures") below kLeastFailures of them: the interval is that of hardly any.
-RareRow RowOf(const StratifiedCell& cell);
+RareRow MakeRareRow(const StratifiedCell& cell);
 inline constexpr double kLeastFailures = 3.0;  // as many of equal weight as have the same relative error
 
 // For people: a row for each condition and estimator, and why a rate is not to be trusted.

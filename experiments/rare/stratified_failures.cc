@@ -40,7 +40,7 @@ class Strata {
       : plan_(plan), condition_(condition), make_(StudyCases(plan, condition)) {
     std::vector<double> chances;  // of the trials that can be simulated
     for (std::uint32_t i = 0; i < kNumPilotTrials; ++i) {
-      if (const std::optional<double> chance = ChanceOf(kFirstPilotTrial + i)) chances.push_back(*chance);
+      if (const std::optional<double> chance = FindChance(kFirstPilotTrial + i)) chances.push_back(*chance);
     }
     // The share that is run falls as p_hard rises.
     double lower = -700.0, upper = 50.0;  // of its logarithm
@@ -54,7 +54,7 @@ class Strata {
 
   // Nothing: the trial could not be simulated.
   std::optional<int> FindStratum(std::uint32_t trial) const {
-    const std::optional<double> chance = ChanceOf(trial);
+    const std::optional<double> chance = FindChance(trial);
     return chance ? std::optional(StratumOfChance(*chance)) : std::nullopt;
   }
 
@@ -65,7 +65,7 @@ class Strata {
 
  private:
   // 1 where the matches do not determine the motion; nothing where there is no trial.
-  std::optional<double> ChanceOf(std::uint32_t trial) const {
+  std::optional<double> FindChance(std::uint32_t trial) const {
     const auto simulated =
         SimulateDraw(plan_.study, [&] { return make_(NameOfTrial(plan_, condition_, trial)); });
     if (!simulated.made) return std::nullopt;

@@ -11,7 +11,7 @@ constexpr const char* kBetween = "_between_scenes";
 constexpr const char* kWithin = "_within_scenes";
 constexpr const char* kFlips = "_flips";
 
-SummaryRow RowOf(const SummaryRow& cell, const std::string& quantity, SummaryRow::Kind kind) {
+SummaryRow MakeSplitRow(const SummaryRow& cell, const std::string& quantity, SummaryRow::Kind kind) {
   SummaryRow row = cell;
   row.quantity = quantity;
   row.kind = kind;
@@ -44,7 +44,7 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
   for (size_t v = 0; v < counts_.size(); ++v) {
     const std::string& event = TrialEvents()[v].name;
     const VarianceSplit split = counts_[v].scenes.Split();
-    SummaryRow within = RowOf(cell, event + kWithin, SummaryRow::Kind::kVarianceShare);
+    SummaryRow within = MakeSplitRow(cell, event + kWithin, SummaryRow::Kind::kVarianceShare);
     within.is_of_split = true;
     within.n = std::isnan(split.within_share) ? 0 : split.num_scenes;  // nothing varies: there are no shares
     within.value = split.within_share;
@@ -54,7 +54,7 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
     between.quantity = event + kBetween;
     between.value = 1.0 - within.value;
     between.interval = {1.0 - within.interval.upper, 1.0 - within.interval.lower};
-    SummaryRow flips = RowOf(cell, event + kFlips, SummaryRow::Kind::kRate);
+    SummaryRow flips = MakeSplitRow(cell, event + kFlips, SummaryRow::Kind::kRate);
     flips.is_of_split = true;
     flips.n = split.num_scenes;
     flips.value = static_cast<double>(split.num_mixed) / static_cast<double>(split.num_scenes);

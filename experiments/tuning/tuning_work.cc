@@ -202,7 +202,7 @@ std::string ComputeBlock(const StudyPlan& plan, const SettingPlan& settings, std
   return CountsAsJson(CountOutcomes(one, settings, trials).front()).dump();
 }
 
-std::int64_t NumTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
+std::int64_t CountTrialsIn(const StudyPlan& plan, const ItemPlace& place) {
   const TrialRange trials = TrialsOf(plan, place);
   return trials.end - trials.first;
 }
@@ -281,7 +281,7 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
     SettingCounts counts(num_conditions, std::vector<SettingCount>(settings.settings.size()));
     ReadResults(work.items, results, first, first + num_conditions,
                 [&](const ItemPlace& place, const std::string& json) {
-                  AddCounts(ParsePiece(json), NumTrialsOf(plan, place), plan.study.population.has_value(),
+                  AddCounts(ParsePiece(json), CountTrialsIn(plan, place), plan.study.population.has_value(),
                             &counts[place.group - first]);
                 });
     return counts;
@@ -293,7 +293,7 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
     const size_t first = FirstGroup(plan, Kind::kPlainCalls);
     ReadResults(work.items, results, first, first + plan.conditions.size(),
                 [&](const ItemPlace& place, const std::string& json) {
-                  AddVerified(ParsePiece(json), NumTrialsOf(plan, place), plan.study.population.has_value(),
+                  AddVerified(ParsePiece(json), CountTrialsIn(plan, place), plan.study.population.has_value(),
                               &estimators);
                 });
     return estimators;
@@ -309,7 +309,7 @@ EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningWork& work, con
   ReadResults(work.items, results, first, first + plan.conditions.size(),
               [&](const ItemPlace& place, const std::string& json) {
                 const size_t begin = (place.group - first) * num_trials + place.item * kTrialsOfItem;
-                SetEntropies(ParsePiece(json), begin, static_cast<size_t>(NumTrialsOf(plan, place)),
+                SetEntropies(ParsePiece(json), begin, static_cast<size_t>(CountTrialsIn(plan, place)),
                              &entropies);
               });
   return entropies;
@@ -340,7 +340,7 @@ Repetitions RepeatTuning(const StudyPlan& plan, const SettingPlan& settings, Run
   const auto num_trials = [&](const ItemPlace& place) {
     return place.group == tunings
                ? (tuning.explore + std::int64_t{tuning.calibrate}) * std::ssize(plan.conditions)
-               : NumTrialsOf(plan, place);
+               : CountTrialsIn(plan, place);
   };
   runner->Get(ListItems(work, {}), compute, {"trials", num_trials});
   Repetitions repetitions;

@@ -93,7 +93,7 @@ std::string TableOfDataset(const std::string& dataset, const std::string& layout
 }
 
 // The rows "run,..." of the table's file: that of this part, estimator and quantity.
-std::vector<std::string> RowOf(const TempFolder& folder, const std::string& part_estimator_quantity) {
+std::vector<std::string> FindRow(const TempFolder& folder, const std::string& part_estimator_quantity) {
   const std::string csv = ReadBytes(folder.Path("table") + "/paper_table.csv");
   const size_t begin = csv.find("\nrun," + part_estimator_quantity + ",");
   EXPECT_NE(begin, std::string::npos) << part_estimator_quantity << " is not in\n" << csv;
@@ -109,11 +109,11 @@ std::vector<std::string> RowOf(const TempFolder& folder, const std::string& part
   return fields;
 }
 
-// More than 30 of the 59 pairs of neighbouring frames are key frames, and the motions of all of them are right. Of
-// 31 pairs without a failure an estimator that fails in 7.2 % of them gives as many with probability .1: that rate, or
-// more, is seen with power .9; of both sequences together 3.7 %.
+// More than 30 of the 59 pairs of neighbouring frames are key frames, and the motions of all of them are
+// right. Of 31 pairs without a failure an estimator that fails in 7.2 % of them gives as many with
+// probability .1: that rate, or more, is seen with power .9; of both sequences together 3.7 %.
 void ExpectRightMotions(const TempFolder& folder, const std::string& scene) {
-  const std::vector<std::string> failures = RowOf(folder, scene + ",calibrated,true_failure");
+  const std::vector<std::string> failures = FindRow(folder, scene + ",calibrated,true_failure");
   ASSERT_GT(failures.size(), 8u);
   EXPECT_EQ(failures[5], "0");
   EXPECT_GT(std::stoi(failures[8]), 30);

@@ -30,7 +30,7 @@
 namespace rcme {
 namespace {
 
-std::string Header(const StudyPlan& plan) {
+std::string MakeHeader(const StudyPlan& plan) {
   std::string header = "condition,trial";
   for (const std::string& name : plan.factor_names) header += "," + name;
   for (const FitTerm& term : ListFailureTerms(0.5, {})) header += ",failure_" + term.name;
@@ -76,7 +76,7 @@ int Run(int argc, char** argv) {
     progress.Advance(1);
   };
   ForEachTrial(plan, {0, static_cast<std::uint32_t>(study.trials)}, add, num_threads);
-  fmt::print("{}{}", Header(plan), fmt::join(rows, ""));
+  fmt::print("{}{}", MakeHeader(plan), fmt::join(rows, ""));
   return EXIT_SUCCESS;
 }
 

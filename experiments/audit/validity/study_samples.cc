@@ -76,7 +76,7 @@ MapSample SampleOf(const Case& made, int num_points) {
   return sample;
 }
 
-MapSampler SamplerOf(const Study& study, const Settings& settings, int num_points) {
+MapSampler MakeMapSampler(const Study& study, const Settings& settings, int num_points) {
   const CaseMaker make = CasesFrom(MakeSimulatedData(settings, BaselineSearch::kWithFirstScene));
   const CaseNeeds needs{.num_true_matches = num_points + 1};
   return [study, make, needs, num_points](const StreamName& name) -> std::optional<MapSample> {
@@ -99,7 +99,7 @@ std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
     if (!seen.insert(levels).second) continue;
     conditions.push_back(
         {DescribeCase(plan, levels), [study = plan.study, settings](int num_points, double sigma_px) {
-           return SamplerOf(study, AtSigma(settings, sigma_px), num_points);
+           return MakeMapSampler(study, AtSigma(settings, sigma_px), num_points);
          }});
   }
   return conditions;

@@ -142,7 +142,7 @@ bool IsInGroup(const SceneGroup& group, const SceneEvents& scene) {
   });
 }
 
-TableRow RowOf(const std::string& name, bool is_group, const std::vector<const SceneEvents*>& scenes) {
+TableRow MakeTableRow(const std::string& name, bool is_group, const std::vector<const SceneEvents*>& scenes) {
   TableRow row{name, is_group, {}};
   for (size_t e = 0; e < scenes.front()->estimators.size(); ++e) {
     CellEvents events;
@@ -187,16 +187,16 @@ PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>&
   for (const SceneEvents& scene : scenes) {
     all.push_back(&scene);
     const std::string name = fmt::format("{}", fmt::join(scene.levels, ", "));
-    table.rows.push_back(RowOf(name.empty() ? plan.study.name : name, false, {&scene}));
+    table.rows.push_back(MakeTableRow(name.empty() ? plan.study.name : name, false, {&scene}));
   }
   for (const SceneGroup& group : groups) {
     std::vector<const SceneEvents*> of_group;
     for (const SceneEvents& scene : scenes) {
       if (IsInGroup(group, scene)) of_group.push_back(&scene);
     }
-    if (!of_group.empty()) table.rows.push_back(RowOf(group.name, true, of_group));
+    if (!of_group.empty()) table.rows.push_back(MakeTableRow(group.name, true, of_group));
   }
-  if (scenes.size() > 1) table.rows.push_back(RowOf("all", true, all));
+  if (scenes.size() > 1) table.rows.push_back(MakeTableRow("all", true, all));
   return table;
 }
 

@@ -19,7 +19,7 @@ Eigen::Vector2d ImageVelocity(const Camera& camera, const Eigen::Vector3d& point
   return {camera.fx * rate.x(), camera.fy * rate.y()};
 }
 
-double RowOf(const Camera& camera, const Eigen::Vector2d& x_px) {
+double FindImageRow(const Camera& camera, const Eigen::Vector2d& x_px) {
   return (x_px.y() + 0.5) / camera.height - 0.5;
 }
 
@@ -31,8 +31,8 @@ Eigen::Vector4d ShiftByReadout(const Camera& camera1, const Camera& camera2, con
   const Eigen::Vector3d turned = pose.R * ray1;
   Eigen::Vector4d shift = Eigen::Vector4d::Zero();
   if (!(turned.z() + t.z() > kLeastDepth)) return shift;
-  shift << RowOf(camera1, match.x1_px) * ImageVelocity(camera1, ray1, w.cross(ray1) + t),
-      RowOf(camera2, match.x2_px) * ImageVelocity(camera2, turned + t, w.cross(turned) + t);
+  shift << FindImageRow(camera1, match.x1_px) * ImageVelocity(camera1, ray1, w.cross(ray1) + t),
+      FindImageRow(camera2, match.x2_px) * ImageVelocity(camera2, turned + t, w.cross(turned) + t);
   return shift;
 }
 

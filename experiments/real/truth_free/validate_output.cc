@@ -106,7 +106,7 @@ struct SetRow {
   const TruthFreeTest* test = nullptr;  // null: it is none of the covariances
 };
 
-SetRow RowOf(const SetReport& set, const DistanceCorrelation& c) {
+SetRow MakeCorrelationRow(const SetReport& set, const DistanceCorrelation& c) {
   SetRow row{&set, fmt::format("correlation_{:g}_to_{:g}_px", c.from_px, c.to_px),
              "",   CorrelationVerdict(c),
              "",   std::llround(c.num_products)};
@@ -132,7 +132,7 @@ std::vector<SetRow> RowsOf(const SetReport& set) {
     add(test.name, test.name, VerdictName(test.verdict), DescribeVerdict(test), test.num_values, test.ratio,
         test.cause, &test);
   }
-  for (const DistanceCorrelation& c : set.correlations) rows.push_back(RowOf(set, c));
+  for (const DistanceCorrelation& c : set.correlations) rows.push_back(MakeCorrelationRow(set, c));
   const CalibrationReport& calibration = set.calibration;
   add("calibration", "calibration", FaultVerdict(calibration.verdict), DescribeCalibration(calibration),
       calibration.num_pairs, ComparedMedians{calibration.p_value, none.interval});

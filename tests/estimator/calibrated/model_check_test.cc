@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-ModelCheck CheckOf(const FittedMode& f) {
+ModelCheck CheckFittedMode(const FittedMode& f) {
   const std::vector<ExplainedMode> modes = {{f.mode, Explain(f.matches, f.mode)}};
   ModeWeights weights;
   weights.of_modes = {1.0};
@@ -33,7 +33,7 @@ TEST(ModelCheckOf, NeighboursOfIndependentNoiseAgreeByChance) {
   constexpr int kScenes = 200;
   double sum = 0.0, squares = 0.0;
   for (std::uint32_t trial = 0; trial < kScenes; ++trial) {
-    const ModelCheck check = CheckOf(FitScene(200, 0.5, 0.2, trial));
+    const ModelCheck check = CheckFittedMode(FitScene(200, 0.5, 0.2, trial));
     sum += check.neighbour_z;
     squares += check.neighbour_z * check.neighbour_z;
   }
@@ -54,7 +54,7 @@ TEST(ModelCheckOf, NeighboursThatErrAlikeAreSeen) {
       match->x2_px +=
           1.5 * Eigen::Vector2d(std::cos(x.x()) * std::sin(x.y()), std::sin(x.x()) * std::cos(x.y()));
     });
-    const ModelCheck check = CheckOf(FitFromTruth(wavy, f.pose_true));
+    const ModelCheck check = CheckFittedMode(FitFromTruth(wavy, f.pose_true));
     z += check.neighbour_z / kScenes;
     correlation += check.neighbour_correlation / kScenes;
     design += check.log_design_4 / kScenes;
@@ -66,7 +66,7 @@ TEST(ModelCheckOf, NeighboursThatErrAlikeAreSeen) {
 
 TEST(ModelCheckOf, TheNoiseThatIsFoundIsComparedWithTheAssumed) {
   for (const double factor : {0.5, 1.0, 2.0}) {
-    const ModelCheck check = CheckOf(FitScene(400, 0.5, 0.2, 3, factor));
+    const ModelCheck check = CheckFittedMode(FitScene(400, 0.5, 0.2, 3, factor));
     EXPECT_NEAR(check.log_noise_ratio, -std::log(factor), 0.15) << factor;
   }
 }
@@ -89,8 +89,8 @@ FittedMode FitPlane(std::uint32_t trial) {
 
 TEST(ModelCheckOf, APlaneExplainsThePointsOfAPlaneAlone) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    EXPECT_GT(CheckOf(FitPlane(trial)).planar_share, 0.95) << trial;
-    EXPECT_LT(CheckOf(FitScene(200, 0.5, 0.0, trial)).planar_share, 0.6) << trial;
+    EXPECT_GT(CheckFittedMode(FitPlane(trial)).planar_share, 0.95) << trial;
+    EXPECT_LT(CheckFittedMode(FitScene(200, 0.5, 0.0, trial)).planar_share, 0.6) << trial;
   }
 }
 
@@ -98,13 +98,13 @@ TEST(ModelCheckOf, WrongMatchesThatMoveTogetherAreToldFromOthers) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const FittedMode f = FitScene(200, 0.5, 0.3, trial);
     const Explanation explanation = Explain(f.matches, f.mode);
-    const ModelCheck scattered = CheckOf(f);
+    const ModelCheck scattered = CheckFittedMode(f);
     EXPECT_LT(scattered.wrong_coherence, 0.3) << trial;
     // Wrong matches that are all displaced by the same.
     const MotionProblem together = Changed(f, [&](size_t i, Correspondence* match) {
       if (explanation.probability[i] <= 0.5) match->x2_px = match->x1_px + Eigen::Vector2d(25.0, -60.0);
     });
-    const ModelCheck check = CheckOf(FitFromTruth(together, f.pose_true));
+    const ModelCheck check = CheckFittedMode(FitFromTruth(together, f.pose_true));
     EXPECT_GT(check.wrong_coherence, 0.9) << trial;
     EXPECT_GT(check.wrong_share, 0.15) << trial;
     EXPECT_LT(check.wrong_share, 0.35) << trial;
@@ -118,14 +118,14 @@ TEST(ModelCheckOf, SpreadIsOfTheRightMatches) {
   const Explanation explanation = Explain(all.matches, all.mode);
   double num_right = 0.0;
   for (const double p : explanation.probability) num_right += p > 0.5;
-  const ModelCheck check = CheckOf(f);
+  const ModelCheck check = CheckFittedMode(f);
   EXPECT_NEAR(check.spread_in_matches, 0.0, 0.02);
   EXPECT_NEAR(check.wrong_share, 1.0 - num_right / 300.0, 1e-12);
   // Of the right ones within a tenth of the image, an area of a hundredth: ln(1/10) less.
   const Eigen::Vector2d middle(f.problem.camera1.width / 2.0, f.problem.camera1.height / 2.0);
   FittedMode small = f;
   for (Correspondence& match : small.problem.matches) match.x1_px = middle + 0.1 * (match.x1_px - middle);
-  EXPECT_NEAR(CheckOf(small).spread_in_image, check.spread_in_image - std::log(10.0), 0.02);
+  EXPECT_NEAR(CheckFittedMode(small).spread_in_image, check.spread_in_image - std::log(10.0), 0.02);
 }
 
 // Points of one corner three baselines away, the others three hundred: a sixteenth of the image or two.
@@ -141,9 +141,10 @@ TEST(ModelCheckOf, ParallaxOfACornerIsTold) {
                                               scene.cam2_from_cam1_true, scene.camera1, scene.camera2));
     }
     AddNoise(0.3, rng, &problem);
-    EXPECT_LT(CheckOf(FitFromTruth(problem, scene.cam2_from_cam1_true)).log_parallax_share, std::log(0.3))
+    EXPECT_LT(CheckFittedMode(FitFromTruth(problem, scene.cam2_from_cam1_true)).log_parallax_share,
+              std::log(0.3))
         << trial;
-    EXPECT_GT(CheckOf(FitScene(300, 0.3, 0.0, trial)).log_parallax_share, std::log(0.4)) << trial;
+    EXPECT_GT(CheckFittedMode(FitScene(300, 0.3, 0.0, trial)).log_parallax_share, std::log(0.4)) << trial;
   }
 }
 
@@ -174,7 +175,7 @@ TEST(ModelCheckOf, IsFiniteWhateverTheMatches) {
         std::ranges::fill(same.matches, same.matches.front());
         f = FitFromTruth(same, f.pose_true);
       }
-      const ModelCheck c = CheckOf(f);
+      const ModelCheck c = CheckFittedMode(f);
       for (const double x :
            {c.log_noise_ratio, c.neighbour_correlation, c.neighbour_z, c.planar_share, c.spread_in_matches,
             c.spread_in_image, c.log_parallax_share, c.log_design_2, c.log_design_4, c.wrong_share,

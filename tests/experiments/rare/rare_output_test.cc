@@ -32,10 +32,10 @@ RareCell CellByHand() {
   return cell;
 }
 
-TEST(RowOf, KeepsWhatACellSays) {
+TEST(MakeRareRow, KeepsWhatACellSays) {
   RareCell cell = CellByHand();
   cell.rate.doubts = {SplittingDoubt::kMovesStuck};
-  const RareRow row = RowOf(cell);
+  const RareRow row = MakeRareRow(cell);
   EXPECT_EQ(row.condition, 1u);
   EXPECT_EQ(row.estimator, 1u);
   EXPECT_EQ(row.estimate, 0.07);
@@ -47,19 +47,19 @@ TEST(RowOf, KeepsWhatACellSays) {
 }
 
 // Fewer than three failures of equal weight are doubted, three are not.
-TEST(RowOf, OfStrataDoubtsFewFailures) {
+TEST(MakeRareRow, OfStrataDoubtsFewFailures) {
   StratifiedCell cell;
   cell.num_run = 40;
   cell.strata[0].num_trials = 40;
   cell.rate.estimate = 0.01;
   cell.rate.cautious_upper = 0.3;
   cell.rate.num_effective_events = 2.9;
-  EXPECT_EQ(RowOf(cell).doubts, std::vector<std::string>{"few_failures"});
+  EXPECT_EQ(MakeRareRow(cell).doubts, std::vector<std::string>{"few_failures"});
   cell.rate.num_effective_events = 3.0;
-  EXPECT_TRUE(RowOf(cell).doubts.empty());
-  EXPECT_EQ(RowOf(cell).num_calls, 40);
-  EXPECT_EQ(RowOf(cell).unseen_up_to, 0.3);
-  EXPECT_TRUE(std::isnan(RowOf(cell).relative_spread));
+  EXPECT_TRUE(MakeRareRow(cell).doubts.empty());
+  EXPECT_EQ(MakeRareRow(cell).num_calls, 40);
+  EXPECT_EQ(MakeRareRow(cell).unseen_up_to, 0.3);
+  EXPECT_TRUE(std::isnan(MakeRareRow(cell).relative_spread));
 }
 
 TEST(RareAsJson, HasTheRatesBeyondEachLevel) {
@@ -79,7 +79,7 @@ TEST(RareAsJson, HasTheRatesBeyondEachLevel) {
 }
 
 TEST(RareAsCsv, SaysWhatIsTrusted) {
-  RareRow trusted = RowOf(CellByHand()), doubted = trusted;
+  RareRow trusted = MakeRareRow(CellByHand()), doubted = trusted;
   doubted.doubts = {"no_levels", "moves_stuck"};
   const std::string csv = RareAsCsv(MakePlan(SmallStudy()), {trusted, doubted});
   EXPECT_THAT(csv, testing::HasSubstr(",failure,rate,0.07,0.02,0.2,0.03,700,1,,"));
@@ -88,7 +88,7 @@ TEST(RareAsCsv, SaysWhatIsTrusted) {
 
 // Calls times p e^2 / (1 - p), e the relative error: 700 * 0.07 * (3 / 7)^2 / 0.93.
 TEST(RareRow, BruteForceByHand) {
-  EXPECT_NEAR(RowOf(CellByHand()).BruteForceShare(), 700.0 * 0.07 * 9.0 / 49.0 / 0.93, 1e-12);
+  EXPECT_NEAR(MakeRareRow(CellByHand()).BruteForceShare(), 700.0 * 0.07 * 9.0 / 49.0 / 0.93, 1e-12);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class RepeatedScenesTest : public SummarizedRun {
     }
     Write("repeated", records);
   }
-  SummaryRow RowOf(const std::string& quantity, const std::string& estimator = "standard") {
+  SummaryRow FindRow(const std::string& quantity, const std::string& estimator = "standard") {
     for (const SummaryRow& row : SummaryOf("repeated", true).rows) {
       if (row.quantity == quantity && row.condition == 0 && row.estimator == estimator) return row;
     }
@@ -48,7 +48,7 @@ TEST_F(RepeatedScenesTest, ASceneCountsOnceWithTheMeanOfItsTrials) {
   const auto expect = [&](const std::string& quantity, const std::vector<double>& means) {
     ScoreMean expected;
     for (const double mean : means) expected.Add(mean);
-    const SummaryRow row = RowOf(quantity);
+    const SummaryRow row = FindRow(quantity);
     EXPECT_EQ(row.n, static_cast<std::int64_t>(means.size())) << quantity;
     EXPECT_NEAR(row.value, expected.mean(), 1e-12) << quantity;
     EXPECT_NEAR(row.interval.lower, expected.Sequence().lower, 1e-9) << quantity;
@@ -59,13 +59,13 @@ TEST_F(RepeatedScenesTest, ASceneCountsOnceWithTheMeanOfItsTrials) {
   expect("no_candidate", {0.0, 0.0, 0.0, 2.0 / 3.0, 0.0});
   expect("auc_20_deg", {0.95, (0.95 + 0.5 + 0.5) / 3.0, 0.5, 0.95 / 3.0, 0.95});
   expect("auc_20_deg_answered", {0.95, (0.95 + 0.5 + 0.5) / 3.0, 0.5, 0.95, 0.95});
-  const SummaryRow rotation = RowOf("rotation_error_deg");  // of successes: 1 in every scene but one
+  const SummaryRow rotation = FindRow("rotation_error_deg");  // of successes: 1 in every scene but one
   EXPECT_EQ(rotation.n, 4);
   EXPECT_EQ(rotation.value, 1.0);
-  EXPECT_EQ(RowOf("max_error_median_deg").n, 5) << "first trials";
-  EXPECT_EQ(RowOf("max_error_median_deg").value, 1.0);  // 1, 1, 10, refused, 1
-  EXPECT_EQ(RowOf("num_inliers_true", kSceneLabel).n, 5);
-  EXPECT_EQ(RowOf("not_scored").n, 5);
+  EXPECT_EQ(FindRow("max_error_median_deg").n, 5) << "first trials";
+  EXPECT_EQ(FindRow("max_error_median_deg").value, 1.0);  // 1, 1, 10, refused, 1
+  EXPECT_EQ(FindRow("num_inliers_true", kSceneLabel).n, 5);
+  EXPECT_EQ(FindRow("not_scored").n, 5);
 }
 
 TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
@@ -80,8 +80,8 @@ TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
   for (int i = 0; i < 10; ++i) expected.AddScene(3);
   for (int i = 0; i < 14; ++i) expected.AddScene(1 + i % 2);
   const VarianceSplit split = expected.Split();
-  const SummaryRow within = RowOf("failure_within_scenes"), between = RowOf("failure_between_scenes"),
-                   flips = RowOf("failure_flips");
+  const SummaryRow within = FindRow("failure_within_scenes"), between = FindRow("failure_between_scenes"),
+                   flips = FindRow("failure_flips");
   EXPECT_EQ(within.kind, SummaryRow::Kind::kVarianceShare);
   EXPECT_EQ(within.interval_kind, IntervalKind::kLogStudent);
   EXPECT_EQ(within.n, 36);
@@ -93,9 +93,9 @@ TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
   EXPECT_EQ(flips.n, 36);
   EXPECT_EQ(flips.interval_kind, IntervalKind::kExact);
   EXPECT_EQ(flips.interval.upper, ExactBinomialInterval(14, 36).upper);
-  EXPECT_EQ(RowOf("refusal_flips").value, 0.0);
-  EXPECT_EQ(RowOf("refusal_flips").n, 37) << "a refusal needs no truth";
-  EXPECT_EQ(RowOf("refusal_within_scenes").n, 0) << "nothing varies";
+  EXPECT_EQ(FindRow("refusal_flips").value, 0.0);
+  EXPECT_EQ(FindRow("refusal_flips").n, 37) << "a refusal needs no truth";
+  EXPECT_EQ(FindRow("refusal_within_scenes").n, 0) << "nothing varies";
   const std::string table = SummaryAsTable(SummaryOf("repeated"));
   for (const std::string part :
        {"3 trials per scene", "failure_between_scenes", "depends on the sampler's seed",

@@ -42,7 +42,7 @@ std::vector<Totals> TotalsOf(const StudyPlan& plan, const ResultStore& store) {
   return totals;
 }
 
-const SummaryRow& RowOf(const Summary& summary, const std::string& estimator, const std::string& quantity) {
+const SummaryRow& FindRow(const Summary& summary, const std::string& estimator, const std::string& quantity) {
   for (const SummaryRow& row : summary.rows) {
     if (row.estimator == estimator && row.quantity == quantity) return row;
   }
@@ -64,15 +64,15 @@ TEST(InvalidAnswers, AreFailuresInSummaryComparisonAndVerification) {
 
   const Summary summary = Summarize(store, false);
   const auto count = [&](const char* quantity) {
-    const SummaryRow& row = RowOf(summary, "ours", quantity);
+    const SummaryRow& row = FindRow(summary, "ours", quantity);
     EXPECT_EQ(row.n, 200) << quantity;
     return static_cast<int>(std::lround(row.value * 200));
   };
   EXPECT_EQ(count("failure"), totals[1].num_failures);
   EXPECT_EQ(count("invalid_motion"), totals[1].num_invalid);
   EXPECT_EQ(count("success"), 200 - totals[1].num_failures - totals[1].num_refusals);
-  const SummaryRow& twin = RowOf(summary, "standard", "nees_coverage");
-  const SummaryRow& faulty = RowOf(summary, "ours", "nees_coverage");
+  const SummaryRow& twin = FindRow(summary, "standard", "nees_coverage");
+  const SummaryRow& faulty = FindRow(summary, "ours", "nees_coverage");
   EXPECT_EQ(faulty.n, twin.n);
   EXPECT_LT(faulty.value, twin.value - 0.02);
 

@@ -168,7 +168,7 @@ TEST(SimulateDraw, StrataAreOfTheTrialsThatThereAre) {
     for (const StratumCount& count : cell.strata) num_trials += count.num_trials;
     EXPECT_EQ(num_trials, is_possible ? 200 : 0);
     EXPECT_EQ(cell.num_not_simulated, is_possible ? 0 : 200);
-    const RareRow row = RowOf(cell);
+    const RareRow row = MakeRareRow(cell);
     EXPECT_EQ(std::ranges::count(row.doubts, "not_simulated"), is_possible ? 0 : 1);
     EXPECT_EQ(std::isnan(row.estimate), !is_possible);
   }
@@ -198,7 +198,7 @@ TEST(SimulateDraw, SplittingNamesConditionsWithoutATrial) {
     const bool is_possible = IsPossible(plan.conditions[cell.condition]);
     EXPECT_EQ(cell.num_not_simulated, is_possible ? 0 : FailingMotion::kNumTried);
     EXPECT_EQ(cell.pilot.num_values > 0, is_possible);
-    EXPECT_EQ(RowOf(cell).doubts == std::vector<std::string>{"not_simulated"}, !is_possible);
+    EXPECT_EQ(MakeRareRow(cell).doubts == std::vector<std::string>{"not_simulated"}, !is_possible);
   }
   EXPECT_THAT(RareAsTable(plan, cells), HasSubstr("not trusted: not_simulated:"));
 }

@@ -42,7 +42,7 @@ StudyPlan DrawConditions(const std::string& given) {
 const std::string kBaseline = "parallax_deg: none, baseline_m: {log: [0.02, 0.5]}";
 const std::string kCorrelated = "{noise_correlation: [0.8, 0.95], noise_correlation_length_px: [60, 100]}";
 
-std::vector<std::string> RangesOfSigns() {
+std::vector<std::string> ListRangesOfSigns() {
   const std::string deep = "    scene: {uniform_volume: {" + kBaseline + "}}\n";
   return {
       // Neighbours err alike.
@@ -77,7 +77,7 @@ struct MeasuredExcess {
 
 MeasuredExcess MeasureExcess() {
   MeasuredExcess excess;
-  for (const std::string& ranges : RangesOfSigns()) {
+  for (const std::string& ranges : ListRangesOfSigns()) {
     const StudyPlan plan = DrawConditions(ranges);
     ForEachTrial(plan, {0, 1}, [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
       const std::vector<TrialRecord> records = RunTrialOfDraw(plan, condition, trial).records;

@@ -18,7 +18,7 @@ const StudyPlan& OwnPlan() {
 }
 
 // What a lock of this text is as a file; no mutation would find its hash.
-std::string LockFileOf(std::string text) {
+std::string MakeLockFile(std::string text) {
   if (!text.ends_with('\n')) text += '\n';
   return ToYaml(StudyLock{"2026-01-31T12:00:00Z", "rcme 0.1.0", Sha256(text), text});
 }
@@ -58,9 +58,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size) {
   const std::string text = AsText(data, size);
   DescribeLock(text);
   OnlyInputError([&] { ReadTwice(text); });
-  OnlyInputError([&] { ReadTwice(LockFileOf(text)); });
-  OnlyInputError([&] { Say(LockFileOf(text), text); });
-  OnlyInputError([&] { Say(LockFileOf(OwnPlan().study_yaml), text); });
+  OnlyInputError([&] { ReadTwice(MakeLockFile(text)); });
+  OnlyInputError([&] { Say(MakeLockFile(text), text); });
+  OnlyInputError([&] { Say(MakeLockFile(OwnPlan().study_yaml), text); });
   OnlyInputError([&] { Say("", text); });
   return 0;
 }

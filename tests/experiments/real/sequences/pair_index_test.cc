@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-PairRow RowOf(const std::string& pair_id, const std::string& scene, const std::string& reason) {
+PairRow MakePairRow(const std::string& pair_id, const std::string& scene, const std::string& reason) {
   PairRow row;
   row.pair_id = pair_id;
   row.scene = scene;
@@ -25,9 +25,9 @@ TEST(PairJournal, ForgetsKeptPairsWithoutTheirFile) {
   const std::string out = folder.Path("out");
   {
     PairJournal journal(out, "same");
-    journal.Add(RowOf("with", "hall", kKeptPair));
-    journal.Add(RowOf("without", "hall", kKeptPair));
-    journal.Add(RowOf("dropped", "hall", "planar_scene"));
+    journal.Add(MakePairRow("with", "hall", kKeptPair));
+    journal.Add(MakePairRow("without", "hall", kKeptPair));
+    journal.Add(MakePairRow("dropped", "hall", "planar_scene"));
   }
   std::ofstream(out + "/with.csv") << "x\n";
   const PairJournal again(out, "same");
@@ -56,10 +56,10 @@ TEST(PairJournal, KnowsDamagedImagesByTheirScene) {
 
 // Of the pairs that were kept those count whose motion is known.
 TEST(PairsAsTable, CountsByScene) {
-  PairRow known = RowOf("a", "hall", kKeptPair), dropped = RowOf("c", "hall", "planar_scene");
+  PairRow known = MakePairRow("a", "hall", kKeptPair), dropped = MakePairRow("c", "hall", "planar_scene");
   known.rotation_deg = dropped.rotation_deg = 1.0;
   const std::string table =
-      PairsAsTable({known, RowOf("b", "hall", kKeptPair), dropped, RowOf("d", "yard", kKeptPair)},
+      PairsAsTable({known, MakePairRow("b", "hall", kKeptPair), dropped, MakePairRow("d", "yard", kKeptPair)},
                    {{"yard", "1.png", "is cut off"}});
   EXPECT_THAT(table, testing::ContainsRegex("hall +3 +2 +1 +1 +0"));
   EXPECT_THAT(table, testing::ContainsRegex("yard +1 +1 +0 +0 +1"));
