@@ -34,12 +34,15 @@ Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weig
   const auto consider = [&](double part, Doubt reason) {
     if (part > greatest) greatest = part, doubt = reason;
   };
-  consider(verdict.mass_beyond, Doubt::kLowParallax);
+  // Where the check lowers the probability, it lowers each part of it.
+  const double share =
+      verdict.failure_probability < verdict.by_modes ? verdict.failure_probability / verdict.by_modes : 1.0;
+  consider(share * verdict.mass_beyond, Doubt::kLowParallax);
   consider(verdict.failure_probability - verdict.by_modes, Doubt::kModel);
-  consider(weights.of_no_motion, Doubt::kFewMatches);
+  consider(share * weights.of_no_motion, Doubt::kFewMatches);
   for (size_t i = 0; i < modes.size(); ++i) {
     if (weights.is_rival[i])
-      consider(weights.of_modes[i], DoubtOfOrigin(modes[i], weights.is_second_motion[i]));
+      consider(share * weights.of_modes[i], DoubtOfOrigin(modes[i], weights.is_second_motion[i]));
   }
   return doubt;
 }

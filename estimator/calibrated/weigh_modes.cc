@@ -79,11 +79,20 @@ void ScaleOdds(const std::vector<bool>& is_rival, std::vector<double>* odds) {
 
 }  // namespace
 
+std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t answer,
+                             const MotionBounds& bounds) {
+  std::vector<bool> is_rival;
+  for (const ExplainedMode& mode : modes)
+    is_rival.push_back(!IsWithin(modes[answer].mode.pose, bounds, mode.mode.pose));
+  return is_rival;
+}
+
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options) {
   const ModeComparison comparison(modes);
   ModeWeights weights;
   weights.answer = ChooseAnswer(modes, comparison);
+  weights.is_rival = FindRivals(modes, weights.answer, bounds);
   const ExplainedMode& answer = modes[weights.answer];
   for (size_t i = 0; i < modes.size(); ++i) {
     const Contrast contrast = comparison.Compare(weights.answer, i);
@@ -92,7 +101,6 @@ ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBoun
     if (is_second)
       log_odds =
           SecondMotionLogOdds(options.second_motion_odds, contrast.num_better_a, contrast.num_better_b);
-    weights.is_rival.push_back(!IsWithin(answer.mode.pose, bounds, modes[i].mode.pose));
     weights.is_second_motion.push_back(is_second);
     weights.of_modes.push_back(std::exp(std::min(log_odds, 0.0)));
   }

@@ -26,4 +26,9 @@ struct ModeWeights {
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options);
 
+// For each mode whether it is beyond the bounds around the answer: anew where that has moved since the modes
+// were weighed.
+std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t answer,
+                             const MotionBounds& bounds);
+
 }  // namespace rcme

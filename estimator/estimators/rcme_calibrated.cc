@@ -115,13 +115,14 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       estimate.message = "no motion explains more than five matches";
       return estimate;
     }
-    const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
+    ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
     if (options_.leave_out != CalibratedStep::kNoiseChoice)
       ChooseNoiseLaw(matches, prior, &modes[weights.answer]);
     std::optional<double> direction_mass;
     if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
       direction_mass =
           SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
+      weights.is_rival = FindRivals(modes, weights.answer, Bounds());
     }
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
     const ModelCheck check = CheckModel(shuffled, modes, weights, direction_mass);

@@ -76,6 +76,11 @@ TEST(FindDoubt, IsTheGreatestPart) {
   EXPECT_EQ(FindDoubt(modes, weights, {.by_modes = 0.2, .failure_probability = 0.5}), Doubt::kModel);
   EXPECT_EQ(FindDoubt(modes, weights, {.by_modes = 0.5, .failure_probability = 0.5, .mass_beyond = 0.4}),
             Doubt::kLowParallax);
+  // Of 0.012 that the check lowers from 0.5, 0.4 / 0.5 are below a hundredth.
+  EXPECT_EQ(FindDoubt(modes, weights, {.by_modes = 0.5, .failure_probability = 0.012, .mass_beyond = 0.4}),
+            Doubt::kNone);
+  EXPECT_EQ(FindDoubt(modes, weights, {.by_modes = 0.5, .failure_probability = 0.014, .mass_beyond = 0.4}),
+            Doubt::kLowParallax);
   EXPECT_EQ(FindDoubt(modes, weights, {.by_modes = 0.1, .failure_probability = 0.1}), Doubt::kFewMatches);
   weights.of_no_motion = 0.0;
   weights.of_modes = {0.995, 0.005};

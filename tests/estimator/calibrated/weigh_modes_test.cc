@@ -118,5 +118,14 @@ TEST(WeighModes, ASecondMotionHasThePriorOfTheOptions) {
   }
 }
 
+// As WeighModes has them, until the answer moves.
+TEST(FindRivals, AreOfWhereTheAnswerIsNow) {
+  std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.04), ModeAt(0.2)};
+  const ModeWeights weights = WeighModes(modes, kModeBounds, kPrior, {});
+  EXPECT_EQ(FindRivals(modes, weights.answer, kModeBounds), weights.is_rival);
+  modes[0].mode.pose = ModeAt(0.18).mode.pose;
+  EXPECT_EQ(FindRivals(modes, 0, kModeBounds), (std::vector<bool>{false, true, false}));
+}
+
 }  // namespace
 }  // namespace rcme
