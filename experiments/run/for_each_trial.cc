@@ -5,10 +5,13 @@
 namespace rcme {
 
 void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work, int num_threads) {
-  const std::int64_t per_condition = trials.end - trials.first;
-  ForEachIndex(per_condition * std::ssize(plan.conditions), num_threads, [&](std::int64_t index) {
-    const auto place = static_cast<std::uint32_t>(index % per_condition);
-    work(plan.conditions[static_cast<size_t>(index / per_condition)], trials.first + place, index);
+  const std::int64_t per_condition = trials.end - trials.first, num_conditions = std::ssize(plan.conditions);
+  const bool is_by_condition = NumThreads(num_threads) == 1;
+  ForEachIndex(per_condition * num_conditions, num_threads, [&](std::int64_t i) {
+    const std::int64_t condition = is_by_condition ? i / per_condition : i % num_conditions;
+    const std::int64_t place = is_by_condition ? i % per_condition : i / num_conditions;
+    work(plan.conditions[static_cast<size_t>(condition)], trials.first + static_cast<std::uint32_t>(place),
+         condition * per_condition + place);
   });
 }
 
