@@ -4,19 +4,36 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/calibrated/fitted_constants.h"
+
 namespace rcme {
 namespace {
 
-constexpr double kExclusive = 0.26, kShared = 1.25, kWidth = 0.75;
+constexpr double kLeastSharedVariance = 10.0, kMostWidth = 10.0;
 
 }  // namespace
 
-double ModeLogOdds(const Contrast& contrast, double log_det_ratio, double num_explained) {
-  const double width = std::clamp(log_det_ratio, -5.0, 5.0) * num_explained / (num_explained + 50.0);
-  const double sd = std::sqrt(contrast.shared_variance + 10.0);
-  const double beyond_noise = std::max(std::abs(contrast.shared) - 3.0 * sd, 0.0);
-  return kExclusive * (contrast.exclusive + std::copysign(beyond_noise, contrast.shared)) +
-         kShared * contrast.shared / sd + kWidth * width;
+const std::array<const char*, kNumModeTerms> kModeTermNames = {"exclusive", "shared", "explained",
+                                                               "noise",     "width",  "parallax"};
+
+std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& contrast, const ModeTraits& a,
+                                                   const ModeTraits& b) {
+  const double sd = std::sqrt(contrast.shared_variance + kLeastSharedVariance);
+  const double explained = std::max(a.num_explained, 1) / static_cast<double>(std::max(b.num_explained, 1));
+  return {std::copysign(std::sqrt(std::abs(contrast.exclusive)), contrast.exclusive),
+          contrast.shared / sd,
+          std::log(explained),
+          std::log(a.scale / b.scale),
+          std::clamp(b.log_det_information - a.log_det_information, -kMostWidth, kMostWidth),
+          std::log((1.0 + std::max(a.depth_in_noise, 0.0)) / (1.0 + std::max(b.depth_in_noise, 0.0)))};
+}
+
+double ModeLogOdds(const Contrast& contrast, const ModeTraits& a, const ModeTraits& b) {
+  static_assert(std::size(kModeTerms) == kNumModeTerms);
+  const std::array<double, kNumModeTerms> terms = ComputeModeTerms(contrast, a, b);
+  double log_odds = 0.0;
+  for (size_t k = 0; k < kNumModeTerms; ++k) log_odds += kModeTerms[k].weight * terms[k];
+  return log_odds;
 }
 
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background) {

@@ -1,24 +1,49 @@
 // Step 6 of rcme_calibrated: how likely each mode is to be the camera's motion.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "estimator/calibrated/contrast.h"
 
 namespace rcme {
 
-// Log-odds of mode a against mode b,
+// What a mode is by itself.
+struct ModeTraits {
+  int num_explained = 0;             // matches that are right with a probability of more than one half
+  double scale = 1.0;                // s of the noise (mixture_parameters.h)
+  double log_det_information = 0.0;  // of the Hessian in units of the mode's own noise
+  double depth_in_noise = 0.0;       // UsualDepthInNoise
+};
+
+inline constexpr size_t kNumModeTerms = 6;
+extern const std::array<const char*, kNumModeTerms> kModeTermNames;
+
+// x_1 to x_6, what speaks for mode a against mode b:
 //
-//   kExclusive (exclusive + what `shared` has beyond 3 sd) + kShared shared / sd, sd = sqrt(variance + 10)
-//       + kWidth n / (n + 50) clamp(log(det Sigma_a / det Sigma_b), -5, 5),
+//   exclusive   sign(e) sqrt|e|, e the log-likelihood over matches that only one of them explains
+//   shared      the same over matches that both explain, over its standard deviation, sqrt(variance + 10)
+//   explained   ln(n_a / n_b) of the numbers of matches
+//   noise       ln(s_a / s_b)
+//   width       ln(det Sigma_a / det Sigma_b), within +-10; Sigma without the scale of the noise
+//   parallax    ln((1 + z_a) / (1 + z_b)), z the parallax in noise that a fifth of the matches exceed, at
+//               least 0
 //
-// n the mean number of matches that the two explain, Sigma without the scale of the noise. The Bayes factor
-// with Laplace's approximation would have the coefficients 1, 1 (of `shared` itself) and 1/2. These are of a
-// logistic regression of failure on all rivals of an answer, over planes, nearly planar scenes, indoor and
-// outdoor scenes and few matches (seeds 7 to 13; what it gives on another seed:
-// results/calibrated). The densities are not quite those of the model, so that evidence is worth
-// less than its nats, and the widths of modes of few matches are themselves uncertain.
-double ModeLogOdds(const Contrast& a_against_b, double log_det_ratio, double num_explained);
+// The other way round they have the other sign.
+std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& a_against_b, const ModeTraits& a,
+                                                   const ModeTraits& b);
+
+// Log-odds of mode a against mode b, sum_k b_k x_k.
+//
+// The Bayes factor with Laplace's approximation would have e, the sum over the shared matches and half of the
+// width, and nothing else. These b are those of a logistic regression: which of two modes is the camera's
+// motion, over trials of a population of conditions and of the families (scripts/fit_calibrated,
+// fitted_constants.h). The densities are not those of the model where noise is dependent or wrong matches are
+// coherent, so that evidence is worth less than its nats, and the less the more there is of it: the root.
+// That a mode needs less noise, or explains more matches, says something beside. b of the parallax is
+// negative: a prior density that falls with the parallax, about as its inverse does, where a uniform one
+// would let noise be explained as parallax at no cost.
+double ModeLogOdds(const Contrast& a_against_b, const ModeTraits& a, const ModeTraits& b);
 
 // Evidence of a motion against there being none, nats: log-likelihood of the matches with each match's
 // density as the others predict it, less that of wrong matches alone, less kSearchNats: the logarithm of the

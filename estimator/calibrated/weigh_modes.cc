@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/calibrated/mode_weights.h"
+#include "estimator/calibrated/direction_posterior.h"
 
 namespace rcme {
 namespace {
@@ -16,10 +16,15 @@ double LogDetGeometry(const Mode& mode) {
   return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
 }
 
+ModeTraits FindTraits(const ExplainedMode& mode) {
+  return {mode.explanation.num_explained, mode.mode.mixture.scale, LogDetGeometry(mode.mode),
+          UsualDepthInNoise(mode.explanation)};
+}
+
 class ModeComparison {
  public:
   explicit ModeComparison(const std::vector<ExplainedMode>& modes) : modes_(modes) {
-    for (const ExplainedMode& mode : modes) log_dets_.push_back(LogDetGeometry(mode.mode));
+    for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode));
   }
   Contrast Compare(size_t a, size_t b) const {
     const double background =
@@ -29,14 +34,17 @@ class ModeComparison {
   double LogOdds(size_t a, size_t b, const Contrast& contrast) const {
     if (IsSecondMotion(contrast))
       return -SecondMotionLogOdds(1.0, contrast.num_better_a, contrast.num_better_b);
-    return ModeLogOdds(contrast, log_dets_[b] - log_dets_[a],
-                       0.5 * (modes_[a].explanation.num_explained + modes_[b].explanation.num_explained));
+    return ModeLogOdds(contrast, traits_[a], traits_[b]);
+  }
+  ModePair Pair(size_t a, size_t b) const {
+    const Contrast contrast = Compare(a, b);
+    return {a, b, ComputeModeTerms(contrast, traits_[a], traits_[b]), IsSecondMotion(contrast)};
   }
   double LogOdds(size_t a, size_t b) const { return LogOdds(a, b, Compare(a, b)); }
 
  private:
   const std::vector<ExplainedMode>& modes_;
-  std::vector<double> log_dets_;
+  std::vector<ModeTraits> traits_;
 };
 
 constexpr size_t kWeighingRounds = 3;
@@ -113,6 +121,14 @@ ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBoun
   for (double& weight : weights.of_modes) weight /= total;
   weights.of_no_motion /= total;
   return weights;
+}
+
+std::vector<ModePair> ListModePairs(const std::vector<ExplainedMode>& modes) {
+  const ModeComparison comparison(modes);
+  std::vector<ModePair> pairs;
+  for (size_t a = 0; a < modes.size(); ++a)
+    for (size_t b = a + 1; b < modes.size(); ++b) pairs.push_back(comparison.Pair(a, b));
+  return pairs;
 }
 
 }  // namespace rcme

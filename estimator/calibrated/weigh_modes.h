@@ -2,11 +2,13 @@
 // motion.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "estimator/calibrated/calibrated_options.h"
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/failure_probability.h"
+#include "estimator/calibrated/mode_weights.h"
 
 namespace rcme {
 
@@ -22,7 +24,7 @@ struct ModeWeights {
 // own (IsSecondMotion), by the number of matches that either explains better; begun at the greatest
 // likelihood. Modes within `bounds` of it are the same motion found more than once: together they weigh as
 // much as it. The others are alike among themselves, too, so that their odds add up to less than their sum:
-// to (sum odds^2.5)^(1/2.5), the exponent from the regression of ModeLogOdds.
+// to (sum odds^2.5)^(1/2.5), the exponent from a regression of failure on all rivals of an answer.
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options);
 
@@ -30,5 +32,15 @@ ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBoun
 // were weighed.
 std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t answer,
                              const MotionBounds& bounds);
+
+// Two modes, and what speaks for the first (ComputeModeTerms).
+struct ModePair {
+  size_t a = 0, b = 0;
+  std::array<double, kNumModeTerms> terms{};
+  bool is_second_motion = false;  // motions of their own, of which the terms do not decide
+};
+
+// Every two of the modes once, a < b.
+std::vector<ModePair> ListModePairs(const std::vector<ExplainedMode>& modes);
 
 }  // namespace rcme

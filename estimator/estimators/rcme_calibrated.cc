@@ -98,16 +98,10 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     std::vector<int> order;
     const MotionProblem shuffled = Shuffled(problem, rng, &order);
     const MatchBlocks matches(shuffled);
-    const ScoreMatches score_matches(matches);
     const MixturePrior prior = PriorOf(problem, options_);
-    const HypothesisSearch search = SearchHypotheses(matches, score_matches, options_, rng);
-    std::vector<Mode> found =
-        FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
-    if (options_.leave_out != CalibratedStep::kSplit) SplitCompromise(shuffled, matches, prior, &found, rng);
-    std::vector<ExplainedMode> modes = ExplainMatches(shuffled, matches, prior, options_, std::move(found));
     MotionEstimate estimate;
-    estimate.counts = search.counts;
-    const int num_solved = search.counts.num_hypotheses - search.counts.num_degenerate_samples;
+    std::vector<ExplainedMode> modes = FindExplained(shuffled, matches, prior, rng, &estimate.counts);
+    const int num_solved = estimate.counts.num_hypotheses - estimate.counts.num_degenerate_samples;
     estimate.counts.num_candidates = std::min(static_cast<int>(modes.size()), num_solved);
     estimate.counts.num_too_small_inlier_sets = num_solved - estimate.counts.num_candidates;
     if (modes.empty()) {
@@ -145,6 +139,14 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return estimate;
   }
 
+  std::vector<ExplainedMode> ListModes(const MotionProblem& problem, RandomStream& rng) const override {
+    if (RefuseUnsolvable(problem, 6)) return {};
+    std::vector<int> order;
+    const MotionProblem shuffled = Shuffled(problem, rng, &order);
+    LoopCounts counts;
+    return FindExplained(shuffled, MatchBlocks(shuffled), PriorOf(problem, options_), rng, &counts);
+  }
+
   std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
                                           const std::vector<RelativePose>& starts) const override {
     if (RefuseUnsolvable(problem, 6)) return {};
@@ -165,6 +167,18 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
  private:
   MotionBounds Bounds() const {
     return {kRadPerDeg * options_.max_rotation_error_deg, kRadPerDeg * options_.max_direction_error_deg};
+  }
+
+  // Steps 1 to 4.
+  std::vector<ExplainedMode> FindExplained(const MotionProblem& problem, const MatchBlocks& matches,
+                                           const MixturePrior& prior, RandomStream& rng,
+                                           LoopCounts* counts) const {
+    const HypothesisSearch search = SearchHypotheses(matches, ScoreMatches(matches), options_, rng);
+    *counts = search.counts;
+    std::vector<Mode> found =
+        FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
+    if (options_.leave_out != CalibratedStep::kSplit) SplitCompromise(problem, matches, prior, &found, rng);
+    return ExplainMatches(problem, matches, prior, options_, std::move(found));
   }
 
   // The constants of the check were fitted to the default options.

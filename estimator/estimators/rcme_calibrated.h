@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "estimator/calibrated/calibrated_options.h"
+#include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/model_check.h"
 #include "estimator/estimator_model.h"
 
@@ -54,6 +55,8 @@ class WeightInspection {
   // Estimate, and what its probability is made of; that stays as it is where there is no motion.
   virtual MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
                                          CheckedVerdict* verdict) const = 0;
+  // The modes that Estimate weighs (steps 1 to 4); none where it refuses before.
+  virtual std::vector<ExplainedMode> ListModes(const MotionProblem& problem, RandomStream& rng) const = 0;
 };
 
 // The inspection of the estimator's weights, which lives as long as the estimator; null if there is none.

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import sys
+import tempfile
 import types
 import unittest
 
@@ -27,6 +28,33 @@ class Fits(unittest.TestCase):
         errors = np.sqrt(np.diag(np.linalg.inv((x * (p * (1 - p))[:, None]).T @ x)))
         found = fit.fit_failure(x, failed, np.ones(len(x)))
         self.assertTrue((abs(found - weights) < 5 * errors + 0.02 * abs(weights)).all(), found)
+
+    def test_weights_without_a_constant_are_found(self):
+        # A right mode against a wrong one: the terms with the sign of the outcome, so that the right one is always first.
+        random = np.random.default_rng(4)
+        x = random.normal(size=(40_000, 3)) * [1.0, 5.0, 0.2]
+        weights = np.array([0.7, -0.1, 2.0])
+        p = fit.logistic(x @ weights)
+        x *= np.where(random.uniform(size=len(x)) < p, 1.0, -1.0)[:, None]
+        errors = np.sqrt(np.diag(np.linalg.inv((x * (p * (1 - p))[:, None]).T @ x)))
+        found = fit.fit_failure(x, np.ones(len(x)), np.ones(len(x)), has_constant=False)
+        self.assertTrue((abs(found - weights) < 5 * errors + 0.02 * abs(weights)).all(), found)
+
+    def test_an_array_of_the_header_is_written_and_read_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            header, fit.HEADER = fit.HEADER, pathlib.Path(folder) / "fitted_constants.h"
+            try:
+                fit.HEADER.write_text(header.read_text())
+                check = fit.read_header()
+                source = fit.Source("studies/x.yaml", 7, 20, 3)
+                fit.write_constants("kModeTerms", [source], ["mode_noise", "mode_width"], np.array([0.5, -2.0]),
+                                    np.column_stack([np.linspace(0, 1, 1001), np.linspace(-1, 0, 1001)]))
+                np.testing.assert_allclose(fit.read_constants("kModeTerms"), [[0.5, 0.005, 0.995], [-2.0, -0.995, -0.005]])
+                self.assertIn("//   studies/x.yaml, seed 7, 20 draws, 3 trials of each condition\n", fit.HEADER.read_text())
+                for now, before in zip(fit.read_header(), check):
+                    np.testing.assert_array_equal(now, before)
+            finally:
+                fit.HEADER = header
 
     def test_a_weight_of_two_is_a_trial_twice(self):
         random = np.random.default_rng(2)

@@ -1,24 +1,31 @@
-// The terms of rcme_calibrated's check (estimator/calibrated/checked_probability.h) in every trial of a
-// study, with what came of its answer: what scripts/fit_calibrated fits the constants to. Truth is in the
-// last columns alone.
-//   rcme_calibrated_terms STUDY [SEED] [TRIALS] [THREADS, default one per core] > CSV
-// The bytes do not depend on the number of threads. One row per answer that can be scored:
+// What scripts/fit_calibrated fits the constants of rcme_calibrated to, from every trial of a study. Truth is
+// in the choice of the rows and in the last columns alone.
+//   rcme_calibrated_terms check|modes STUDY [SEED] [TRIALS] [THREADS, default one per core] > CSV
+// The bytes do not depend on the number of threads. Columns:
 //   condition, trial     of the study
 //   levels...            of the condition, one column per factor
+// check: the terms of the check (estimator/calibrated/checked_probability.h), a row per answer that can be
+// scored:
 //   failure_*, spread_*  the terms
 //   posterior            probability of failure by the modes
 //   homography_share     severity of the problem
 //   nees                 of the covariance without the factor of the check
 //   failed               0 or 1
+// modes: what speaks for a right mode against a wrong one (ComputeModeTerms), a row per wrong mode:
+//   mode_*               the terms
+//   share                one over the number of the trial's rows
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "estimator/calibrated/checked_probability.h"
+#include "estimator/calibrated/weigh_modes.h"
 #include "estimator/estimators/rcme_calibrated.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/run/for_each_trial.h"
@@ -26,44 +33,102 @@
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
 
-std::string MakeHeader(const StudyPlan& plan) {
-  std::string header = "condition,trial";
-  for (const std::string& name : plan.factor_names) header += "," + name;
+std::string MakeCheckHeader() {
+  std::string header;
   for (const FitTerm& term : ListFailureTerms(0.5, {})) header += ",failure_" + term.name;
   for (const FitTerm& term : ListSpreadTerms({})) header += ",spread_" + term.name;
   return header + ",posterior,homography_share,nees,failed\n";
 }
 
-// Empty where there is no problem, no answer, or no truth to score it by.
-std::string FindRow(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
-                    const WeightInspection& estimator) {
-  const StreamName name = NameOfTrial(plan, condition, trial);
-  const auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name); });
-  if (!simulated.made) return {};
-  const TrialData& data = *simulated.made;
-  RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
+std::string MakeModesHeader() {
+  std::string header;
+  for (const char* name : kModeTermNames) header += fmt::format(",mode_{}", name);
+  return header + ",share\n";
+}
+
+// Empty where there is no answer, or no truth to score it by.
+std::string FindCheckRow(const WeightInspection& estimator, const TrialData& data,
+                         const FailureBounds& failure, const std::string& labels, RandomStream& rng) {
   CheckedVerdict verdict;
   const MotionEstimate estimate = estimator.EstimateChecked(data.problem, rng, &verdict);
   const TrialRecord record = Score(estimate, data, 0.0);
-  if (estimate.status != MotionStatus::kOk || !data.truth.is_direction_known || !IsScored(record)) return {};
-  std::string row = fmt::format("{},{}", condition.index, trial);
-  for (const std::string& level : condition.levels) row += "," + level;
+  if (estimate.status != MotionStatus::kOk || !IsScored(record)) return {};
+  std::string row = labels;
   for (const FitTerm& x : ListFailureTerms(verdict.by_modes, verdict.check))
     row += fmt::format(",{:.9g}", x.value);
   for (const FitTerm& y : ListSpreadTerms(verdict.check)) row += fmt::format(",{:.9g}", y.value);
   return row + fmt::format(",{:.9g},{:.9g},{:.9g},{:d}\n", verdict.by_modes, data.severity.homography_share,
-                           record.nees, HasFailed(record, plan.study.failure));
+                           record.nees, HasFailed(record, failure));
+}
+
+// Of the modes that explain at least half as many matches as the one that explains the most: the most likely
+// one within the failure bounds of the truth against each beyond them. Two motions of their own are left out.
+std::string FindModeRows(const WeightInspection& estimator, const TrialData& data,
+                         const FailureBounds& failure, const std::string& labels, RandomStream& rng) {
+  const std::vector<ExplainedMode> modes = estimator.ListModes(data.problem, rng);
+  int most = 0;
+  for (const ExplainedMode& mode : modes) most = std::max(most, mode.explanation.num_explained);
+  const MotionBounds bounds{kRadPerDeg * failure.max_rotation_error_deg,
+                            kRadPerDeg * failure.max_direction_error_deg};
+  std::vector<bool> is_right, is_notable;
+  size_t right = modes.size();
+  for (size_t i = 0; i < modes.size(); ++i) {
+    is_notable.push_back(2 * modes[i].explanation.num_explained >= most);
+    is_right.push_back(IsWithin(*data.truth.cam2_from_cam1_true, bounds, modes[i].mode.pose));
+    if (!is_notable[i] || !is_right[i]) continue;
+    if (right == modes.size() || modes[i].mode.log_likelihood > modes[right].mode.log_likelihood) right = i;
+  }
+  std::vector<std::string> of_pairs;
+  for (const ModePair& pair : ListModePairs(modes)) {
+    if (pair.is_second_motion || (pair.a != right && pair.b != right)) continue;
+    const size_t other = pair.a == right ? pair.b : pair.a;
+    if (is_right[other] || !is_notable[other]) continue;
+    std::string& terms = of_pairs.emplace_back();
+    for (const double x : pair.terms) terms += fmt::format(",{:.9g}", pair.a == right ? x : -x);
+  }
+  std::string rows;
+  for (const std::string& terms : of_pairs)
+    rows += fmt::format("{}{},{:.9g}\n", labels, terms, 1.0 / static_cast<double>(of_pairs.size()));
+  return rows;
+}
+
+// What is listed of a trial.
+struct Listing {
+  std::string header;
+  std::string (*find_rows)(const WeightInspection& estimator, const TrialData& data,
+                           const FailureBounds& failure, const std::string& labels, RandomStream& rng);
+};
+
+std::string MakeHeader(const StudyPlan& plan, const Listing& listing) {
+  std::string header = "condition,trial";
+  for (const std::string& name : plan.factor_names) header += "," + name;
+  return header + listing.header;
+}
+
+// Empty where there is no problem, or no direction that could be right.
+std::string FindRows(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
+                     const WeightInspection& estimator, const Listing& listing) {
+  const StreamName name = NameOfTrial(plan, condition, trial);
+  const auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name); });
+  if (!simulated.made || !simulated.made->truth.is_direction_known) return {};
+  std::string labels = fmt::format("{},{}", condition.index, trial);
+  for (const std::string& level : condition.levels) labels += "," + level;
+  RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
+  return listing.find_rows(estimator, *simulated.made, plan.study.failure, labels, rng);
 }
 
 int Run(int argc, char** argv) {
-  Study study = LoadStudy(argv[1]);
-  if (argc > 2) study.seed = std::strtoull(argv[2], nullptr, 10);
-  if (argc > 3) study.trials = std::atoi(argv[3]);
-  const int num_threads = argc > 4 ? std::atoi(argv[4]) : 0;
+  const Listing listing = argv[1] == std::string_view("modes") ? Listing{MakeModesHeader(), FindModeRows}
+                                                               : Listing{MakeCheckHeader(), FindCheckRow};
+  Study study = LoadStudy(argv[2]);
+  if (argc > 3) study.seed = std::strtoull(argv[3], nullptr, 10);
+  if (argc > 4) study.trials = std::atoi(argv[4]);
+  const int num_threads = argc > 5 ? std::atoi(argv[5]) : 0;
   const StudyPlan plan = MakePlan(study, PlanEstimators::kNotMade);
   CalibratedOptions options;
   options.leave_out = CalibratedStep::kModelCheck;
@@ -72,11 +137,11 @@ int Run(int argc, char** argv) {
   std::vector<std::string> rows(static_cast<size_t>(plan.NumTrials()));
   Progress progress("trials", plan.NumTrials());
   const auto add = [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
-    rows[static_cast<size_t>(index)] = FindRow(plan, condition, trial, *inspection);
+    rows[static_cast<size_t>(index)] = FindRows(plan, condition, trial, *inspection, listing);
     progress.Advance(1);
   };
   ForEachTrial(plan, {0, static_cast<std::uint32_t>(study.trials)}, add, num_threads);
-  fmt::print("{}{}", MakeHeader(plan), fmt::join(rows, ""));
+  fmt::print("{}{}", MakeHeader(plan, listing), fmt::join(rows, ""));
   return EXIT_SUCCESS;
 }
 
@@ -84,8 +149,9 @@ int Run(int argc, char** argv) {
 }  // namespace rcme
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: rcme_calibrated_terms STUDY [SEED] [TRIALS] [THREADS]\n");
+  const std::string_view listing = argc > 1 ? argv[1] : "";
+  if (argc < 3 || (listing != "check" && listing != "modes")) {
+    fmt::print(stderr, "usage: rcme_calibrated_terms check|modes STUDY [SEED] [TRIALS] [THREADS]\n");
     return 2;
   }
   try {

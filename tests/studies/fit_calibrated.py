@@ -1,4 +1,7 @@
-"""Fits the constants of rcme_calibrated's check; see scripts/fit_calibrated.
+"""Fits the constants of rcme_calibrated; see scripts/fit_calibrated.
+
+In two passes, as the check sees the modes as they are weighed: first the weights of the modes (--modes), then, with the program built
+anew, the check.
 
 Training: draws of studies/right_calibration.yaml and of studies/any_condition.yaml, and the families of studies/calibrated, with seeds
 of their own; the latter two count less. The covariance is fitted where the calibration is right: errors of the calibration are not for
@@ -20,6 +23,7 @@ HEADER = ROOT / "estimator/calibrated/fitted_constants.h"
 FAMILIES = ["indoor", "outdoor", "low_parallax", "planarity", "moving_object", "hard", "few_matches", "noise_laws", "outlier_laws",
             "uniform", "forward", "parallax", "clustered_inliers", "assumed_sigma"]
 LESS = 0.3  # weight of a trial with a wrong calibration, or of a family, which are easy and many
+MODES_OF_FAMILY = 2.0  # the same where the modes' weights are fitted: there the families have few trials with two modes
 RIDGE = 5e-4  # of the standardised terms' weights, per trial
 OUTSIDE = 0.005  # share of the training trials beyond either end of a term's domain
 QUANTILE_95 = 11.0705  # of chi-square with five degrees of freedom
@@ -42,8 +46,17 @@ class Source:
         return f"{pathlib.Path(self.study).stem}_{self.seed}_{self.number}_{self.trials}"
 
 
+def sources_of_modes(scale):
+    """(training, held out) of the weights of the modes; errors of the calibration are not theirs to tell."""
+    draws = lambda n: max(20, int(n * scale))
+    training = [Source("studies/right_calibration.yaml", 71, draws(2000), 4)]
+    training += [Source(f"studies/calibrated/{family}.yaml", 73, None, max(2, int(20 * scale)), MODES_OF_FAMILY)
+                 for family in ("indoor", "outdoor", "planarity", "hard", "few_matches")]
+    return training, [Source("studies/right_calibration.yaml", 81, draws(800), 4)]
+
+
 def sources(scale):
-    """(training, held out); `scale` 1 for the committed constants."""
+    """(training, held out) of the check; `scale` 1 for the committed constants."""
     draws = lambda n: max(20, int(n * scale))
     training = [Source("studies/right_calibration.yaml", 51, draws(2400), 4), Source("studies/any_condition.yaml", 52, draws(600), 4, LESS, fits_covariance=False)]
     training += [Source(f"studies/calibrated/{family}.yaml", 53, None, max(2, int(20 * scale)), LESS) for family in FAMILIES]
@@ -51,9 +64,9 @@ def sources(scale):
     return training, held_out
 
 
-def make_trials(source, programs, folder, keeps):
-    """The CSV of a source's trials; one that is there is taken as it is if `keeps`."""
-    made = folder / f"{source.name()}.csv"
+def make_trials(listing, source, programs, folder, keeps):
+    """The CSV of a source's trials (`listing` of rcme_calibrated_terms); one that is there is taken as it is if `keeps`."""
+    made = folder / f"{listing}_{source.name()}.csv"
     if keeps and made.exists():
         return made
     text = (ROOT / source.study).read_text()
@@ -65,9 +78,26 @@ def make_trials(source, programs, folder, keeps):
     study = folder / f"{source.name()}.yaml"
     study.write_text(text)
     with open(made.with_suffix(".part"), "w") as out:
-        subprocess.run([programs / "rcme_calibrated_terms", study, str(source.seed), str(source.trials)], stdout=out, check=True)
+        subprocess.run([programs / "rcme_calibrated_terms", listing, study, str(source.seed), str(source.trials)], stdout=out, check=True)
     made.with_suffix(".part").rename(made)
     return made
+
+
+class ModePairs:
+    """Rows of the sources as arrays: terms of a right mode against a wrong one, weight."""
+
+    def __init__(self, files, sources):
+        rows = [(row, source.weight) for path, source in zip(files, sources) for row in csv.DictReader(open(path, newline=""))]
+        self.names = [key for key in rows[0][0] if key.startswith("mode_")]
+        self.x = np.array([[float(row[key]) for key in self.names] for row, _ in rows])
+        self.weight = np.array([weight * float(row["share"]) for row, weight in rows])
+
+    def log_loss(self, b):
+        return np.average(np.logaddexp(0, -(self.x @ b)), weights=self.weight)
+
+    def wrong(self, b):
+        """Share of the trials' weight in which the wrong mode is the likelier one."""
+        return np.average(self.x @ b <= 0, weights=self.weight)
 
 
 class Trials:
@@ -119,12 +149,13 @@ def probability(names, x, b):
     return logistic(np.maximum(slope, LEAST_SLOPE) * log_odds + x[:, rest] @ b[rest])
 
 
-def fit_failure(x, failed, weight):
-    """Weights of a ridge logistic regression by Newton's method; the first column is the constant."""
-    scale = x.std(axis=0)
-    scale[0] = 1.0
+def fit_failure(x, failed, weight, has_constant=True):
+    """Weights of a ridge logistic regression by Newton's method; where there is a constant it is the first column."""
+    scale = np.sqrt((x**2).mean(axis=0)) if not has_constant else x.std(axis=0)
+    if has_constant:
+        scale[0] = 1.0
     z = x / scale
-    penalty = RIDGE * np.diag([0.0] + [1.0] * (x.shape[1] - 1)) * weight.sum()
+    penalty = RIDGE * np.diag([0.0 if has_constant else 1.0] + [1.0] * (x.shape[1] - 1)) * weight.sum()
     b = np.zeros(x.shape[1])
     for _ in range(50):
         p = logistic(z @ b)
@@ -181,29 +212,36 @@ def report(programs, title, trials, p, factor, is_verified):
     return rows
 
 
-def write_header(training, train, b, a):
-    said = "\n".join(f"//   {s.study}, seed {s.seed}, " + (f"{s.number} draws, " if s.number else "") + f"{s.trials} trials of each condition"
-                     + (f", weight {s.weight}" if s.weight != 1 else "")
-                     + ("" if s.fits_covariance else ", for P alone") for s in training)
-    terms = lambda keys, prefix, weights, x: "".join(
-        f'    {{"{key[len(prefix):]}", {weight:.6g}, {least:.6g}, {most:.6g}}},\n'
-        for key, weight, least, most in zip(keys, weights, *np.quantile(x, [OUTSIDE, 1 - OUTSIDE], axis=0)))
-    HEADER.write_text(
-        "// Constants of the check of rcme_calibrated's model (checked_probability.h), made by scripts/fit_calibrated from\n//\n"
-        f"{said}\n//\n"
-        "#pragma once\n\nnamespace rcme {\n\nstruct FittedTerm {\n  const char* name;\n  double weight;\n  double least, most;  // of the trials, but for half a per cent on either side\n};\n\n"
-        "inline constexpr FittedTerm kFailureTerms[] = {\n" + terms(train.names, "failure_", b, train.x) + "};\n\n"
-        "inline constexpr FittedTerm kSpreadTerms[] = {\n" + terms(train.spread_names, "spread_", a, train.spread) + "};\n\n}  // namespace rcme\n")
+def describe_sources(training):
+    """Comment lines, one per source."""
+    return "".join(f"//   {s.study}, seed {s.seed}, " + (f"{s.number} draws, " if s.number else "") + f"{s.trials} trials of each condition"
+                   + (f", weight {s.weight}" if s.weight != 1 else "") + ("" if s.fits_covariance else ", for P alone") + "\n" for s in training)
+
+
+def write_constants(name, training, keys, weights, x):
+    """Replaces an array of the header, and above it the trials that it was fitted to."""
+    prefix = keys[0].split("_")[0] + "_"
+    terms = "".join(f'    {{"{key[len(prefix):]}", {weight:.6g}, {least:.6g}, {most:.6g}}},\n'
+                    for key, weight, least, most in zip(keys, weights, *np.quantile(x, [OUTSIDE, 1 - OUTSIDE], axis=0)))
+    made = f"// Fitted to\n//\n{describe_sources(training)}inline constexpr FittedTerm {name}[] = {{\n{terms}}};\n"
+    HEADER.write_text(re.sub(rf"// Fitted to\n(//[^\n]*\n)*inline constexpr FittedTerm {name}\[\] = {{\n(.*?)\n}};\n",
+                             lambda _: made, HEADER.read_text(), flags=re.DOTALL))
+
+
+def read_constants(name):
+    """Rows (weight, least, most) of an array of the header, as they are in the program."""
+    array = re.search(rf"{name}\[\] = {{\n(.*?)\n}};", HEADER.read_text(), re.DOTALL)[1]
+    return np.array([[float(x) for x in row.rstrip("},").split(", ")[1:]] for row in array.splitlines()])
 
 
 def read_header():
-    """(b, its domain, a) of the constants as they are in the program."""
-
-    def read(name):
-        array = re.search(rf"{name}\[\] = {{\n(.*?)\n}};", HEADER.read_text(), re.DOTALL)[1]
-        return np.array([[float(x) for x in row.rstrip("},").split(", ")[1:]] for row in array.splitlines()])
-    failure, spread = read("kFailureTerms"), read("kSpreadTerms")
+    """(b, its domain, a) of the check's constants as they are in the program."""
+    failure, spread = read_constants("kFailureTerms"), read_constants("kSpreadTerms")
     return failure[:, 0], failure[:, 1:], spread[:, 0]
+
+
+def is_same(now, fitted):
+    return now.shape == fitted.shape and np.allclose(now, fitted, rtol=1e-4, atol=1e-6)
 
 
 def write_tables(programs, folder, train, held_out, tests):
@@ -229,8 +267,59 @@ def write_tables(programs, folder, train, held_out, tests):
             table.writerow(["covariance: " + name[len("spread_"):], f"{weight:.4g}", ""])
 
 
+def write_modes_table(folder, train, test, b):
+    """What each term of the modes' weights costs when it is left out, on trials that were not fitted to."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "modes.csv", "w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["term", "weight", "log_loss_more_without", "wrong_mode_more_without_percent"])
+        for k, name in enumerate(train.names):
+            without = b.copy()
+            rest = [j for j in range(len(b)) if j != k]
+            without[rest], without[k] = fit_failure(train.x[:, rest], np.ones(len(train.x)), train.weight, has_constant=False), 0.0
+            table.writerow([name[len("mode_"):], f"{b[k]:.4g}", f"{test.log_loss(without) - test.log_loss(b):.4f}",
+                            f"{100 * (test.wrong(without) - test.wrong(b)):.2f}"])
+        table.writerow(["all", "", f"{test.log_loss(b):.4f}", f"{100 * test.wrong(b):.2f}"])
+
+
+def fit_modes(arguments):
+    training, held_out = sources_of_modes(arguments.scale)
+    files = make_all("modes", training + held_out, arguments)
+    train = ModePairs(files[:len(training)], training)
+    b = fit_failure(train.x, np.ones(len(train.x)), train.weight, has_constant=False)
+    if not arguments.report_only:
+        write_constants("kModeTerms", training, train.names, b, train.x)
+    write_modes_table(arguments.out, train, ModePairs(files[len(training):], held_out), b)
+    return is_same(read_constants("kModeTerms")[:, 0], b)
+
+
+def fit_check(arguments):
+    training, held_out = sources(arguments.scale)
+    files = make_all("check", training + held_out, arguments)
+    train = Trials(files[:len(training)], training)
+    b = fit_failure(train.x, train.failed, train.weight)
+    sure = train.fits_covariance & (probability(train.names, train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
+    a = fit_spread(train.spread[sure], train.nees[sure], train.weight[sure])
+    if not arguments.report_only:
+        write_constants("kFailureTerms", training, train.names, b, train.x)
+        write_constants("kSpreadTerms", [s for s in training if s.fits_covariance], train.spread_names, a, train.spread)
+    tests = [Trials([path], [source]) for path, source in zip(files[len(training):], held_out)]
+    write_tables(arguments.programs, arguments.out, train, held_out, tests)
+    now_b, _, now_a = read_header()
+    return is_same(now_b, b) and is_same(now_a, a)
+
+
+def make_all(listing, sources, arguments):
+    files = []
+    for source in sources:
+        files.append(make_trials(listing, source, arguments.programs, arguments.trials, arguments.resume))
+        print(f"{len(files)} of {len(sources)} populations and families", file=sys.stderr)
+    return files
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--modes", action="store_true", help="the weights of the modes, in place of the check")
     parser.add_argument("--programs", default=ROOT / "build/release/bin", type=pathlib.Path, help="folder of the two programs")
     parser.add_argument("--trials", default=ROOT / "build/fit_calibrated", type=pathlib.Path, help="folder of the trials")
     parser.add_argument("--resume", action="store_true", help="take trials that are there as they are")
@@ -239,21 +328,7 @@ def main():
     parser.add_argument("--report-only", action="store_true", help="leave the constants as they are; exit code 1 if a fit gives others")
     arguments = parser.parse_args()
     arguments.trials.mkdir(parents=True, exist_ok=True)
-    training, held_out = sources(arguments.scale)
-    files = []
-    for source in training + held_out:
-        files.append(make_trials(source, arguments.programs, arguments.trials, arguments.resume))
-        print(f"{len(files)} of {len(training + held_out)} populations and families", file=sys.stderr)
-    train = Trials(files[:len(training)], training)
-    b = fit_failure(train.x, train.failed, train.weight)
-    sure = train.fits_covariance & (probability(train.names, train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
-    a = fit_spread(train.spread[sure], train.nees[sure], train.weight[sure])
-    if not arguments.report_only:
-        write_header(training, train, b, a)
-    tests = [Trials([path], [source]) for path, source in zip(files[len(training):], held_out)]
-    write_tables(arguments.programs, arguments.out, train, held_out, tests)
-    now_b, _, now_a = read_header()
-    if not np.allclose(now_b, b, rtol=1e-4, atol=1e-6) or not np.allclose(now_a, a, rtol=1e-4, atol=1e-6):
+    if not (fit_modes if arguments.modes else fit_check)(arguments):
         sys.exit("fit_calibrated: the constants of estimator/calibrated/fitted_constants.h are not those of this fit")
 
 

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "estimator/calibrated/fitted_constants.h"
 #include "tests/test_support/calibrated_mode.h"
 
 namespace rcme {
@@ -18,16 +20,56 @@ Contrast Of(double exclusive, double shared, double variance) {
   return contrast;
 }
 
-TEST(ModeLogOdds, OfExamplesByHand) {
-  EXPECT_NEAR(ModeLogOdds(Of(10.0, 0.0, 0.0), 0.0, 100.0), 2.6, 1e-12);
-  // sd = 4: 20 is 8 beyond three of them and 5 of them.
-  EXPECT_NEAR(ModeLogOdds(Of(0.0, 20.0, 6.0), 0.0, 100.0), 0.26 * 8.0 + 1.25 * 5.0, 1e-12);
-  EXPECT_NEAR(ModeLogOdds(Of(0.0, -20.0, 6.0), 0.0, 100.0), -0.26 * 8.0 - 1.25 * 5.0, 1e-12);
-  EXPECT_NEAR(ModeLogOdds(Of(0.0, 4.0, 6.0), 0.0, 100.0), 1.25, 1e-12);
-  // Half the width counts at 50 matches, five nats at most.
-  EXPECT_NEAR(ModeLogOdds(Of(0.0, 0.0, 0.0), 2.0, 50.0), 0.75, 1e-12);
-  EXPECT_NEAR(ModeLogOdds(Of(0.0, 0.0, 0.0), 80.0, 50.0), 1.875, 1e-12);
-  EXPECT_NEAR(ModeLogOdds(Of(0.0, 0.0, 0.0), -80.0, 50.0), -1.875, 1e-12);
+// {exclusive, shared, explained, noise, width, parallax}
+using Terms = std::array<double, kNumModeTerms>;
+
+void ExpectTerms(const Terms& found, const Terms& expected) {
+  for (size_t k = 0; k < kNumModeTerms; ++k) EXPECT_NEAR(found[k], expected[k], 1e-12) << kModeTermNames[k];
+}
+
+TEST(ComputeModeTerms, OfExamplesByHand) {
+  const ModeTraits usual = {100, 1.0, 0.0, 0.0};
+  ExpectTerms(ComputeModeTerms(Of(9.0, 0.0, 0.0), usual, usual), {3.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms(Of(-9.0, 0.0, 0.0), usual, usual), {-3.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms(Of(0.0, 20.0, 6.0), usual, usual), {0.0, 5.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms({}, {50, 0.5, -3.0, 7.0}, {100, 1.0, 0.0, 1.0}),
+              {0.0, 0.0, std::log(0.5), std::log(0.5), 3.0, std::log(4.0)});
+  // Widths within ten nats; points behind the cameras are no parallax.
+  ExpectTerms(ComputeModeTerms({}, {100, 1.0, -80.0, -5.0}, usual), {0.0, 0.0, 0.0, 0.0, 10.0, 0.0});
+  ExpectTerms(ComputeModeTerms({}, {100, 1.0, 80.0, 0.0}, usual), {0.0, 0.0, 0.0, 0.0, -10.0, 0.0});
+}
+
+TEST(ComputeModeTerms, HaveTheOtherSignTheOtherWayRound) {
+  const ModeTraits a = {70, 0.7, 2.0, 3.0}, b = {90, 1.1, -4.0, 30.0};
+  const Terms forth = ComputeModeTerms(Of(4.0, 7.0, 3.0), a, b);
+  Terms back = ComputeModeTerms(Of(-4.0, -7.0, 3.0), b, a);
+  for (double& x : back) x = -x;
+  ExpectTerms(forth, back);
+}
+
+// What speaks for a mode does so by its sign: more evidence, more matches, less noise, a wider optimum, less
+// parallax.
+TEST(ModeLogOdds, GrowWithWhatSpeaksForTheMode) {
+  const ModeTraits usual = {100, 1.0, 0.0, 5.0};
+  EXPECT_EQ(ModeLogOdds({}, usual, usual), 0.0);
+  EXPECT_GT(ModeLogOdds(Of(9.0, 0.0, 0.0), usual, usual), 0.0);
+  EXPECT_GT(ModeLogOdds(Of(0.0, 9.0, 0.0), usual, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {110, 1.0, 0.0, 5.0}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 0.9, 0.0, 5.0}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, -1.0, 5.0}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 0.0, 4.0}, usual), 0.0);
+}
+
+TEST(ModeLogOdds, AreTheFittedSumOfTheTerms) {
+  const ModeTraits a = {70, 0.7, 2.0, 3.0}, b = {90, 1.1, -4.0, 30.0};
+  const Contrast contrast = Of(4.0, 7.0, 3.0);
+  const Terms terms = ComputeModeTerms(contrast, a, b);
+  double sum = 0.0;
+  for (size_t k = 0; k < kNumModeTerms; ++k) {
+    EXPECT_STREQ(kModeTerms[k].name, kModeTermNames[k]);
+    sum += kModeTerms[k].weight * terms[k];
+  }
+  EXPECT_NEAR(ModeLogOdds(contrast, a, b), sum, 1e-12);
 }
 
 TEST(EvidenceOfMotion, IsThatOfTheMatchesLessTheSearch) {

@@ -25,6 +25,7 @@ ExplainedMode ModeAt(double turn_rad, double log_det = 0.0, int num_explained = 
   made.mode.mixture.outlier_density = kDensity;
   made.explanation.left_out_density.assign(10, 19.0 * kDensity);
   made.explanation.probability.assign(10, 0.9);
+  made.explanation.terms.depth.assign(10, 0.0);
   made.explanation.num_explained = num_explained;
   return made;
 }
@@ -64,14 +65,17 @@ TEST(WeighModes, ModesWithinTheBoundsAreOne) {
   }
 }
 
-// Log-odds of 3/4 (log det) n / (n + 50), n the mean of what both explain, the noise of each mode aside; the
-// odds of rivals add up to the root of their powers.
+// The odds of rivals against the answer, from the width in units of their noise (scale), the number of
+// matches and the noise, add up to the root of their powers.
 TEST(WeighModes, RivalsAddUpToTheirNorm) {
-  const std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2, 1.0, 60, 2.0),
-                                            ModeAt(0.4, 2.0, 40, 0.5)};
+  const std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2, 1.0, 90, 2.0),
+                                            ModeAt(0.4, 2.0, 80, 1.5)};
   const ModeWeights weights = WeighModes(modes, kModeBounds, kPrior, {});
   EXPECT_EQ(weights.answer, 0u);
-  const double first = std::exp(-0.75 * 1.0 * 80.0 / 130.0), second = std::exp(-0.75 * 2.0 * 70.0 / 120.0);
+  const auto odds = [](double log_det, int num_explained, double scale) {
+    return std::exp(-ModeLogOdds({}, {100, 1.0, 0.0, 0.0}, {num_explained, scale, log_det, 0.0}));
+  };
+  const double first = odds(1.0, 90, 2.0), second = odds(2.0, 80, 1.5);
   const double norm = std::pow(std::pow(first, 2.5) + std::pow(second, 2.5), 0.4);
   const double total = 1.0 + norm + kNone;
   EXPECT_NEAR(weights.of_modes[0], 1.0 / total, 1e-12);
@@ -96,6 +100,7 @@ TEST(WeighModes, ASecondMotionHasThePriorOfTheOptions) {
   for (ExplainedMode* mode : {&first, &second}) {
     mode->explanation.left_out_density.assign(35, 1e-6);
     mode->explanation.probability.assign(35, 0.1);
+    mode->explanation.terms.depth.assign(35, 0.0);
   }
   for (size_t i = 0; i < 35; ++i) {
     ExplainedMode& of = i < 20 ? first : second;
@@ -125,6 +130,17 @@ TEST(FindRivals, AreOfWhereTheAnswerIsNow) {
   EXPECT_EQ(FindRivals(modes, weights.answer, kModeBounds), weights.is_rival);
   modes[0].mode.pose = ModeAt(0.18).mode.pose;
   EXPECT_EQ(FindRivals(modes, 0, kModeBounds), (std::vector<bool>{false, true, false}));
+}
+
+TEST(ListModePairs, HasEveryTwoModesOnceWithTheirTerms) {
+  const std::vector<ModePair> pairs =
+      ListModePairs({ModeAt(0.0), ModeAt(0.2, 1.0, 90, 2.0), ModeAt(0.4, 2.0, 80, 1.5)});
+  ASSERT_EQ(pairs.size(), 3u);
+  EXPECT_EQ(pairs[1].a, 0u);
+  EXPECT_EQ(pairs[1].b, 2u);
+  EXPECT_FALSE(pairs[1].is_second_motion);
+  const auto expected = ComputeModeTerms({}, {100, 1.0, 0.0, 0.0}, {80, 1.5, 2.0, 0.0});
+  for (size_t k = 0; k < kNumModeTerms; ++k) EXPECT_NEAR(pairs[1].terms[k], expected[k], 1e-12) << k;
 }
 
 }  // namespace
