@@ -21,6 +21,7 @@
 #include "experiments/core/text/program_name.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_file.h"
+#include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/run/run_study.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/forecast_output.h"
@@ -74,6 +75,15 @@ py::list ModesOf(const MotionEstimate& estimate) {
   return modes;
 }
 
+py::list ListOf(const std::vector<ProbabilityForBounds>& probabilities) {
+  py::list list;
+  for (const ProbabilityForBounds& each : probabilities)
+    list.append(py::dict("rotation_deg"_a = each.bounds.max_rotation_error_deg,
+                         "direction_deg"_a = each.bounds.max_direction_error_deg,
+                         "p_failure"_a = each.failure_probability, "domain"_a = Name(each.domain)));
+  return list;
+}
+
 py::dict DictOf(const MotionEstimate& estimate) {
   py::dict dict("status"_a = StatusName(estimate.status), "message"_a = estimate.message,
                 "motion"_a = py::none());
@@ -96,7 +106,8 @@ Camera CameraOf(const std::array<double, 4>& k, int width, int height) {
 
 py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
                   double sigma_px, std::vector<double> noise_scale, const std::string& name,
-                  const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process) {
+                  const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process,
+                  const std::vector<std::pair<double, double>>& bounds) {
   std::vector<EstimatorSpec> specs = {file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file)};
   if (allow_process) AllowCommands(&specs);
   EstimatorSpec& spec = specs.front();
@@ -105,13 +116,16 @@ py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const
   MotionProblem problem{{}, camera1, camera2, sigma_px, std::move(noise_scale)};
   for (py::ssize_t i = 0; i < x1.shape(0); ++i)
     problem.matches.push_back({{x1.at(i, 0), x1.at(i, 1)}, {x2.at(i, 0), x2.at(i, 1)}});
-  MotionEstimate estimate;
+  std::vector<FailureBounds> failure_bounds;
+  for (const auto& [rotation, direction] : bounds) failure_bounds.push_back({rotation, direction});
+  EstimateForBounds found;
   {
     const py::gil_scoped_release unlocked;
     RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
-    estimate = Judged(estimator->Estimate(problem, rng), problem.matches.size());
+    found = EstimateWithBounds(*estimator, problem, failure_bounds, rng);
   }
-  py::dict dict = DictOf(estimate);
+  py::dict dict = DictOf(Judged(std::move(found.estimate), problem.matches.size()));
+  dict["p_failure_for_bounds"] = ListOf(found.probabilities);
   dict["estimator"] = spec.label;
   return dict;
 }

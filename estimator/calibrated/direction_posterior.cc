@@ -98,7 +98,8 @@ struct AxisFit {
   double variance = 0.0;                        // v
   double near = kFirstNear;
   double log_likelihood = -std::numeric_limits<double>::infinity();
-  double mean_in_sd = 0.0;  // m / sd
+  double mean_in_sd = 0.0;                                // m / sd
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();  // of x, from the matches that are looked at
 };
 
 // m by the median, v by the median deviation.
@@ -167,6 +168,7 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
   fit.log_likelihood = set.all_over_used * likelihood.Log() - 0.5 * log_det;
   const double variance_of_mean = ldlt.solve(Eigen::Vector4d::Unit(3))(3) / set.all_over_used;
   fit.mean_in_sd = fit.x(3) / std::sqrt(std::max(variance_of_mean, 1e-300));
+  fit.information = information;
   return fit;
 }
 
@@ -184,8 +186,9 @@ AxisFit FitAxis(const DisplacementSet& set, const Eigen::Vector3d& direction) {
 double NormalCdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 struct WeightedAxis {
-  double angle;     // from the centre to the axis, rad, at most pi / 2
-  double log_area;  // of its part of the sphere
+  double angle;               // from the centre to the axis, rad, at most pi / 2
+  double low, high, azimuth;  // of its part of the sphere, rad
+  double log_area;            // of its part of the sphere
   AxisFit fit;
 };
 
@@ -200,7 +203,8 @@ std::vector<WeightedAxis> FitAxes(const DisplacementSet& set, const Eigen::Vecto
         const double azimuth = 2.0 * std::numbers::pi * (k + 0.5 * (ring % 2)) / kAzimuths;
         const Eigen::Vector3d direction =
             std::cos(angle) * centre + std::sin(angle) * (std::cos(azimuth) * u + std::sin(azimuth) * v);
-        axes.push_back({angle, std::log(std::cos(low) - std::cos(high)), FitAxis(set, direction)});
+        axes.push_back(
+            {angle, low, high, azimuth, std::log(std::cos(low) - std::cos(high)), FitAxis(set, direction)});
       }
     }
   };
@@ -209,7 +213,43 @@ std::vector<WeightedAxis> FitAxes(const DisplacementSet& set, const Eigen::Vecto
   return axes;
 }
 
+// Of the rings, so that the angle is an edge of them or of those about the opposite direction.
+double EdgeAt(double angle_rad) {
+  constexpr double kHalfPi = 0.5 * std::numbers::pi;
+  const double edge = angle_rad < kHalfPi ? angle_rad : std::max(std::numbers::pi - angle_rad, 1e-3);
+  return std::min(edge, kHalfPi - 1e-3);
+}
+
+const WeightedAxis& MostLikely(const std::vector<WeightedAxis>& axes) {
+  return *std::ranges::max_element(axes, {}, [](const WeightedAxis& a) { return a.fit.log_likelihood; });
+}
+
 }  // namespace
+
+std::vector<DirectionCell> CellsOfDirection(const MotionProblem& problem, const ExplainedMode& mode,
+                                            double angle_rad) {
+  constexpr double kPi = std::numbers::pi;
+  const DisplacementSet set = Displacements(problem, mode);
+  const std::vector<WeightedAxis> axes = FitAxes(set, mode.mode.pose.t, EdgeAt(angle_rad));
+  const double greatest = MostLikely(axes).fit.log_likelihood;
+  std::vector<DirectionCell> cells;
+  double total = 0.0;
+  for (const WeightedAxis& axis : axes) {
+    const double weight = std::exp(axis.fit.log_likelihood - greatest + axis.log_area);
+    if (!(weight > 0.0)) continue;
+    const Eigen::Matrix4d covariance = axis.fit.information.inverse() / set.all_over_used;
+    const double ahead = NormalCdf(axis.fit.mean_in_sd) * weight, half = kPi / kAzimuths;
+    const Eigen::Vector3d rotation = axis.fit.x.head<3>();
+    const Eigen::Matrix3d rotation_cov = covariance.topLeftCorner<3, 3>();
+    cells.push_back(
+        {axis.low, axis.high, axis.azimuth - half, axis.azimuth + half, ahead, rotation, rotation_cov});
+    cells.push_back({kPi - axis.high, kPi - axis.low, axis.azimuth + kPi - half, axis.azimuth + kPi + half,
+                     weight - ahead, rotation, rotation_cov});
+    total += weight;
+  }
+  for (DirectionCell& cell : cells) cell.weight /= total;
+  return cells;
+}
 
 double UsualDepthInNoise(const Explanation& explanation) {
   std::vector<double> depths;
@@ -221,12 +261,9 @@ double UsualDepthInNoise(const Explanation& explanation) {
 
 DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const ExplainedMode& mode,
                                         const Eigen::Vector3d& centre, double angle_rad) {
-  constexpr double kHalfPi = 0.5 * std::numbers::pi;
-  const double edge = angle_rad < kHalfPi ? angle_rad : std::max(std::numbers::pi - angle_rad, 1e-3);
   const DisplacementSet set = Displacements(problem, mode);
-  const std::vector<WeightedAxis> axes = FitAxes(set, centre, std::min(edge, kHalfPi - 1e-3));
-  const auto by_likelihood = [](const WeightedAxis& a) { return a.fit.log_likelihood; };
-  const AxisFit& best = std::ranges::max_element(axes, {}, by_likelihood)->fit;
+  const std::vector<WeightedAxis> axes = FitAxes(set, centre, EdgeAt(angle_rad));
+  const AxisFit& best = MostLikely(axes).fit;
   double within = 0.0, total = 0.0;
   for (const WeightedAxis& axis : axes) {
     const double weight = std::exp(axis.fit.log_likelihood - best.log_likelihood + axis.log_area);

@@ -18,7 +18,10 @@
 // m > 0, so that t and -t have the parts Phi(m / sd) and Phi(-m / sd) of their axis.
 #pragma once
 
+#include <vector>
+
 #include "estimator/calibrated/explain_matches.h"
+#include "estimator/calibrated/motion_posterior.h"
 
 namespace rcme {
 
@@ -30,6 +33,11 @@ struct DirectionPosterior {
 // From the matches that the mode explains, at most 256 of them; `centre` is a unit vector.
 DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const ExplainedMode& mode,
                                         const Eigen::Vector3d& centre, double angle_rad);
+
+// The same posterior about the mode's own direction: its parts of the sphere, with an edge at the angle, and
+// the rotation against the mode's given each. Weights sum to one.
+std::vector<DirectionCell> CellsOfDirection(const MotionProblem& problem, const ExplainedMode& mode,
+                                            double angle_rad);
 
 // The parallax in standard deviations of its noise (z, calibrated/mixture_parameters.h) that a fifth of the
 // matches which the mode explains exceed.

@@ -89,54 +89,18 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   explicit RcmeCalibrated(const CalibratedOptions& options) : options_(options) { Validate(options); }
 
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
-    return EstimateChecked(problem, rng, nullptr);
+    return EstimateAndTell(problem, rng, nullptr, nullptr);
   }
 
   MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
                                  CheckedVerdict* checked) const override {
-    if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, 6)) return *refusal;
-    std::vector<int> order;
-    const MotionProblem shuffled = Shuffled(problem, rng, &order);
-    const MatchBlocks matches(shuffled);
-    const MixturePrior prior = PriorOf(problem, options_);
-    MotionEstimate estimate;
-    std::vector<ExplainedMode> modes = FindExplained(shuffled, matches, prior, rng, &estimate.counts);
-    const int num_solved = estimate.counts.num_hypotheses - estimate.counts.num_degenerate_samples;
-    estimate.counts.num_candidates = std::min(static_cast<int>(modes.size()), num_solved);
-    estimate.counts.num_too_small_inlier_sets = num_solved - estimate.counts.num_candidates;
-    if (modes.empty()) {
-      estimate.status = MotionStatus::kNoCandidate;
-      estimate.message = "no motion explains more than five matches";
-      return estimate;
-    }
-    ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
-    if (options_.leave_out != CalibratedStep::kNoiseChoice)
-      ChooseNoiseLaw(matches, prior, &modes[weights.answer]);
-    std::optional<double> direction_mass;
-    if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
-      direction_mass =
-          SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
-      weights.is_rival = FindRivals(modes, weights.answer, Bounds());
-    }
-    const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
-    const ModelCheck check = CheckModel(shuffled, modes, weights, direction_mass);
-    Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, check, rng);
-    if (checked != nullptr) *checked = {check, verdict.by_modes};
-    if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
-    if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check);
-    FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
-    FillMatches(modes[weights.answer].explanation, order, &estimate);
-    FillOtherModes(modes, ReweighModes(weights, verdict), &estimate);
-    estimate.doubt = FindDoubt(modes, weights, verdict);
-    estimate.message = DescribeAnswer(estimate, check);
-    if (estimate.failure_probability > options_.max_failure_probability) {
-      estimate.status = MotionStatus::kTooUncertain;
-    } else if (options_.covariance == CovarianceKind::kRobust) {
-      RobustCovarianceOptions robust = options_.robust;
-      robust.calibration = options_.calibration;
-      MakeCovarianceRobust(problem, robust, verdict.pose_cov, &estimate);
-    }
-    return estimate;
+    return EstimateAndTell(problem, rng, checked, nullptr);
+  }
+
+  MotionEstimate EstimateWithPosterior(const MotionProblem& problem, RandomStream& rng,
+                                       std::optional<MotionPosterior>* posterior) const override {
+    posterior->reset();
+    return EstimateAndTell(problem, rng, nullptr, posterior);
   }
 
   std::vector<ExplainedMode> ListModes(const MotionProblem& problem, RandomStream& rng) const override {
@@ -165,6 +129,59 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   }
 
  private:
+  // Estimate; `checked` and `posterior`, where they are given, are what it is made of.
+  MotionEstimate EstimateAndTell(const MotionProblem& problem, RandomStream& rng, CheckedVerdict* checked,
+                                 std::optional<MotionPosterior>* posterior) const {
+    if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, 6)) return *refusal;
+    std::vector<int> order;
+    const MotionProblem shuffled = Shuffled(problem, rng, &order);
+    const MatchBlocks matches(shuffled);
+    const MixturePrior prior = PriorOf(problem, options_);
+    MotionEstimate estimate;
+    std::vector<ExplainedMode> modes = FindExplained(shuffled, matches, prior, rng, &estimate.counts);
+    const int num_solved = estimate.counts.num_hypotheses - estimate.counts.num_degenerate_samples;
+    estimate.counts.num_candidates = std::min(static_cast<int>(modes.size()), num_solved);
+    estimate.counts.num_too_small_inlier_sets = num_solved - estimate.counts.num_candidates;
+    if (modes.empty()) {
+      estimate.status = MotionStatus::kNoCandidate;
+      estimate.message = "no motion explains more than five matches";
+      return estimate;
+    }
+    ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
+    if (options_.leave_out != CalibratedStep::kNoiseChoice)
+      ChooseNoiseLaw(matches, prior, &modes[weights.answer]);
+    std::optional<double> direction_mass;
+    if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
+      direction_mass =
+          SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
+      weights.is_rival = FindRivals(modes, weights.answer, Bounds());
+    }
+    const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
+    const ModelCheck check = CheckModel(shuffled, modes, weights, direction_mass);
+    std::vector<Matrix5d> spreads;
+    Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, check, rng,
+                            posterior != nullptr ? &spreads : nullptr);
+    if (checked != nullptr) *checked = {check, verdict.by_modes};
+    if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
+    if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check);
+    FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
+    FillMatches(modes[weights.answer].explanation, order, &estimate);
+    const ModeWeights reweighed = ReweighModes(weights, verdict);
+    FillOtherModes(modes, reweighed, &estimate);
+    estimate.doubt = FindDoubt(modes, weights, verdict);
+    estimate.message = DescribeAnswer(estimate, check);
+    if (estimate.failure_probability > options_.max_failure_probability) {
+      estimate.status = MotionStatus::kTooUncertain;
+    } else if (options_.covariance == CovarianceKind::kRobust) {
+      RobustCovarianceOptions robust = options_.robust;
+      robust.calibration = options_.calibration;
+      MakeCovarianceRobust(problem, robust, verdict.pose_cov, &estimate);
+    }
+    if (posterior != nullptr)
+      *posterior = PosteriorOf(shuffled, modes, reweighed, spreads, direction_mass.has_value(), estimate);
+    return estimate;
+  }
+
   MotionBounds Bounds() const {
     return {kRadPerDeg * options_.max_rotation_error_deg, kRadPerDeg * options_.max_direction_error_deg};
   }
@@ -193,15 +210,39 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
                                                    : ProbabilityDomain::kExtrapolated;
   }
 
-  // The covariance is the second moment, about the answer, of the modes within the bounds.
+  // `spreads`: per mode, see Judge. A covariance that is not of the modes (kRobust) is the whole answer's.
+  MotionPosterior PosteriorOf(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
+                              const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
+                              bool is_direction_weak, const MotionEstimate& estimate) const {
+    const bool is_whole = options_.covariance == CovarianceKind::kRobust;
+    std::vector<MotionComponent> components;
+    for (size_t i = 0; i < modes.size(); ++i) {
+      const double weight = weights.of_modes[i];
+      const bool is_answer = IsWithin(estimate.cam2_from_cam1, Bounds(), modes[i].mode.pose);
+      if (is_direction_weak && (is_answer || !weights.is_second_motion[i])) continue;
+      if (weight < kNegligibleWeight && i != weights.answer) continue;
+      if (is_whole && is_answer && i != weights.answer) continue;
+      components.push_back(
+          {modes[i].mode.pose, is_whole && is_answer ? estimate.pose_cov : spreads[i], weight, is_answer});
+    }
+    std::vector<DirectionCell> cells;
+    if (is_direction_weak) cells = CellsOfDirection(problem, modes[weights.answer], Bounds().direction_rad);
+    return MakeMotionPosterior(estimate.cam2_from_cam1, Bounds(), estimate.failure_probability,
+                               std::move(components), std::move(cells));
+  }
+
+  // The covariance is the second moment, about the answer, of the modes within the bounds. `spreads`, where
+  // it is given: per mode its covariance, or how far its likelihood reaches if it is beyond the bounds; zero
+  // where the weight is negligible.
   Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches,
                 const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
-                const std::optional<double>& direction_mass, const ModelCheck& check,
-                RandomStream& rng) const {
+                const std::optional<double>& direction_mass, const ModelCheck& check, RandomStream& rng,
+                std::vector<Matrix5d>* spreads) const {
     const ExplainedMode& answer = modes[weights.answer];
     const RelativePose& pose = answer.mode.pose;
     double within = 0.0, success = 0.0;
     Verdict verdict;
+    if (spreads != nullptr) spreads->assign(modes.size(), Matrix5d::Zero());
     for (size_t i = 0; i < modes.size(); ++i) {
       const double weight = weights.of_modes[i];
       const Mode& mode = modes[i].mode;
@@ -214,10 +255,12 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       success += weight * (direction_mass && !weights.is_second_motion[i]
                                ? *direction_mass
                                : MassWithin(pose, Bounds(), mode.pose, reach, rng));
+      if (spreads != nullptr) (*spreads)[i] = reach;
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
-      verdict.pose_cov +=
-          weight * (ComputeCovariance(problem, modes[i], curvature, check) + away * away.transpose());
+      const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check);
+      if (spreads != nullptr) (*spreads)[i] = covariance;
+      verdict.pose_cov += weight * (covariance + away * away.transpose());
       within += weight;
     }
     verdict.pose_cov /= within;

@@ -17,14 +17,17 @@
 //                    calibrated/model_check.h          whether the matches are as the model has them
 //                    calibrated/checked_probability.h  what that makes of the mass and the covariance
 //   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds
+//   9  posterior     calibrated/motion_posterior.h     all of this as one distribution, where it is asked for
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "estimator/calibrated/calibrated_options.h"
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/model_check.h"
+#include "estimator/calibrated/motion_posterior.h"
 #include "estimator/estimator_model.h"
 
 namespace rcme {
@@ -57,6 +60,10 @@ class WeightInspection {
                                          CheckedVerdict* verdict) const = 0;
   // The modes that Estimate weighs (steps 1 to 4); none where it refuses before.
   virtual std::vector<ExplainedMode> ListModes(const MotionProblem& problem, RandomStream& rng) const = 0;
+  // Estimate, and the distribution that its motion, covariance and probability belong to; nothing where there
+  // is no motion. Takes some milliseconds more, up to a tenth of a second where the answer is narrowed.
+  virtual MotionEstimate EstimateWithPosterior(const MotionProblem& problem, RandomStream& rng,
+                                               std::optional<MotionPosterior>* posterior) const = 0;
 };
 
 // The inspection of the estimator's weights, which lives as long as the estimator; null if there is none.

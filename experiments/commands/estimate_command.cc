@@ -34,8 +34,30 @@ struct EstimateArguments {
   EstimatorChoice estimator;
   double sigma_px = 0.5;
   std::int64_t seed = 1;
+  std::vector<std::string> bounds;
   bool as_json = false;
 };
+
+// "1,5": deg, of the rotation and of the direction.
+FailureBounds BoundsOf(const std::string& text) {
+  const size_t comma = std::min(text.find(','), text.size());
+  FailureBounds bounds;
+  const auto is_angle = [](const std::string& part, double* angle) {
+    return ParseReal(part, angle) && *angle > 0.0 && *angle <= 180.0;
+  };
+  if (comma < text.size() && is_angle(text.substr(0, comma), &bounds.max_rotation_error_deg) &&
+      is_angle(text.substr(comma + 1), &bounds.max_direction_error_deg))
+    return bounds;
+  throw InputError(fmt::format(
+      "--bounds: {} is not allowed; give R,D: a rotation and a direction in deg, above 0 and up to 180",
+      Quoted(text)));
+}
+
+std::vector<FailureBounds> BoundsOf(const std::vector<std::string>& texts) {
+  std::vector<FailureBounds> bounds;
+  for (const std::string& text : texts) bounds.push_back(BoundsOf(text));
+  return bounds;
+}
 
 Camera CameraOf(const std::string& text) {
   std::array<double, 4> k{};
@@ -82,6 +104,7 @@ class Answerer {
   explicit Answerer(const EstimateArguments& arguments)
       : arguments_(arguments),
         given_(CamerasOf(arguments.intrinsics)),
+        bounds_(BoundsOf(arguments.bounds)),
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
     CheckProcessEstimators({spec_});
@@ -89,6 +112,7 @@ class Answerer {
 
   const EstimatorSpec& spec() const { return spec_; }
   const MotionEstimator& estimator() const { return *estimator_; }
+  const std::vector<FailureBounds>& bounds() const { return bounds_; }
 
   // Throws InputError (match_file.h). `doubts`: about the file's cameras.
   TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts) const {
@@ -107,7 +131,9 @@ class Answerer {
     const auto seed = static_cast<std::uint64_t>(arguments_.seed);
     RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
     PairAnswer answer;
-    answer.estimate = Judged(estimator_->Estimate(data.problem, rng), data.problem.matches.size());
+    EstimateForBounds found = EstimateWithBounds(*estimator_, data.problem, bounds_, rng);
+    answer.estimate = Judged(std::move(found.estimate), data.problem.matches.size());
+    answer.for_bounds = std::move(found.probabilities);
     answer.record = Score(answer.estimate, data, 0.0);
     answer.has_truth_sd = data.truth.sd.has_value();
     if (answer.estimate.status == MotionStatus::kOk)
@@ -118,6 +144,7 @@ class Answerer {
  private:
   const EstimateArguments& arguments_;
   GivenCameras given_;
+  std::vector<FailureBounds> bounds_;
   EstimatorSpec spec_;
   std::unique_ptr<MotionEstimator> estimator_;
 };
@@ -172,6 +199,7 @@ void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, con
 // The table of many pairs, filled as they are answered.
 class AnswerTable {
  public:
+  explicit AnswerTable(const std::vector<FailureBounds>& bounds) : bounds_(bounds) {}
   void Add(const std::string& path, const PairAnswer& answer) {
     std::string name = std::filesystem::path(path).filename().string();
     rows_.emplace_back(name.substr(0, name.find(".csv")), answer);
@@ -181,8 +209,8 @@ class AnswerTable {
   void AddUnreadable() { ++num_unreadable_; }
 
   std::string Text() const {
-    std::vector<std::vector<std::string>> rows = {AnswerColumns(has_errors_)};
-    for (const auto& [name, answer] : rows_) rows.push_back(AnswerRow(name, answer, has_errors_));
+    std::vector<std::vector<std::string>> rows = {AnswerColumns(bounds_, has_errors_)};
+    for (const auto& [name, answer] : rows_) rows.push_back(AnswerRow(name, answer, bounds_, has_errors_));
     const size_t num_refused = rows_.size() - num_motions_;
     return FormatColumns(rows) + "\n" + AnswerLegend(has_errors_) +
            fmt::format("{} pairs: {} motions, {} without one, {} not read\n", rows_.size() + num_unreadable_,
@@ -190,6 +218,7 @@ class AnswerTable {
   }
 
  private:
+  const std::vector<FailureBounds>& bounds_;
   std::vector<std::pair<std::string, PairAnswer>> rows_;
   bool has_errors_ = false;
   size_t num_motions_ = 0, num_unreadable_ = 0;
@@ -206,7 +235,7 @@ std::string JsonLine(const std::string& path, nlohmann::ordered_json object) {
 void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
                 const std::vector<std::string>& files) {
   const StopOnSignals stop;
-  AnswerTable table;
+  AnswerTable table(answerer.bounds());
   CameraWarnings warnings;
   bool is_any_bad = false;
   const auto answer_file = [&](const std::string& path) {
@@ -287,6 +316,7 @@ options. Its answer has its label. For example:
 Examples:
   rcme estimate matches.csv.gz --sigma 0.7 --json
   rcme estimate pairs/                                  a line per file
+  rcme estimate matches.csv.gz --bounds 1,5 --bounds 5,20
   rcme estimate bare.txt --K 800,800,319.5,239.5        four columns, no header
   some_matcher a.jpg b.jpg | rcme estimate - --K 800,800,319.5,239.5
   rcme estimate matches.csv.gz --estimator standard --set num_iterations=1000
@@ -314,6 +344,12 @@ matches, all matches on a line).)");
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
+  command
+      ->add_option("--bounds", arguments->bounds,
+                   "R,D: also state the probability that the rotation is off by more than R deg or the "
+                   "direction by more than D deg, from the same fit; may be given several times; only "
+                   "rcme_calibrated")
+      ->allow_extra_args(false);
   command->add_flag("--json", arguments->as_json,
                     "one JSON object per file: R (9) and pose_cov (36, of [w, dt]), row-major; "
                     "without a direction (direction_not_observable) only R and rotation_cov (9)");

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
@@ -18,7 +18,8 @@ class Pose(NamedTuple):
 
 
 def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
-                           options: Optional[Mapping[str, Any]] = None) -> tuple[Optional[Pose], dict[str, Any]]:
+                           options: Optional[Mapping[str, Any]] = None,
+                           bounds: Iterable[tuple[float, float]] = ()) -> tuple[Optional[Pose], dict[str, Any]]:
     """Estimates the motion between two images, with its uncertainty.
 
     Parameters
@@ -34,6 +35,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         noise of a coordinate in each image (default 0.5); noise_scale, N positive numbers: how many times as great each match's
         noise is (only `rcme.estimators()` that say so use it; default: all alike); seed of the random samples (default 1); and any option of the
         estimator: `rcme.estimators()` lists them.
+    bounds : iterable of (rotation, direction)
+        Angles in degrees, above 0 and up to 180: the probability of failure for each, from the same fit. Only rcme_calibrated.
 
     Returns
     -------
@@ -46,7 +49,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         pose_cov (6, 6) of [w, dt], or None: the true motion is Exp([w]x) R, t + dt, w in rad; rank 5;
         p_failure, the probability that the motion is wrong by more than the estimator's bounds (max_rotation_error_deg, ...;
         None if it states none); p_failure_domain, "verified" or "extrapolated": whether the matches are like those that it was
-        verified on ("not_stated"); sigma and sigma_sd (px), the noise level that it found (None likewise);
+        verified on ("not_stated"); p_failure_for_bounds, for each of `bounds` {rotation_deg, direction_deg, p_failure, domain}
+        (empty where there is no motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
         other_motions: a list of further explanations {R, t, pose_cov, weight, explained_share}, the most likely first.
 
     Raises
@@ -61,9 +65,10 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         raise ValueError(f"x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
     cameras = _check.camera("camera1", camera1), _check.camera("camera2", camera2)
     chosen = _options(options, len(x1))
+    pairs = _bounds(bounds)
     try:
         answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
-                                chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"])
+                                chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs)
     except ValueError as error:
         raise ValueError(f"options: {error}") from None
     return _pose_and_info(answer, len(x1))
@@ -95,6 +100,19 @@ def _options(options: Optional[Mapping[str, Any]], num_matches: int) -> dict[str
             "options": _check.settings("options", rest)}
 
 
+def _bounds(bounds: Any) -> list[tuple[float, float]]:
+    """Pairs of angles, checked one by one."""
+    try:
+        pairs = [tuple(pair) for pair in bounds]
+    except TypeError:
+        raise ValueError(f"bounds: {_check.words(bounds)} is not allowed; expected pairs of angles, [(1, 5), (3, 15)]") from None
+    for place, pair in enumerate(pairs):
+        if len(pair) != 2:
+            raise ValueError(f"bounds[{place}]: {_check.words(pair)} is not allowed; expected two angles (rotation, direction)")
+    return [(_check.number(f"bounds[{place}][0]", pair[0], 1e-6, 180.0), _check.number(f"bounds[{place}][1]", pair[1], 1e-6, 180.0))
+            for place, pair in enumerate(pairs)]
+
+
 def _known(value: float) -> Optional[float]:
     return None if np.isnan(value) else value
 
@@ -110,5 +128,6 @@ def _pose_and_info(answer: dict[str, Any], num_matches: int) -> tuple[Optional[P
             "pose_cov": motion["pose_cov"] if motion else None,
             **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd")},
             "p_failure_domain": answer["p_failure_domain"],
+            "p_failure_for_bounds": answer["p_failure_for_bounds"],
             "other_motions": answer["other_motions"]}
     return Pose(motion["R"], motion["t"]) if motion else None, info

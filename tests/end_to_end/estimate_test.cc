@@ -72,6 +72,42 @@ TEST_P(EstimateTest, MatchesWithoutNoise) {
   EXPECT_NEAR(json["R"][0].get<double>(), 1.0, 1e-9);
 }
 
+// From one fit: nothing else changes, the default bounds give the stated probability, narrow ones 1.
+TEST(EstimateBounds, AreOfTheSameFit) {
+  const TempFolder folder;
+  const std::string path = folder.Write("pair.csv", MatchHeader() + MatchRows(40));
+  const std::vector<std::string> asked = {"--bounds", "1,5",      "--bounds",
+                                          "3,15",     "--bounds", "0.000001,0.000001"};
+  nlohmann::json json = Estimate(path, "rcme_calibrated", asked);
+  const nlohmann::json list = json["failure_probabilities"];
+  ASSERT_EQ(list.size(), 3u);
+  EXPECT_EQ(list[0]["rotation_deg"], 1.0);
+  EXPECT_EQ(list[0]["direction_deg"], 5.0);
+  EXPECT_GE(list[0]["failure_probability"], list[1]["failure_probability"]);
+  EXPECT_NEAR(list[1]["failure_probability"].get<double>(), json["failure_probability"].get<double>(), 1e-9);
+  EXPECT_EQ(list[1]["domain"], json["failure_probability_domain"]);
+  EXPECT_EQ(list[2]["domain"], "extrapolated");
+  json.erase("failure_probabilities");
+  EXPECT_EQ(json, Estimate(path, "rcme_calibrated"));
+  const ProgramResult text = RunRcme({"estimate", path, "--bounds", "1,5"});
+  EXPECT_THAT(text.out, testing::HasSubstr("(rotation off by more than 1 deg or direction by 5 deg)"));
+  const ProgramResult table = RunRcme({"estimate", path, path, "--bounds", "1,5"});
+  EXPECT_THAT(table.out, testing::HasSubstr("P(>1,5)"));
+}
+
+TEST(EstimateBounds, AreRefusedWhereTheyAreNone) {
+  const TempFolder folder;
+  const std::string path = folder.Write("pair.csv", MatchHeader() + MatchRows(40));
+  for (const char* text : {"1", "1,", "0,5", "1,5,9", "1,181", "a,b", ""}) {
+    const ProgramResult result = RunRcme({"estimate", path, "--bounds", text});
+    EXPECT_NE(result.exit_code, 0) << text;
+    EXPECT_THAT(result.err, testing::HasSubstr("--bounds")) << text;
+  }
+  const ProgramResult other = RunRcme({"estimate", path, "--estimator", "rcme", "--bounds", "1,5"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, testing::HasSubstr("only rcme_calibrated"));
+}
+
 TEST_P(EstimateTest, PlainAndPackedGiveTheSameAndSoDoesTheSameSeed) {
   const TempFolder folder;
   const std::string text = MatchHeader() + MatchRows(60);

@@ -29,6 +29,16 @@ class Estimate(unittest.TestCase):
         self.assertTrue(0.3 < info["sigma"] < 0.8)
         self.assertEqual(info["inlier_probabilities"].shape, (100,))
 
+    def test_other_bounds_are_of_the_same_fit(self):
+        _, info = rcme.estimate_relative_pose(*self.arguments, bounds=[(1, 5), (3, 15), (1e-6, 1e-6)])
+        of = info["p_failure_for_bounds"]
+        self.assertEqual([(p["rotation_deg"], p["direction_deg"]) for p in of], [(1, 5), (3, 15), (1e-6, 1e-6)])
+        self.assertAlmostEqual(of[1]["p_failure"], info["p_failure"], places=9)
+        self.assertGreaterEqual(of[0]["p_failure"], of[1]["p_failure"])
+        self.assertAlmostEqual(of[2]["p_failure"], 1.0, places=6)
+        self.assertEqual(of[2]["domain"], "extrapolated")
+        self.assertEqual(rcme.estimate_relative_pose(*self.arguments)[1]["p_failure"], info["p_failure"])
+
     def test_pose_cov_is_of_rotation_and_translation_in_this_order(self):
         pose, info = rcme.estimate_relative_pose(*self.arguments, {"estimator": "standard"})
         cov = info["pose_cov"]

@@ -81,7 +81,19 @@ std::string BoundsText(const EstimatorSpec& spec) {
   return fmt::format("rotation off by more than {} deg or direction by {} deg", rotation, direction);
 }
 
-std::string SureText(const MotionEstimate& estimate, const MotionSpread& spread, const EstimatorSpec& spec) {
+std::string ForBoundsText(const std::vector<ProbabilityForBounds>& for_bounds) {
+  std::string text;
+  for (const ProbabilityForBounds& each : for_bounds) {
+    text += fmt::format("             {}  (rotation off by more than {} deg or direction by {} deg){}\n",
+                        ProbabilityText(each.failure_probability), each.bounds.max_rotation_error_deg,
+                        each.bounds.max_direction_error_deg,
+                        each.domain == ProbabilityDomain::kExtrapolated ? ", extrapolated" : "");
+  }
+  return text;
+}
+
+std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const EstimatorSpec& spec) {
+  const MotionEstimate& estimate = answer.estimate;
   std::string text = "\nHow sure\n";
   if (std::isnan(estimate.failure_probability)) {
     text += "  P(wrong)   not stated by this estimator; rcme_calibrated states it\n";
@@ -90,6 +102,7 @@ std::string SureText(const MotionEstimate& estimate, const MotionSpread& spread,
                         BoundsText(spec));
     if (estimate.probability_domain == ProbabilityDomain::kExtrapolated)
       text += "             extrapolated: matches like these were not among those that P was verified on\n";
+    text += ForBoundsText(answer.for_bounds);
   }
   text += fmt::format(
       "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
@@ -172,6 +185,17 @@ void AddProbabilities(const MotionEstimate& estimate, Json* json) {
   }
 }
 
+Json ForBoundsAsJson(const std::vector<ProbabilityForBounds>& for_bounds) {
+  Json list = Json::array();
+  for (const ProbabilityForBounds& each : for_bounds) {
+    list.push_back({{"rotation_deg", each.bounds.max_rotation_error_deg},
+                    {"direction_deg", each.bounds.max_direction_error_deg},
+                    {"failure_probability", each.failure_probability},
+                    {"domain", Name(each.domain)}});
+  }
+  return list;
+}
+
 Json EvidenceAsJson(const MotionEvidence& e) {
   return {{"sigma_px", JsonNumber(e.sigma_px)},
           {"sigma_sd_px", JsonNumber(e.sigma_sd_px)},
@@ -195,7 +219,7 @@ std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec) {
     return text;
   }
   const MotionSpread spread = SpreadOf(estimate.cam2_from_cam1, estimate.pose_cov);
-  return text + FoundText(estimate.cam2_from_cam1, spread) + SureText(estimate, spread, spec) +
+  return text + FoundText(estimate.cam2_from_cam1, spread) + SureText(answer, spread, spec) +
          EvidenceText(answer.evidence) + TruthText(answer) + WarningsText(answer);
 }
 
@@ -224,6 +248,7 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
   json["pose_cov"] = RowMajor(CovarianceWithTranslation(estimate.pose_cov, estimate.cam2_from_cam1.t));
   json["failed_by_kappa"] = estimate.failed_by_kappa;
   if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
+  if (!answer.for_bounds.empty()) json["failure_probabilities"] = ForBoundsAsJson(answer.for_bounds);
   json["evidence"] = EvidenceAsJson(answer.evidence);
   if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
   if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
@@ -234,17 +259,20 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
   return json;
 }
 
-std::vector<std::string> AnswerColumns(bool with_errors) {
+std::vector<std::string> AnswerColumns(const std::vector<FailureBounds>& bounds, bool with_errors) {
   std::vector<std::string> columns = {"pair", "inliers", "turned (sd)", "stands (sd)", "P(wrong)"};
+  for (const FailureBounds& each : bounds)
+    columns.push_back(fmt::format("P(>{},{})", each.max_rotation_error_deg, each.max_direction_error_deg));
   if (with_errors) columns.push_back("errors");
   columns.push_back("status");
   return columns;
 }
 
-std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer, bool with_errors) {
+std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer,
+                                   const std::vector<FailureBounds>& bounds, bool with_errors) {
   const MotionEstimate& estimate = answer.estimate;
   const TrialRecord& record = answer.record;
-  std::vector<std::string> row(AnswerColumns(with_errors).size(), "-");
+  std::vector<std::string> row(AnswerColumns(bounds, with_errors).size(), "-");
   row.front() = name;
   row.back() = StatusName(estimate.status);
   row[1] = fmt::format("{}/{}", record.num_inliers, record.num_matches);
@@ -254,8 +282,11 @@ std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& an
   row[2] = fmt::format("{:.2f} ({:.2g})", TurnOf(pose.R).angle_deg, spread.angle_sd_deg);
   row[3] = fmt::format("{} ({:.2g})", DescribePlace(pose), spread.direction_sd_deg(0));
   if (!std::isnan(estimate.failure_probability)) row[4] = ProbabilityText(estimate.failure_probability);
+  for (size_t i = 0; i < answer.for_bounds.size(); ++i)
+    row[5 + i] = ProbabilityText(answer.for_bounds[i].failure_probability);
   if (with_errors && !std::isnan(record.rotation_error_deg))
-    row[5] = fmt::format("{:.2g}/{:.2g}", record.rotation_error_deg, record.direction_error_deg);
+    row[5 + bounds.size()] =
+        fmt::format("{:.2g}/{:.2g}", record.rotation_error_deg, record.direction_error_deg);
   return row;
 }
 

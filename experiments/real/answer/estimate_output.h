@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/real/answer/motion_evidence.h"
+#include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/trial/trial.h"
 
@@ -16,6 +17,7 @@ struct PairAnswer {
   TrialRecord record;       // scored against the file's truth, where it has one
   MotionEvidence evidence;  // only of a motion (status ok)
   bool has_truth_sd = false;
+  std::vector<ProbabilityForBounds> for_bounds = {};  // those that were asked for
 };
 
 // What was found, how sure, what it rests on; of a refusal why, and what to try.
@@ -24,9 +26,11 @@ std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec);
 // The same for a program, but for the format (core/text/json_output.h).
 nlohmann::ordered_json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec);
 
-// One row of a table over pairs, and what its columns mean; that of the errors only `with_errors`.
-std::vector<std::string> AnswerColumns(bool with_errors);
-std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer, bool with_errors);
+// One row of a table over pairs, and what its columns mean; that of the errors only `with_errors`. One for
+// each of the bounds that were asked for.
+std::vector<std::string> AnswerColumns(const std::vector<FailureBounds>& bounds, bool with_errors);
+std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer,
+                                   const std::vector<FailureBounds>& bounds, bool with_errors);
 std::string AnswerLegend(bool with_errors);
 
 // Whether the file, not the problem, is to blame: too few matches, bad numbers, points on one line.
