@@ -226,7 +226,7 @@ const WeightedAxis& MostLikely(const std::vector<WeightedAxis>& axes) {
 
 }  // namespace
 
-std::vector<DirectionCell> CellsOfDirection(const MotionProblem& problem, const ExplainedMode& mode,
+std::vector<DirectionCell> ComputeDirectionCells(const MotionProblem& problem, const ExplainedMode& mode,
                                             double angle_rad) {
   constexpr double kPi = std::numbers::pi;
   const DisplacementSet set = Displacements(problem, mode);

@@ -161,7 +161,7 @@ MotionPosterior Narrowed(MotionPosterior posterior, double factor, const MotionB
 
 double BeyondOfAnswer(MotionPosterior posterior, const MotionBounds& bounds) {
   std::erase_if(posterior.components, [](const MotionComponent& component) { return !component.is_answer; });
-  return PosteriorDistances(posterior, posterior.answer).BeyondOf(true, bounds);
+  return PosteriorDistances(posterior, posterior.answer).ComputeBeyond(true, bounds);
 }
 
 // The widest of whose answer no more than `most` lies beyond the bounds.
@@ -203,7 +203,7 @@ MotionPosterior MakeMotionPosterior(const RelativePose& answer, const MotionBoun
   MotionPosterior posterior{answer, std::move(components), std::move(cells), 0.0, 1.0};
   const double p = failure_probability;
   double of_rivals = WeightOf(false, posterior);
-  double beyond = PosteriorDistances(posterior, answer).BeyondOf(false, bounds);
+  double beyond = PosteriorDistances(posterior, answer).ComputeBeyond(false, bounds);
   const double within = of_rivals - beyond;
   const double kept =
       std::min({1.0, beyond > 0.0 ? p / beyond : 1.0, within > 0.0 ? (1.0 - p) / within : 1.0});
@@ -226,7 +226,7 @@ PosteriorDistances::PosteriorDistances(const MotionPosterior& posterior, const R
                        point.is_answer});
 }
 
-double PosteriorDistances::BeyondOf(bool is_answer, const MotionBounds& bounds) const {
+double PosteriorDistances::ComputeBeyond(bool is_answer, const MotionBounds& bounds) const {
   double sum = 0.0;
   for (const Point& point : points_)
     if (point.is_answer == is_answer && IsBeyond(point.distance, bounds)) sum += point.weight;
@@ -234,7 +234,7 @@ double PosteriorDistances::BeyondOf(bool is_answer, const MotionBounds& bounds) 
 }
 
 double PosteriorDistances::FailureProbability(const MotionBounds& bounds) const {
-  return std::min(weight_of_none_ + BeyondOf(true, bounds) + BeyondOf(false, bounds), 1.0);
+  return std::min(weight_of_none_ + ComputeBeyond(true, bounds) + ComputeBeyond(false, bounds), 1.0);
 }
 
 template <typename Value>
@@ -250,7 +250,7 @@ double PosteriorDistances::Quantile(double level, Value value) const {
   return kInfinity;
 }
 
-MotionDistance PosteriorDistances::QuantileOf(double level) const {
+MotionDistance PosteriorDistances::FindQuantile(double level) const {
   return {Quantile(level, [](const MotionDistance& d) { return d.rotation_rad; }),
           Quantile(level, [](const MotionDistance& d) { return d.direction_rad; })};
 }

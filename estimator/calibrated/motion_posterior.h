@@ -73,10 +73,10 @@ class PosteriorDistances {
   // none.
   double FailureProbability(const MotionBounds& bounds) const;
   // The same of the points of the answer alone, and of the others, without none; absolute.
-  double BeyondOf(bool is_answer, const MotionBounds& bounds) const;
+  double ComputeBeyond(bool is_answer, const MotionBounds& bounds) const;
   // The least rotation, and the least direction, within which the truth lies with this probability; infinite
   // where none of these is too likely.
-  MotionDistance QuantileOf(double level) const;
+  MotionDistance FindQuantile(double level) const;
   // The protection level: the bounds, a multiple of `shape`, that hold the truth with this probability;
   // infinite likewise.
   MotionBounds RegionAt(double level, const MotionBounds& shape) const;

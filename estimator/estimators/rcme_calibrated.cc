@@ -178,7 +178,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       MakeCovarianceRobust(problem, robust, verdict.pose_cov, &estimate);
     }
     if (posterior != nullptr)
-      *posterior = PosteriorOf(shuffled, modes, reweighed, spreads, direction_mass.has_value(), estimate);
+      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, direction_mass.has_value(), estimate);
     return estimate;
   }
 
@@ -211,7 +211,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   }
 
   // `spreads`: per mode, see Judge. A covariance that is not of the modes (kRobust) is the whole answer's.
-  MotionPosterior PosteriorOf(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
+  MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
                               const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
                               bool is_direction_weak, const MotionEstimate& estimate) const {
     const bool is_whole = options_.covariance == CovarianceKind::kRobust;
@@ -226,7 +226,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
           {modes[i].mode.pose, is_whole && is_answer ? estimate.pose_cov : spreads[i], weight, is_answer});
     }
     std::vector<DirectionCell> cells;
-    if (is_direction_weak) cells = CellsOfDirection(problem, modes[weights.answer], Bounds().direction_rad);
+    if (is_direction_weak) cells = ComputeDirectionCells(problem, modes[weights.answer], Bounds().direction_rad);
     return MakeMotionPosterior(estimate.cam2_from_cam1, Bounds(), estimate.failure_probability,
                                std::move(components), std::move(cells));
   }

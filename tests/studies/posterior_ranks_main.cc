@@ -55,7 +55,7 @@ struct Ranks {
   double rotation = 0.0, direction = 0.0, nees = 0.0;
 };
 
-Ranks RanksOf(const MotionEstimate& estimate, const MotionPosterior& posterior, const RelativePose& pose_true,
+Ranks FindRanks(const MotionEstimate& estimate, const MotionPosterior& posterior, const RelativePose& pose_true,
               RandomStream& rng) {
   const RelativePose& answer = estimate.cam2_from_cam1;
   const Eigen::LDLT<Matrix5d> ldlt(estimate.pose_cov);
@@ -95,7 +95,7 @@ void PrintTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t
   if (estimate.status != MotionStatus::kOk || !data.truth.is_direction_known || !IsScored(record)) return;
   const MotionPosterior& posterior = *found;
   RandomStream draw_rng = StreamFor(name, StreamPurpose::kMonteCarlo);
-  const Ranks ranks = RanksOf(estimate, posterior, *data.truth.cam2_from_cam1_true, draw_rng);
+  const Ranks ranks = FindRanks(estimate, posterior, *data.truth.cam2_from_cam1_true, draw_rng);
   fmt::print("{},{},{:.4f},{:.4f},{:.4f},{:.6g},{:.6g},{:.6g}", condition.index, trial, ranks.rotation,
              ranks.direction, ranks.nees, record.rotation_error_deg, record.direction_error_deg,
              estimate.failure_probability);
