@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/run/store/trial_totals.h"
 #include "experiments/statistics/trial_groups.h"
 
 namespace rcme {
@@ -111,7 +112,8 @@ std::vector<std::int64_t> CountTrialsBefore(const RunDescription& run, int trial
     // Of a folder of pairs, a pass has several trials.
     const std::int64_t per_pass =
         run.stopping_rule.empty() && run.trials > 0 ? condition.num_trials / run.trials : 1;
-    num_trials.push_back(std::max<std::int64_t>(per_pass, 1) * trials);
+    const std::int64_t asked_for = std::max<std::int64_t>(per_pass, 1) * trials;  // below 2^62
+    num_trials.push_back(std::min(asked_for, kMaxTrialsOfCondition));
   }
   return num_trials;
 }

@@ -61,7 +61,8 @@ class HypothesisEvidence {
   ScoreMean scores_;
 };
 
-// How many trials of each condition were asked for beforehand: `trials` of each.
+// How many trials of each condition were asked for beforehand: `trials` of each, but no more than have a
+// number, so that their sum is an integer whatever a file says.
 std::vector<std::int64_t> CountTrialsBefore(const RunDescription& run, int trials);
 
 struct EvidenceTrials {

@@ -7,8 +7,6 @@
 namespace rcme {
 namespace {
 
-constexpr std::int64_t kMaxTrials = std::int64_t{1} << 32;  // of a condition: as many as have a number
-
 void WriteRow(SQLite::Statement& statement, std::int64_t condition, const TrialTotal& total) {
   statement.bind(1, condition);
   statement.bind(2, total.num_trials);
@@ -27,7 +25,7 @@ TrialTotals TrialTotals::Read(SQLite::Database& database) {
     if (condition != static_cast<std::int64_t>(totals.totals_.size()))
       throw Damage(fmt::format("table totals lacks condition {}", totals.totals_.size()));
     const std::int64_t num_trials = IntegerIn(query.getColumn(1), "totals");
-    if (num_trials < 0 || num_trials > kMaxTrials) ThrowOutOfRange(query.getColumn(1), "totals");
+    if (num_trials < 0 || num_trials > kMaxTrialsOfCondition) ThrowOutOfRange(query.getColumn(1), "totals");
     totals.totals_.push_back({num_trials, IntegerIn(query.getColumn(2), "totals")});
   }
   return totals;

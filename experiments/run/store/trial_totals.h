@@ -10,6 +10,8 @@
 
 namespace rcme {
 
+inline constexpr std::int64_t kMaxTrialsOfCondition = std::int64_t{1} << 32;  // as many as have a number
+
 struct TrialTotal {
   std::int64_t num_trials = 0;
   std::int64_t checksum = 0;  // sum of the trials' checksums: in whatever order they were added

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,9 @@ class PreregistrationTest : public SummarizedRun {
   // of the study of `locked_trials` per condition.
   Preregistration Run(std::uint32_t num_trials, std::uint32_t num_failed, int locked_trials = kTrials) {
     StudyPlan plan = MakePlan(study_);
+    if (stated_trials_ > 0) {
+      for (Condition& condition : plan.conditions) condition.num_trials = stated_trials_;
+    }
     Study locked = study_;
     locked.trials = locked_trials;
     if (is_locked_) plan.lock = ToYaml(MakeLock(MakePlan(locked)));
@@ -101,6 +105,7 @@ class PreregistrationTest : public SummarizedRun {
 
   static constexpr int kTrials = 100;
   bool is_locked_ = true;
+  int stated_trials_ = 0;  // what the file says of every condition, if it is not as in the study
   int num_runs_ = 0;
 };
 
@@ -131,6 +136,18 @@ TEST_F(PreregistrationTest, AnUnfinishedRunLeavesThemOpen) {
   EXPECT_EQ(decided.verdict, HypothesisVerdict::kOpen);
   EXPECT_EQ(decided.why_open, "198 of 200 trials are done");
   EXPECT_EQ(Run(100, 0).hypotheses[0].verdict, HypothesisVerdict::kHolds);
+}
+
+// A file may say that a pass has 2^31 - 1 trials, of each of four conditions: their sum is no negative
+// number, which would call the run done.
+TEST_F(PreregistrationTest, ACountBeyondIntegersIsNotDone) {
+  State("  - {quantity: failure, estimator: ours, at_most: 0.5}\n");
+  study_.factors[0].levels = {"0.0", "0.1", "0.2", "0.3"};
+  study_.trials = 1;
+  stated_trials_ = std::numeric_limits<int>::max();
+  const DecidedHypothesis decided = Run(100, 0, 1'600'000'000).hypotheses[0];
+  EXPECT_EQ(decided.verdict, HypothesisVerdict::kOpen);
+  EXPECT_EQ(decided.why_open, "400 of 17179869184 trials are done");
 }
 
 // The first forty failed, the others did not; who adds trials until it looks well decides nothing by that.
