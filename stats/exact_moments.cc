@@ -127,10 +127,10 @@ ExactSum ExactSum::FromText(const std::string& text) {
   const std::string hex = text.substr(begin, end == std::string::npos ? 0 : end - begin);
   if (hex.empty() || hex.size() > 600 || hex.find_first_not_of("0123456789abcdef") != std::string::npos)
     throw std::invalid_argument("not an exact sum: " + text);
-  const int shift = ParsedInteger<int>(text.substr(end + 1)) - kUnit;
-  if (shift < 0 || shift > 32 * static_cast<int>(kNumDigits))
+  const int exponent = ParsedInteger<int>(text.substr(end + 1));
+  if (exponent < kUnit || exponent > kUnit + 32 * static_cast<int>(kNumDigits))
     throw std::invalid_argument("not an exact sum: " + text);
-  sum.digits_ = DigitsOf(cpp_int("0x" + hex) << shift);
+  sum.digits_ = DigitsOf(cpp_int("0x" + hex) << (exponent - kUnit));
   for (std::int64_t& digit : sum.digits_) digit *= is_negative ? -1 : 1;
   sum.Carry();
   return sum;

@@ -65,7 +65,8 @@ StreamMedian StreamMedian::FromText(const std::string& text) {
     cell.count = count;
     const bool is_cell = num_read == 3 && static_cast<size_t>(length) == word.size() && count > 0 &&
                          cell.least <= cell.greatest && CutOff(cell.least) == CutOff(cell.greatest);
-    if (!is_cell || !median.cells_.emplace(CutOff(cell.least), cell).second)
+    const bool is_countable = count <= std::numeric_limits<std::int64_t>::max() - median.n_;
+    if (!is_cell || !is_countable || !median.cells_.emplace(CutOff(cell.least), cell).second)
       throw std::invalid_argument("median: not a cell: " + word);
     median.n_ += count;
   }

@@ -85,7 +85,8 @@ TEST(ExactMoments, TextsOfOthersAreRefused) {
   for (const Texts& texts :
        {Texts{}, Texts{"1", "0"}, Texts{"-1", "0", "0"}, Texts{"x", "0", "0"}, Texts{"1", "1", "0"},
         Texts{"1", "p3", "0"}, Texts{"1", "1gp3", "0"}, Texts{"1", "1p-2000", "0"},
-        Texts{"1", "1p99999", "0"}, Texts{"1", "1p", "0"}, Texts{"1", "fffffffffp2170", "0"}})
+        Texts{"1", "1p99999", "0"}, Texts{"1", "1p2147483647", "0"}, Texts{"1", "1p", "0"},
+        Texts{"1", "fffffffffp2170", "0"}})
     EXPECT_THROW(ExactMoments::FromTexts(texts), std::invalid_argument) << testing::PrintToString(texts);
   EXPECT_EQ(ExactMoments::FromTexts({"2", "-3p-1", "9p-2"}).mean(), -0.75);
 }
