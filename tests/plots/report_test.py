@@ -247,7 +247,7 @@ class Figures(ReportTest):
         self.assertNotIn("Not drawn", text)
 
     def test_three_factors_give_a_heat_map_for_each_level_of_the_third_up_to_a_limit(self):
-        levels = [(a, b, c) for a in "012" for b in "012" for c in ("u", "v")]
+        levels = [(a, b, c) for a in "01" for b in "01" for c in ("u", "v")]
         alts, text = self.drawn(["a", "b", "c"], levels)
         self.assertEqual([alt for alt in alts if "heat map" in alt.lower()], alts[:2])
         self.assertIn("c = u", alts[0])
