@@ -15,6 +15,7 @@ namespace rcme {
 namespace {
 
 constexpr const char *kChecksum = "checksum", *kRuleChecksum = "stopping_rule_checksum";
+constexpr std::int64_t kMaxRetriedTrials = std::int64_t{1} << 40;  // far more than any run computes
 
 // Every row of the tables but the checksum's, column by column: a whole number as its digits.
 std::string ChecksumOfRows(SQLite::Database& database) {
@@ -169,7 +170,8 @@ RunDescription ReadRun(SQLite::Database& database) {
   run.stopping_rule = values.Text("stopping_rule");
   run.until_options = values.Text("until_options");
   run.until_trials = values.WholeNumber("until_trials", kMax);
-  if (values.Has("retried_trials")) run.retried_trials = values.WholeNumber("retried_trials", kMax);
+  if (values.Has("retried_trials"))
+    run.retried_trials = values.WholeNumber("retried_trials", kMaxRetriedTrials);
   if (values.Has("lock")) run.lock = values.Text("lock");
   if (values.Has("despite_lock")) run.despite_lock = values.Text("despite_lock");
   run.shard = values.Text("shard");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/report_data.h"
@@ -59,6 +60,15 @@ TEST_F(Description, ComesBackAsItWasWritten) {
   NewTrials(path_, run).Finish(run);
   EXPECT_EQ(TextOf(ResultStore::OpenForReading(path_).Description()), TextOf(run));
   EXPECT_TRUE(ThrowsInputError([&] { NewTrials(path_, run); }, {path_, "exists already"}));
+}
+
+// A merge adds those of its parts: the sum of any parts that there can be is an integer.
+TEST_F(Description, MoreTrialsRunAgainThanThereCanBeAreRefused) {
+  RunDescription run = Describe(MakePlan(SmallStudy()));
+  run.retried_trials = std::numeric_limits<std::int64_t>::max();
+  NewTrials(path_, run).Finish(run);
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(path_); },
+                               {path_, "'retried_trials' of table run is not possible"}));
 }
 
 // Of a program that knows other estimators and other scenes, with a study that this one cannot read.
