@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <thread>
 
@@ -18,7 +19,17 @@
 namespace rcme {
 namespace {
 
-TEST(StopRequest, WorkEndsBetweenOnePieceAndTheNext) {
+// A shell's job in the background ignores the interrupt, and so would the tests that are started there.
+class StopRequest : public testing::Test {
+ protected:
+  StopRequest() : before_(std::signal(SIGINT, SIG_DFL)) {}
+  ~StopRequest() override { std::signal(SIGINT, before_); }
+
+ private:
+  void (*before_)(int);
+};
+
+TEST_F(StopRequest, WorkEndsBetweenOnePieceAndTheNext) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const StopOnSignals stop;
     std::atomic<int> num_begun = 0, num_ended = 0;
@@ -33,7 +44,7 @@ TEST(StopRequest, WorkEndsBetweenOnePieceAndTheNext) {
   }
 }
 
-TEST(StopRequest, ThatComesWithTheLastPieceStopsNothing) {
+TEST_F(StopRequest, ThatComesWithTheLastPieceStopsNothing) {
   const StopOnSignals stop;
   int num_done = 0;
   ForEachIndex(10, 1, [&](std::int64_t i) {
@@ -44,7 +55,7 @@ TEST(StopRequest, ThatComesWithTheLastPieceStopsNothing) {
   EXPECT_TRUE(IsStopRequested());
 }
 
-TEST(StopRequest, IsForgottenByTheNextAndTheHandlersAreGivenBack) {
+TEST_F(StopRequest, IsForgottenByTheNextAndTheHandlersAreGivenBack) {
   {
     const StopOnSignals stop;
     std::raise(SIGINT);
@@ -61,7 +72,7 @@ TEST(StopRequest, IsForgottenByTheNextAndTheHandlersAreGivenBack) {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-TEST(StopRequest, ComesByItselfAfterATimeAndAsksToTryAgain) {
+TEST_F(StopRequest, ComesByItselfAfterATimeAndAsksToTryAgain) {
   {
     const StopOnSignals stop;
     StopAfter(std::chrono::milliseconds(20));
@@ -82,7 +93,7 @@ TEST(StopRequest, ComesByItselfAfterATimeAndAsksToTryAgain) {
 }
 
 // The run is stopped by a signal in the call of its fifth motion, whatever the machine does meanwhile.
-TEST(StopRequest, ARunKeepsItsTrialsAndGoesOnLater) {
+TEST_F(StopRequest, ARunKeepsItsTrialsAndGoesOnLater) {
   const StudyPlan plan = MakePlan(SmallStudy());
   StudyPlan interrupted = plan;
   std::atomic<int> num_calls = 0;
