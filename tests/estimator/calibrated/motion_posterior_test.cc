@@ -77,7 +77,7 @@ TEST(PosteriorDistances, OfARoundDirectionAreRayleighs) {
     const double beyond = std::exp(-0.5 * std::pow(angle_deg / 10.0, 2));
     EXPECT_NEAR(distances.FailureProbability({1.0, angle_deg * kRadPerDeg}), beyond, 0.02) << angle_deg;
   }
-  EXPECT_NEAR(distances.QuantileOf(0.5).direction_rad, sd * std::sqrt(2.0 * std::log(2.0)), 0.05 * sd);
+  EXPECT_NEAR(distances.FindQuantile(0.5).direction_rad, sd * std::sqrt(2.0 * std::log(2.0)), 0.05 * sd);
 }
 
 TEST(PosteriorDistances, NoRegionHoldsWhatNoneTakesAway) {
@@ -85,7 +85,7 @@ TEST(PosteriorDistances, NoRegionHoldsWhatNoneTakesAway) {
   const PosteriorDistances distances(posterior, kStands);
   EXPECT_TRUE(std::isfinite(distances.RegionAt(0.69, kUsual).rotation_rad));
   EXPECT_TRUE(std::isinf(distances.RegionAt(0.71, kUsual).rotation_rad));
-  EXPECT_TRUE(std::isinf(distances.QuantileOf(0.71).direction_rad));
+  EXPECT_TRUE(std::isinf(distances.FindQuantile(0.71).direction_rad));
 }
 
 // Of two motions the median is the likelier one.
