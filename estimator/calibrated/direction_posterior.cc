@@ -227,7 +227,7 @@ const WeightedAxis& MostLikely(const std::vector<WeightedAxis>& axes) {
 }  // namespace
 
 std::vector<DirectionCell> ComputeDirectionCells(const MotionProblem& problem, const ExplainedMode& mode,
-                                            double angle_rad) {
+                                                 double angle_rad) {
   constexpr double kPi = std::numbers::pi;
   const DisplacementSet set = Displacements(problem, mode);
   const std::vector<WeightedAxis> axes = FitAxes(set, mode.mode.pose.t, EdgeAt(angle_rad));

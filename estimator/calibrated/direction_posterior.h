@@ -37,7 +37,7 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
 // The same posterior about the mode's own direction: its parts of the sphere, with an edge at the angle, and
 // the rotation against the mode's given each. Weights sum to one.
 std::vector<DirectionCell> ComputeDirectionCells(const MotionProblem& problem, const ExplainedMode& mode,
-                                            double angle_rad);
+                                                 double angle_rad);
 
 // The parallax in standard deviations of its noise (z, calibrated/mixture_parameters.h) that a fifth of the
 // matches which the mode explains exceed.

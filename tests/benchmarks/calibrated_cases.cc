@@ -64,7 +64,7 @@ void Weights(const BenchmarkTrial& trial) {
                             kRadPerDeg * stages.options.max_direction_error_deg};
   DoNotOptimize(WeighModes(stages.modes, bounds, stages.prior, stages.options));
 }
-void Covariance(const BenchmarkTrial& trial) {
+void ComputeSandwich(const BenchmarkTrial& trial) {
   const ExplainedMode& mode = StagesOf(trial).modes.front();
   const Matrix5d inverse = InverseOfObserved(trial.blocks, mode.mode);
   DoNotOptimize(SandwichCovariance(mode.mode, mode.explanation, inverse));
@@ -103,7 +103,7 @@ std::vector<BenchmarkCase> CalibratedCases() {
           {stage, "calibrated_modes", Modes},
           {stage, "calibrated_explanations", Explanations},
           {stage, "calibrated_weights", Weights},
-          {stage, "calibrated_covariance", Covariance},
+          {stage, "calibrated_covariance", ComputeSandwich},
           {stage, "calibrated_mixture_sums", MixtureSums200}};
 }
 
