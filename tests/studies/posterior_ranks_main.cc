@@ -55,8 +55,8 @@ struct Ranks {
   double rotation = 0.0, direction = 0.0, nees = 0.0;
 };
 
-Ranks FindRanks(const MotionEstimate& estimate, const MotionPosterior& posterior, const RelativePose& pose_true,
-              RandomStream& rng) {
+Ranks FindRanks(const MotionEstimate& estimate, const MotionPosterior& posterior,
+                const RelativePose& pose_true, RandomStream& rng) {
   const RelativePose& answer = estimate.cam2_from_cam1;
   const Eigen::LDLT<Matrix5d> ldlt(estimate.pose_cov);
   const auto nees = [&](const RelativePose& pose) {
