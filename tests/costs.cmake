@@ -17,6 +17,6 @@ set_tests_properties(end_to_end.PaperTableProgram.OfARenderedEurocSequenceOf60Fr
 set_tests_properties(estimator.EstimatorOptions.EveryOneHasAnEffect PROPERTIES COST 23)
 set_tests_properties(estimator.Implementations.AgreeOnWholeEstimates PROPERTIES COST 20)
 set_tests_properties(fuzz.DamagedParts.ImpossibleCountsAreRefusedAndNothingElseHappens PROPERTIES COST 28)
-set_tests_properties(fuzz.CorruptedResultFile.AThousandHitsChangeNothingInSilence PROPERTIES COST 26)
+set_tests_properties(fuzz.CorruptedResultFile.HitsChangeNothingInSilence PROPERTIES COST 10)
 set_tests_properties(peers.PeerContract.IsKept PROPERTIES COST 17)
 set_tests_properties(peers.PeerCalls.EndInAStatusWhateverComesIn PROPERTIES COST 14)

@@ -39,14 +39,14 @@ Study ParseHalf(const std::string& data, const std::string& conditions) {
                     "half.yaml");
 }
 
-// No baseline gives a parallax of 119 deg.
+// The two images of a motion of a kilometre see nothing in common.
 StudyPlan HalfPlan() {
   return MakePlan(ParseHalf("",
                             "conditions: {number: 8, ranges: {scene: uniform_volume, motion: sideways, "
-                            "parallax_deg: {any: [2, 119]}}}\n"));
+                            "baseline_m: {any: [0.3, 1000]}}}\n"));
 }
 
-bool IsPossible(const Condition& condition) { return condition.levels.back() != "119"; }
+bool IsPossible(const Condition& condition) { return condition.levels.back() != "1000"; }
 
 std::int64_t NumPossible(const StudyPlan& plan) { return std::ranges::count_if(plan.conditions, IsPossible); }
 
@@ -103,10 +103,10 @@ TEST(SimulateDraw, EntropiesAreOfTheTrialsThatThereAre) {
 TEST(SimulateDraw, TransferHasFamiliesWithoutATrial) {
   const StudyPlan plan = HalfPlan();
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
-  const TransferResult result = MeasureTransferInMemory(plan, settings, "parallax_deg", 2);
+  const TransferResult result = MeasureTransferInMemory(plan, settings, "baseline_m", 2);
   ASSERT_EQ(result.families.size(), 2U);
   for (size_t f = 0; f < 2; ++f) {
-    const bool is_possible = result.families[f].words == "parallax_deg = 2";
+    const bool is_possible = result.families[f].words == "baseline_m = 0.3";
     EXPECT_EQ(result.verified[f][0].n, is_possible ? NumPossible(plan) * 5 : 0);
     EXPECT_EQ(result.families[f].choice.setting.has_value(), is_possible);
   }
@@ -245,13 +245,13 @@ TEST(SimulateDraw, SolveAsksTheTrialsThatThereAre) {
 
 TEST(SimulateDraw, ModelChoiceCountsTheTrialsThatThereAre) {
   const StudyPlan plan = HalfPlan();
-  const ChoiceCounts counts = CountChoicesInMemory(plan, {"parallax_deg"}, 2);
+  const ChoiceCounts counts = CountChoicesInMemory(plan, {"baseline_m"}, 2);
   for (const ChoiceGroup& group : counts.groups) {
     std::int64_t n = 0;
     for (const auto& row : group.matrices.front()) {
       for (const std::int64_t count : row) n += count;
     }
-    EXPECT_EQ(n, group.levels.front() == "119" ? 0 : kTrials * NumPossible(plan));
+    EXPECT_EQ(n, group.levels.front() == "1000" ? 0 : kTrials * NumPossible(plan));
   }
   EXPECT_THAT(ChoicesAsTable(plan, counts), HasSubstr("could not be simulated (not_simulated)"));
 }

@@ -41,16 +41,18 @@ Claim GaussianClaim(const std::string& id, int degrees_of_freedom) {
 
 std::vector<Claim> GaussianClaims() {
   std::vector<Claim> claims;
-  for (int dof = 1; dof <= 5; ++dof) {
+  for (const int dof : {1, 2, 5}) {
     claims.push_back(GaussianClaim("gauss.a" + std::to_string(dof), dof));
     claims.push_back(GaussianClaim("gauss.b" + std::to_string(dof), dof));
   }
   return claims;
 }
 
+// The upper limit of 75 audits lies below 5 % if none has a false alarm. If 5 % of audits had one, that would
+// be seen with probability .979; if 10 %, with .9996.
 TEST(Audit, ACorrectGaussianEstimatorPassesAtTheStatedErrorRate) {
   CoverageCount alarms, all_hold;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 75; ++seed) {
     AuditOptions options;
     options.seed = seed;
     bool is_alarm = false, holds = true;
@@ -82,7 +84,7 @@ TEST(Audit, AClaimsResultDoesNotDependOnTheOthersThatAreRun) {
   const Audit whole = RunAuditInMemory(GaussianClaims(), all),
               part = RunAuditInMemory(GaussianClaims(), some);
   ASSERT_EQ(part.claims.size(), 1);
-  EXPECT_EQ(part.num_targets, 60);
+  EXPECT_EQ(part.num_targets, 36);
   EXPECT_EQ(part.confidence, whole.confidence);
   for (size_t i = 0; i < whole.claims.size(); ++i) {
     if (whole.claims[i].id != "gauss.b2") continue;
