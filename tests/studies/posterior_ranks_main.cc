@@ -27,6 +27,7 @@
 #include "experiments/run/for_each_trial.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial.h"
 #include "peers/peer_registry.h"
 #include "stats/constants.h"
@@ -87,7 +88,9 @@ void PrintHeader() {
 void PrintTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
                 const WeightInspection& estimator) {
   const StreamName name = NameOfTrial(plan, condition, trial);
-  const TrialData data = condition.source->Make(name);
+  const auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name); });
+  if (!simulated.made) return;
+  const TrialData& data = *simulated.made;
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
   std::optional<MotionPosterior> found;
   const MotionEstimate estimate = estimator.EstimateWithPosterior(data.problem, rng, &found);
@@ -120,10 +123,7 @@ int Run(int argc, char** argv) {
   PrintHeader();
   ForEachTrial(plan, {0, static_cast<std::uint32_t>(study.trials)},
                [&](const Condition& condition, std::uint32_t trial, std::int64_t) {
-                 try {
-                   PrintTrial(plan, condition, trial, *inspection);
-                 } catch (const NotSimulated&) {  // no problem, no answer
-                 }
+                 PrintTrial(plan, condition, trial, *inspection);
                });
   return EXIT_SUCCESS;
 }
