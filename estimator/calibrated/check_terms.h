@@ -21,7 +21,6 @@ inline constexpr auto kSlopeTerms = std::to_array<CheckTerm>({
      [](const ModelCheck& c) { return std::clamp(c.neighbour_correlation, -1.0, 1.0); }},
     {"log_odds_by_spread_in_matches", [](const ModelCheck& c) { return c.spread_in_matches; }},
     {"log_odds_by_planar_share", [](const ModelCheck& c) { return c.planar_share; }},
-    {"log_odds_by_log_parallax_share", [](const ModelCheck& c) { return c.log_parallax_share; }},
     {"log_odds_by_wrong_share", [](const ModelCheck& c) { return c.wrong_share; }},
 });
 
@@ -33,7 +32,6 @@ inline constexpr auto kAddedTerms = std::to_array<CheckTerm>({
     {"neighbour_root_z",
      [](const ModelCheck& c) { return std::copysign(std::sqrt(std::abs(c.neighbour_z)), c.neighbour_z); }},
     {"log_design_2", [](const ModelCheck& c) { return c.log_design_2; }},
-    {"log_design_4", [](const ModelCheck& c) { return c.log_design_4; }},
     {"num_rivals", [](const ModelCheck& c) { return c.num_rivals; }},
     {"greatest_rival", [](const ModelCheck& c) { return c.greatest_rival; }},
     {"log_rotation_sd", [](const ModelCheck& c) { return c.log_rotation_sd; }},
@@ -41,6 +39,7 @@ inline constexpr auto kAddedTerms = std::to_array<CheckTerm>({
     {"spread_in_image", [](const ModelCheck& c) { return c.spread_in_image; }},
     {"direction_mass", [](const ModelCheck& c) { return c.direction_mass; }},
     {"low_depth", [](const ModelCheck& c) { return c.low_depth; }},
+    {"partner_dependence", [](const ModelCheck& c) { return std::clamp(c.partner_dependence, 0.0, 5.0); }},
 });
 
 // y: of the covariance.

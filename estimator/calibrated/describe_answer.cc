@@ -9,7 +9,8 @@
 namespace rcme {
 namespace {
 
-constexpr double kLowDepth = 6.0;  // standard deviations of its noise, of the usual match
+constexpr double kLowDepth = 6.0;        // standard deviations of its noise, of the usual match
+constexpr double kRandomPartners = 2.0;  // standard deviations
 
 Doubt DoubtOfOrigin(const ExplainedMode& mode, bool is_second_motion) {
   if (is_second_motion) return Doubt::kOtherMotion;
@@ -52,6 +53,8 @@ namespace {
 // The first of the check's signs that stands out.
 std::string ModelDoubt(const ModelCheck& check) {
   const double noise = std::exp(check.log_noise_ratio);
+  if (check.partner_dependence < kRandomPartners)
+    return ": along the epipolar lines the matches lie as random ones would";
   if (check.neighbour_z > 5.0) return ": neighbouring matches err alike";
   if (noise > 1.25 || noise < 0.8) return fmt::format(": the noise is {:.2g} times the assumed", noise);
   if (check.wrong_share > 0.1 && check.wrong_coherence > 0.5) return ": wrong matches move together";

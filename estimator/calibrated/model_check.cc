@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "estimator/calibrated/direction_posterior.h"
+#include "estimator/calibrated/partner_dependence.h"
 #include "estimator/calibrated/twisted_pair.h"
 #include "estimator/noise_scale.h"
 #include "stats/order_statistic.h"
@@ -261,6 +262,7 @@ ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedM
   check.direction_mass = direction_mass.value_or(1.0);
   check.low_depth = LowDepth(split, answer);
   check.usual_depth = UsualDepthInNoise(answer.explanation);
+  check.partner_dependence = FindPartnerDependence(problem, answer.mode.pose, split.right);
   return check;
 }
 

@@ -34,12 +34,13 @@ struct ModelCheck {
   // Of the wrong matches: those that move as their nearest wrong neighbour does, the two displacements no
   // more apart than half the distance of the neighbours and three standard deviations.
   double wrong_coherence = 0.0;
-  double log_rotation_sd = 0.0;  // ln of the rotation's standard deviation by the likelihood, rad
-  double num_rivals = 0.0;       // modes beyond the bounds around the answer, at most six
-  double greatest_rival = 0.0;   // the greatest weight of one
-  double direction_mass = 1.0;   // within the bound, of the posterior of the direction; 1: not asked
-  double low_depth = 0.0;        // a twentieth of the right matches have a smaller z / s, within [-3, 3]
-  double usual_depth = 0.0;      // a fifth have a greater one (direction_posterior.h)
+  double log_rotation_sd = 0.0;     // ln of the rotation's standard deviation by the likelihood, rad
+  double num_rivals = 0.0;          // modes beyond the bounds around the answer, at most six
+  double greatest_rival = 0.0;      // the greatest weight of one
+  double direction_mass = 1.0;      // within the bound, of the posterior of the direction; 1: not asked
+  double low_depth = 0.0;           // a twentieth of the right matches have a smaller z / s, within [-3, 3]
+  double usual_depth = 0.0;         // a fifth have a greater one (direction_posterior.h)
+  double partner_dependence = 0.0;  // of the right matches (partner_dependence.h)
 };
 
 // At most 128 matches of a kind, the first, are compared with each other: the matches are in an order that

@@ -1,7 +1,7 @@
 // What scripts/fit_calibrated fits the constants of rcme_calibrated to, from every trial of a study. Truth is
 // in the choice of the rows and in the last columns alone.
-//   rcme_calibrated_terms check|modes STUDY [SEED] [TRIALS] [THREADS, default one per core] > CSV
-// The bytes do not depend on the number of threads. Columns:
+//   rcme_calibrated_terms LISTING STUDY [SEED] [TRIALS] [THREADS, default one per core] > CSV
+// The bytes do not depend on the number of threads. Columns of every listing:
 //   condition, trial     of the study
 //   levels...            of the condition, one column per factor
 // check: the terms of the check (estimator/calibrated/checked_probability.h), a row per answer that can be
@@ -11,6 +11,7 @@
 //   homography_share     severity of the problem
 //   nees                 of the covariance without the factor of the check
 //   failed               0 or 1
+// permuted: the same of the trial's matches with partners permuted at random, of which every answer is wrong.
 // modes: what speaks for a right mode against a wrong one (ComputeModeTerms), a row per wrong mode:
 //   mode_*               the terms
 //   share                one over the number of the trial's rows
@@ -21,7 +22,7 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "estimator/calibrated/checked_probability.h"
@@ -66,6 +67,21 @@ std::string FindCheckRow(const WeightInspection& estimator, const TrialData& dat
                            record.nees, HasFailed(record, failure));
 }
 
+// Every point of image 2 to another match, with what is known of its noise left where it is.
+void PermutePartners(MotionProblem* problem, RandomStream& rng) {
+  for (size_t i = problem->matches.size(); i > 1; --i)
+    std::swap(problem->matches[i - 1].x2_px,
+              problem->matches[rng.IntegerBelow(static_cast<std::uint32_t>(i))].x2_px);
+}
+
+std::string FindPermutedRow(const WeightInspection& estimator, const TrialData& data, const FailureBounds&,
+                            const std::string& labels, RandomStream& rng) {
+  TrialData permuted = data;
+  PermutePartners(&permuted.problem, rng);
+  const FailureBounds none{.max_rotation_error_deg = -1.0, .max_direction_error_deg = -1.0};
+  return FindCheckRow(estimator, permuted, none, labels, rng);
+}
+
 // Of the modes that explain at least half as many matches as the one that explains the most: the most likely
 // one within the failure bounds of the truth against each beyond them. Two motions of their own are left out.
 std::string FindModeRows(const WeightInspection& estimator, const TrialData& data,
@@ -104,6 +120,13 @@ struct Listing {
                            const FailureBounds& failure, const std::string& labels, RandomStream& rng);
 };
 
+Listing FindListing(const std::string& name) {
+  if (name == "check") return {MakeCheckHeader(), FindCheckRow};
+  if (name == "permuted") return {MakeCheckHeader(), FindPermutedRow};
+  if (name == "modes") return {MakeModesHeader(), FindModeRows};
+  throw InputError("LISTING is check, permuted or modes, not '" + name + "'");
+}
+
 std::string MakeHeader(const StudyPlan& plan, const Listing& listing) {
   std::string header = "condition,trial";
   for (const std::string& name : plan.factor_names) header += "," + name;
@@ -123,8 +146,7 @@ std::string FindRows(const StudyPlan& plan, const Condition& condition, std::uin
 }
 
 int Run(int argc, char** argv) {
-  const Listing listing = argv[1] == std::string_view("modes") ? Listing{MakeModesHeader(), FindModeRows}
-                                                               : Listing{MakeCheckHeader(), FindCheckRow};
+  const Listing listing = FindListing(argv[1]);
   Study study = LoadStudy(argv[2]);
   if (argc > 3) study.seed = std::strtoull(argv[3], nullptr, 10);
   if (argc > 4) study.trials = std::atoi(argv[4]);
@@ -149,9 +171,8 @@ int Run(int argc, char** argv) {
 }  // namespace rcme
 
 int main(int argc, char** argv) {
-  const std::string_view listing = argc > 1 ? argv[1] : "";
-  if (argc < 3 || (listing != "check" && listing != "modes")) {
-    fmt::print(stderr, "usage: rcme_calibrated_terms check|modes STUDY [SEED] [TRIALS] [THREADS]\n");
+  if (argc < 3) {
+    fmt::print(stderr, "usage: rcme_calibrated_terms check|permuted|modes STUDY [SEED] [TRIALS] [THREADS]\n");
     return 2;
   }
   try {

@@ -4,7 +4,7 @@ In two passes, as the check sees the modes as they are weighed: first the weight
 anew, the check.
 
 Training: draws of studies/right_calibration.yaml and of studies/any_condition.yaml, and the families of studies/calibrated, with seeds
-of their own; the latter two count less. The covariance is fitted where the calibration is right: errors of the calibration are not for
+of their own; the latter two count less. Where partners are permuted at random every answer is wrong. The covariance is fitted where the calibration is right: errors of the calibration are not for
 residuals to tell. Reported on draws with other seeds. Each trial's terms come from the program rcme_calibrated_terms, the measures of the
 report with their intervals from rcme_calibrated_measures; regimes are told apart by what was simulated, which the fit does not see.
 """
@@ -38,21 +38,24 @@ COHERENT_OUTLIERS = {"moving_object", "clustered_both", "repeated_texture", "mix
 class Source:
     """Trials of a study: `number` draws of its population (None: its own conditions), `trials` of each."""
 
-    def __init__(self, study, seed, number, trials, weight=1.0, fits_covariance=True):
+    def __init__(self, study, seed, number, trials, weight=1.0, fits_covariance=True, listing="check"):
         self.study, self.seed, self.number, self.trials = study, seed, number, trials
-        self.weight, self.fits_covariance = weight, fits_covariance
+        self.weight, self.fits_covariance, self.listing = weight, fits_covariance, listing
 
     def name(self):
-        return f"{pathlib.Path(self.study).stem}_{self.seed}_{self.number}_{self.trials}"
+        return f"{self.listing}_{pathlib.Path(self.study).stem}_{self.seed}_{self.number}_{self.trials}"
+
+    def population(self):
+        return pathlib.Path(self.study).stem + (" with partners permuted" if self.listing == "permuted" else "")
 
 
 def sources_of_modes(scale):
     """(training, held out) of the weights of the modes; errors of the calibration are not theirs to tell."""
     draws = lambda n: max(20, int(n * scale))
-    training = [Source("studies/right_calibration.yaml", 71, draws(2000), 4)]
-    training += [Source(f"studies/calibrated/{family}.yaml", 73, None, max(2, int(20 * scale)), MODES_OF_FAMILY)
+    training = [Source("studies/right_calibration.yaml", 71, draws(2000), 4, listing="modes")]
+    training += [Source(f"studies/calibrated/{family}.yaml", 73, None, max(2, int(20 * scale)), MODES_OF_FAMILY, listing="modes")
                  for family in ("indoor", "outdoor", "planarity", "hard", "few_matches")]
-    return training, [Source("studies/right_calibration.yaml", 81, draws(800), 4)]
+    return training, [Source("studies/right_calibration.yaml", 81, draws(800), 4, listing="modes")]
 
 
 def sources(scale):
@@ -60,13 +63,15 @@ def sources(scale):
     draws = lambda n: max(20, int(n * scale))
     training = [Source("studies/right_calibration.yaml", 51, draws(2400), 4), Source("studies/any_condition.yaml", 52, draws(600), 4, LESS, fits_covariance=False)]
     training += [Source(f"studies/calibrated/{family}.yaml", 53, None, max(2, int(20 * scale)), LESS) for family in FAMILIES]
-    held_out = [Source("studies/right_calibration.yaml", 61, draws(400), 12), Source("studies/any_condition.yaml", 62, draws(200), 12)]
+    training.append(Source("studies/right_calibration.yaml", 54, draws(300), 4, LESS, fits_covariance=False, listing="permuted"))
+    held_out = [Source("studies/right_calibration.yaml", 61, draws(400), 12), Source("studies/any_condition.yaml", 62, draws(200), 12),
+                Source("studies/right_calibration.yaml", 64, draws(100), 6, listing="permuted")]
     return training, held_out
 
 
-def make_trials(listing, source, programs, folder, keeps):
-    """The CSV of a source's trials (`listing` of rcme_calibrated_terms); one that is there is taken as it is if `keeps`."""
-    made = folder / f"{listing}_{source.name()}.csv"
+def make_trials(source, programs, folder, keeps):
+    """The CSV of a source's trials; one that is there is taken as it is if `keeps`."""
+    made = folder / f"{source.name()}.csv"
     if keeps and made.exists():
         return made
     text = (ROOT / source.study).read_text()
@@ -78,7 +83,7 @@ def make_trials(listing, source, programs, folder, keeps):
     study = folder / f"{source.name()}.yaml"
     study.write_text(text)
     with open(made.with_suffix(".part"), "w") as out:
-        subprocess.run([programs / "rcme_calibrated_terms", listing, study, str(source.seed), str(source.trials)], stdout=out, check=True)
+        subprocess.run([programs / "rcme_calibrated_terms", source.listing, study, str(source.seed), str(source.trials)], stdout=out, check=True)
     made.with_suffix(".part").rename(made)
     return made
 
@@ -197,25 +202,25 @@ def measure(programs, trials, p, covered, here):
     return list(csv.reader(done.stdout.splitlines()))[1:]
 
 
-def report(programs, title, trials, p, factor, is_verified):
-    """Rows (population, regime, conditions, quantity, before, after)."""
+def report(programs, source, trials, p, factor, is_verified):
+    """Rows (population, regime, conditions, quantity, before, after); of random partners no regime of its own."""
     rows = []
     covered = trials.nees <= QUANTILE_95, trials.nees / factor <= QUANTILE_95
     regimes = [("all", np.ones(len(p), bool)), ("verified", is_verified), ("extrapolated", ~is_verified)]
     regimes += [(regime, trials.regime == regime) for regime in sorted(set(trials.regime))]
-    for regime, here in regimes:
+    for regime, here in regimes[:1] if source.listing == "permuted" else regimes:
         if not here.any():
             continue
         for row in measure(programs, trials, (trials.posterior, p), covered, here):
             if regime == "all" or row[0] not in OF_ALL:
-                rows.append([title, regime, len(np.unique(trials.cluster[here])), *row])
+                rows.append([source.population(), regime, len(np.unique(trials.cluster[here])), *row])
     return rows
 
 
 def describe_sources(training):
     """Comment lines, one per source."""
     return "".join(f"//   {s.study}, seed {s.seed}, " + (f"{s.number} draws, " if s.number else "") + f"{s.trials} trials of each condition"
-                   + (f", weight {s.weight}" if s.weight != 1 else "") + ("" if s.fits_covariance else ", for P alone") + "\n" for s in training)
+                   + (f", weight {s.weight}" if s.weight != 1 else "") + (", partners permuted" if s.listing == "permuted" else "") + ("" if s.fits_covariance else ", for P alone") + "\n" for s in training)
 
 
 def write_constants(name, training, keys, weights, x):
@@ -253,7 +258,7 @@ def write_tables(programs, folder, train, held_out, tests):
         for source, test in zip(held_out, tests):
             factor = np.maximum(1.0, np.exp(test.spread @ a))
             p = probability(test.names, test.x, b)
-            table.writerows(report(programs, pathlib.Path(source.study).stem, test, p, factor, in_domain(test.x, domain)))
+            table.writerows(report(programs, source, test, p, factor, in_domain(test.x, domain)))
     with open(folder / "terms.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["term", "weight", "log_loss_more_without"])
@@ -284,7 +289,7 @@ def write_modes_table(folder, train, test, b):
 
 def fit_modes(arguments):
     training, held_out = sources_of_modes(arguments.scale)
-    files = make_all("modes", training + held_out, arguments)
+    files = make_all(training + held_out, arguments)
     train = ModePairs(files[:len(training)], training)
     b = fit_failure(train.x, np.ones(len(train.x)), train.weight, has_constant=False)
     if not arguments.report_only:
@@ -295,7 +300,7 @@ def fit_modes(arguments):
 
 def fit_check(arguments):
     training, held_out = sources(arguments.scale)
-    files = make_all("check", training + held_out, arguments)
+    files = make_all(training + held_out, arguments)
     train = Trials(files[:len(training)], training)
     b = fit_failure(train.x, train.failed, train.weight)
     sure = train.fits_covariance & (probability(train.names, train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
@@ -309,10 +314,10 @@ def fit_check(arguments):
     return is_same(now_b, b) and is_same(now_a, a)
 
 
-def make_all(listing, sources, arguments):
+def make_all(sources, arguments):
     files = []
     for source in sources:
-        files.append(make_trials(listing, source, arguments.programs, arguments.trials, arguments.resume))
+        files.append(make_trials(source, arguments.programs, arguments.trials, arguments.resume))
         print(f"{len(files)} of {len(sources)} populations and families", file=sys.stderr)
     return files
 

@@ -1,0 +1,80 @@
+#include "estimator/calibrated/partner_dependence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMostCompared = 64, kMostPartners = 128;
+
+// Of matches, in their order.
+struct Cosines {
+  std::vector<double> a, b;
+};
+
+double CosineInCamera2(const MotionProblem& problem, const RelativePose& pose, size_t match) {
+  return pose.t.dot(problem.camera2.Ray(problem.matches[match].x2_px).normalized());
+}
+
+Cosines ComputeCosines(const MotionProblem& problem, const RelativePose& pose, std::span<const size_t> some) {
+  const Eigen::Vector3d t_in_camera1 = pose.R.transpose() * pose.t;
+  Cosines cosines;
+  for (const size_t i : some.first(std::min(some.size(), kMostCompared))) {
+    cosines.a.push_back(t_in_camera1.dot(problem.camera1.Ray(problem.matches[i].x1_px).normalized()));
+    cosines.b.push_back(CosineInCamera2(problem, pose, i));
+  }
+  return cosines;
+}
+
+double Sign(double x) { return static_cast<double>(x > 0.0) - static_cast<double>(x < 0.0); }
+
+// At b_k, the a_j of the matches that could have had it, a_j < b_k <= b_j, are in a random order, so that the
+// sum of the signs of a_j - a_k has the variance of a uniform rank.
+double TestOrder(const Cosines& c) {
+  double sum = 0.0, variance = 0.0;
+  for (size_t k = 0; k < c.a.size(); ++k) {
+    if (!(c.a[k] < c.b[k])) continue;
+    double num_at_risk = 0.0;
+    for (size_t j = 0; j < c.a.size(); ++j) {
+      if (!(c.a[j] < c.b[k] && c.b[k] <= c.b[j])) continue;
+      num_at_risk += 1.0;
+      sum += Sign(c.a[j] - c.a[k]);
+    }
+    variance += (num_at_risk * num_at_risk - 1.0) / 3.0;
+  }
+  return variance > 0.0 ? sum / std::sqrt(variance) : 0.0;
+}
+
+// Among the partners, b of any match, that are greater than a_i, b_i has a uniform rank; equal ones share
+// theirs.
+double TestRank(const Cosines& c, const std::vector<double>& partners) {
+  double sum = 0.0, variance = 0.0;
+  for (size_t i = 0; i < c.a.size(); ++i) {
+    if (!(c.a[i] < c.b[i])) continue;
+    double num_greater = 0.0, rank = 0.0;
+    for (const double b : partners) {
+      if (!(c.a[i] < b)) continue;
+      num_greater += 1.0;
+      rank += 0.5 * (Sign(c.b[i] - b) + 1.0);
+    }
+    if (num_greater < 2.0) continue;
+    sum += 0.5 - rank / num_greater;
+    variance += (1.0 - 1.0 / (num_greater * num_greater)) / 12.0;
+  }
+  return variance > 0.0 ? sum / std::sqrt(variance) : 0.0;
+}
+
+}  // namespace
+
+double FindPartnerDependence(const MotionProblem& problem, const RelativePose& pose,
+                             std::span<const size_t> some) {
+  const Cosines cosines = ComputeCosines(problem, pose, some);
+  std::vector<double> partners;
+  for (size_t i = 0; i < std::min(problem.matches.size(), kMostPartners); ++i)
+    partners.push_back(CosineInCamera2(problem, pose, i));
+  return std::max(TestOrder(cosines), TestRank(cosines, partners));
+}
+
+}  // namespace rcme
