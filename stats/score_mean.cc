@@ -82,14 +82,24 @@ Interval ScoreMean::Sequence(double confidence) const {
   return {range_.lower + size * lower_bound(false), range_.upper - size * lower_bound(true)};
 }
 
-double ScoreMean::PValue(double mean) const {
+double ScoreMean::LogCapitalAt(double mean, bool is_mirrored) const {
   if (!(mean > range_.lower && mean < range_.upper))
     throw std::invalid_argument("mean of scores: a mean at the end of its range or outside");
-  if (n_ == 0) return 1.0;
+  if (n_ == 0) return 0.0;
   const double m = (mean - range_.lower) / (range_.upper - range_.lower);
-  const double log_capital = std::max(LogCapitalAbove(InUnitRange(false).numbers, m),
-                                      LogCapitalAbove(InUnitRange(true).numbers, 1.0 - m));
-  return std::min(1.0, 2.0 * std::exp(-log_capital));
+  return LogCapitalAbove(InUnitRange(is_mirrored).numbers, is_mirrored ? 1.0 - m : m);
+}
+
+double ScoreMean::PValue(double mean) const {
+  return std::min(1.0, 2.0 * std::min(PValueOfAtMost(mean), PValueOfAtLeast(mean)));
+}
+
+double ScoreMean::PValueOfAtMost(double mean) const {
+  return std::min(1.0, std::exp(-LogCapitalAt(mean, false)));
+}
+
+double ScoreMean::PValueOfAtLeast(double mean) const {
+  return std::min(1.0, std::exp(-LogCapitalAt(mean, true)));
 }
 
 }  // namespace rcme

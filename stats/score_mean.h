@@ -56,6 +56,11 @@ class ScoreMean {
   // excludes `mean`.
   double PValue(double mean) const;
 
+  // One-sided p-values of the hypotheses "the mean is at most `mean`" and "it is at least `mean`", likewise
+  // valid at every look. `mean` is inside the range.
+  double PValueOfAtMost(double mean) const;
+  double PValueOfAtLeast(double mean) const;
+
  private:
   // The scores moved to [0, 1], mirrored if asked for, with the spread of the search for a bound.
   struct UnitScores {
@@ -63,6 +68,8 @@ class ScoreMean {
     double mean = 0.0, standard_deviation = 0.0, distance = 0.0;
   };
   UnitScores InUnitRange(bool is_mirrored) const;
+  // Of the gambler who stakes on a greater mean (mirrored: on a lesser one) than `mean`.
+  double LogCapitalAt(double mean, bool is_mirrored) const;
 
   Interval range_;
   std::int64_t n_ = 0;

@@ -47,6 +47,24 @@ TEST(ScoreMean, KnownAnswers) {
   }
 }
 
+TEST(ScoreMean, OneSidedPValues) {
+  const ScoreMean mean = MeanOf({{0.0, 3}, {0.9, 57}});
+  double at_most_before = 0.0, at_least_before = 1.0;
+  for (const double m : {0.5, 0.7, 0.8, 0.855, 0.9, 0.95}) {
+    const double at_most = mean.PValueOfAtMost(m), at_least = mean.PValueOfAtLeast(m);
+    EXPECT_GE(at_most, at_most_before) << m;
+    EXPECT_LE(at_least, at_least_before) << m;
+    EXPECT_DOUBLE_EQ(mean.PValue(m), std::min(1.0, 2.0 * std::min(at_most, at_least))) << m;
+    at_most_before = at_most;
+    at_least_before = at_least;
+  }
+  const Interval interval = mean.Sequence(0.9);
+  EXPECT_LE(mean.PValueOfAtMost(interval.lower), 0.05 + 1e-9) << "the bound is rounded outwards";
+  EXPECT_LE(mean.PValueOfAtLeast(interval.upper), 0.05 + 1e-9);
+  EXPECT_EQ(ScoreMean().PValueOfAtMost(0.5), 1.0);
+  EXPECT_THROW(mean.PValueOfAtLeast(1.0), std::invalid_argument);
+}
+
 TEST(ScoreMean, KeepsTheMeanAndRefusesWhatIsNoScore) {
   ScoreMean mean;
   EXPECT_TRUE(std::isnan(mean.mean()));
