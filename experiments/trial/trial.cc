@@ -146,20 +146,22 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   result.data = condition.source->Make(NameOfScene(plan, condition, trial));
   result.problem = Describe(result.data, condition, trial);
   const auto& estimators = EstimatorsOf(plan, condition);
-  result.estimates.reserve(estimators.size());
-  result.records.reserve(estimators.size());
-  for (size_t e = 0; e < estimators.size(); ++e) {
+  result.estimates.resize(estimators.size());
+  result.records.resize(estimators.size());
+  for (size_t turn = 0; turn < estimators.size(); ++turn) {
+    // Whoever is first finds the problem in no cache, so that each is in its turn.
+    const size_t e = (turn + trial) % estimators.size();
     RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
     const double start = ThreadSeconds();
     MotionEstimate estimate = estimators[e]->Estimate(result.data.problem, sampling_rng);
     double seconds = ThreadSeconds() - start;
     if (estimate.seconds_elsewhere >= 0.0) seconds += estimate.seconds_elsewhere;
-    result.estimates.push_back(Judged(std::move(estimate), result.data.problem.matches.size()));
-    TrialRecord record = ScoreJudged(result.estimates.back(), result.data, seconds);
+    result.estimates[e] = Judged(std::move(estimate), result.data.problem.matches.size());
+    TrialRecord record = ScoreJudged(result.estimates[e], result.data, seconds);
     record.condition = condition.index;
     record.trial = trial;
     record.estimator = static_cast<std::uint32_t>(e);
-    result.records.push_back(record);
+    result.records[e] = record;
   }
   return result;
 }
