@@ -1,26 +1,45 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <numeric>
+#include <optional>
+#include <vector>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/statistics/comparison_output.h"
+#include "experiments/study/find_estimator.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
 
 struct CompareArguments {
-  std::string run, against, format = "table", out;
+  std::string run, other, against, format = "table", out;
   bool is_pooled = false;
   CompareOptions options;
 };
 
+// The reference of one result file and all estimators of another.
+ReadableRun JoinWithReference(const ResultStore& store, const std::string& reference,
+                              const ResultStore& other) {
+  const RunDescription run = store.Description();
+  const size_t e = reference.empty() ? 0
+                                     : FindEstimator(run.estimators, reference,
+                                                     fmt::format("--against: study '{}'", run.study));
+  std::vector<size_t> of_other(other.Description().estimators.size());
+  std::iota(of_other.begin(), of_other.end(), size_t{0});
+  return JoinRuns(store, {e}, other, of_other);
+}
+
 void RunCompare(const CompareArguments& arguments) {
   const ResultStore store = ResultStore::OpenForReading(arguments.run);
-  const Comparison comparison = Compare(store, arguments.against, arguments.options);
-  if (comparison.rows.empty() && store.Description().estimators.size() == 1) {
+  std::optional<ResultStore> other;
+  if (!arguments.other.empty()) other.emplace(ResultStore::OpenForReading(arguments.other));
+  const ReadableRun run = other ? JoinWithReference(store, arguments.against, *other) : ReadRun(store);
+  const Comparison comparison = Compare(run, other ? "" : arguments.against, arguments.options);
+  if (comparison.rows.empty() && run.description.estimators.size() == 1) {
     throw InputError(fmt::format("{}: study '{}' has one estimator, '{}'; a comparison needs two",
                                  arguments.run, comparison.study, comparison.reference));
   }
@@ -52,14 +71,21 @@ look. After `rcme run --until`, which stops by what it saw, events and errors ha
 intervals and p-values too (from the sequence of discordant trials). Use --anytime if
 you added trials by hand until you saw a difference.
 
+With a second result file, of the same study with other estimators or by another version
+of the program, its estimators are compared with one of the first file. Trials are paired
+by condition and number, and their problems must be the same.
+
 Examples:
   rcme compare run.sqlite                                 against the first estimator
+  rcme compare before.sqlite after.sqlite                 against that of another file
   rcme compare run.sqlite --against rcme_rank_aware       against another
   rcme compare run.sqlite --of auc_10_deg,failure         one score and one event
   rcme compare run.sqlite --format csv --out comparison.csv
   rcme plot paired_difference comparison.csv --x outlier_ratio --out difference)");
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
+  command->add_option("other", arguments->other,
+                      "another result file, whose estimators are compared with one of the first file");
   command->add_option("--against", arguments->against,
                       "label of the reference estimator; default: the study's first");
   command

@@ -94,7 +94,11 @@ void AdjustForAllTests(std::vector<ComparisonRow>* rows) {
 }  // namespace
 
 Comparison Compare(const ResultStore& store, const std::string& reference, const CompareOptions& options) {
-  const RunDescription run = store.Description();
+  return Compare(ReadRun(store), reference, options);
+}
+
+Comparison Compare(const ReadableRun& readable, const std::string& reference, const CompareOptions& options) {
+  const RunDescription& run = readable.description;
   const std::vector<DescribedEstimator>& estimators = run.estimators;
   const size_t reference_index =
       reference.empty()
@@ -108,7 +112,7 @@ Comparison Compare(const ResultStore& store, const std::string& reference, const
       is_of_population ? GroupByDraw(run) : (is_pooled ? OneGroup() : GroupByCondition(run));
   AllPairs pairs(run, groups, reference_index, compared);
   ForEachTrialByScene(
-      store, run.repeats_per_scene,
+      readable,
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
         pairs.Add(problem, records, is_first);
       },

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/run/store/result_store.h"
 #include "experiments/statistics/compared.h"
+#include "experiments/statistics/readable_run.h"
 #include "experiments/statistics/trial_groups.h"
 #include "stats/intervals.h"
 #include "stats/paired.h"
@@ -63,6 +63,7 @@ struct Comparison {
 //
 // One pass over the raw trials, in memory that does not grow with them. `reference` is a label of the study;
 // empty: its first. Throws InputError if the study has no such label, or ComparedByName does.
+Comparison Compare(const ReadableRun& run, const std::string& reference, const CompareOptions& options = {});
 Comparison Compare(const ResultStore& store, const std::string& reference,
                    const CompareOptions& options = {});
 

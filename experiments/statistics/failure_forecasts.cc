@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
@@ -49,11 +50,6 @@ Groups GroupsBy(const std::string& factor, const RunDescription& run) {
   return groups;
 }
 
-// Conditions that share their scenes (Study::common_scenes) have one scene per number of a trial.
-bool HasCommonScenes(const RunDescription& run) {
-  return run.study_yaml.find("common_scenes: true") != std::string::npos;
-}
-
 Answer AnswerOf(const TrialRecord& record, const FailureBounds& bounds) {
   Answer answer;
   answer.stated = record.failure_probability;
@@ -67,6 +63,7 @@ Answer AnswerOf(const TrialRecord& record, const FailureBounds& bounds) {
 std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDescription& run,
                                            const Groups& groups) {
   std::vector<std::vector<Answer>> answers(run.estimators.size());
+  // Conditions that share their scenes have one scene per number of a trial.
   const std::int64_t scenes_apart = HasCommonScenes(run) ? 0 : std::int64_t{1} << 32;
   const bool is_of_population = IsSampleOfPopulation(run.identity);
   const TrialGroups draws = is_of_population ? GroupByDraw(run) : TrialGroups();

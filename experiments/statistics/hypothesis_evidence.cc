@@ -123,7 +123,7 @@ EvidenceTrials ReadEvidence(const ResultStore& store, const RunDescription& run,
                             std::vector<HypothesisEvidence>* evidence) {
   EvidenceTrials read{std::vector<std::int64_t>(run.conditions.size())};
   ForEachTrialByScene(
-      store, run.repeats_per_scene,
+      ReadRun(store),
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool) {
         if (problem.trial >= before[problem.condition]) return;
         ++read.num_trials[problem.condition];

@@ -10,14 +10,18 @@ std::optional<double> SceneMean::Take() {
   return whole.sum_ / whole.count_;
 }
 
+bool HasCommonScenes(const RunDescription& run) {
+  return run.study_yaml.find("common_scenes: true") != std::string::npos;
+}
+
 void ForEachTrialByScene(
-    const ResultStore& store, int repeats_per_scene,
+    const ReadableRun& run,
     const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&, bool is_first)>& visit,
     const std::function<void(std::uint32_t condition)>& end_of_scene) {
   using SceneId = std::pair<std::uint32_t, std::uint32_t>;  // condition, scene
   std::optional<SceneId> current;
-  const auto repeats = static_cast<std::uint32_t>(repeats_per_scene);
-  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+  const auto repeats = static_cast<std::uint32_t>(run.description.repeats_per_scene);
+  run.for_each_trial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     const SceneId scene(problem.condition, problem.trial / repeats);
     if (current && *current != scene) end_of_scene(current->first);
     current = scene;

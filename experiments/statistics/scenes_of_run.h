@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "experiments/run/store/result_store.h"
+#include "experiments/statistics/readable_run.h"
 
 namespace rcme {
 
@@ -22,11 +22,14 @@ class SceneMean {
   int count_ = 0;
 };
 
+// Whether trials of the same number share their scene in all conditions (Study::common_scenes).
+bool HasCommonScenes(const RunDescription& run);
+
 // Calls `visit` for every trial of the run, ordered by condition and trial, and `end_of_scene` with the
 // condition after the last trial of each scene. `is_first`: of its scene; a run that was cut off may lack
 // it.
 void ForEachTrialByScene(
-    const ResultStore& store, int repeats_per_scene,
+    const ReadableRun& run,
     const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&, bool is_first)>& visit,
     const std::function<void(std::uint32_t condition)>& end_of_scene);
 

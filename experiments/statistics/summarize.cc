@@ -95,7 +95,7 @@ Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& 
                                  SummaryCell(run.estimators.size(), run.repeats_per_scene));
   SummaryCell* of_scene = nullptr;
   ForEachTrialByScene(
-      store, run.repeats_per_scene,
+      ReadRun(store),
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
         of_scene = &cells[groups.group_of(problem)];
         of_scene->Add(problem, records, run.failure, is_first);
