@@ -93,6 +93,7 @@ A first session:
   AddRunCommand(app);
   AddSummarizeCommand(app);
   AddCompareCommand(app);
+  AddGateCommand(app);
   AddReliabilityCommand(app);
   AddMarginalsCommand(app);
   AddReportCommand(app);

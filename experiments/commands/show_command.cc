@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "experiments/commands/commands.h"
@@ -29,15 +28,6 @@ struct ShowArguments {
   std::uint32_t condition = 0, trial = 0;
   std::vector<std::string> estimators;
 };
-
-// Whether a file begins as every SQLite file does: a result of `rcme run`, not a study.
-bool IsResultFile(const std::string& path) {
-  constexpr std::string_view kBeginning("SQLite format 3\0", 16);
-  std::string bytes(kBeginning.size(), ' ');
-  if (!std::filesystem::is_regular_file(path)) return false;
-  std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  return bytes == kBeginning;
-}
 
 StudyPlan PlanFrom(const ShowArguments& arguments) {
   if (!IsResultFile(arguments.study)) {

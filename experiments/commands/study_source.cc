@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
 
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/commands/number_option.h"
@@ -65,6 +68,14 @@ StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, 
     throw InputError(fmt::format("{}: {}", path, error.what()));
   }
   return MakePlan(study, path, estimators);
+}
+
+bool IsResultFile(const std::string& path) {
+  constexpr std::string_view kBeginning("SQLite format 3\0", 16);
+  std::string bytes(kBeginning.size(), ' ');
+  if (!std::filesystem::is_regular_file(path)) return false;
+  std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes == kBeginning;
 }
 
 StudyPlan PlanOfStored(const ResultStore& store, bool allow_process) {

@@ -32,6 +32,9 @@ Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
 // InputError as LoadChangedStudy and RequireCases.
 StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, PlanEstimators estimators);
 
+// Whether a file begins as every SQLite file does: a result of `rcme run`, not a study.
+bool IsResultFile(const std::string& path);
+
 // The plan of a result file's study, its commands allowed or refused. Throws InputError as ResultStore::Plan.
 StudyPlan PlanOfStored(const ResultStore& store, bool allow_process);
 

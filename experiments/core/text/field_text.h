@@ -20,6 +20,8 @@ std::string CsvNumber(double x, const std::string& format = ".8g");
 std::string CsvFinite(double x, const std::string& format = ".8g");
 // As LaTeX prints it: no character of it is a command, or an argument of the command before it.
 std::string LatexText(const std::string& text);
+// As XML holds it in an element or an attribute; control characters, of which XML allows few, become spaces.
+std::string XmlText(const std::string& text);
 // All digits; null for what is not finite.
 nlohmann::ordered_json JsonNumber(double x);
 

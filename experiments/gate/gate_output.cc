@@ -1,0 +1,239 @@
+#include "experiments/gate/gate_output.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/field_text.h"
+#include "experiments/core/text/json_output.h"
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMaxListed = 10;  // changed trials; JSON has all of them
+
+// A number of a row as people read it: rates, scores and shares in percent, an error in degrees, a time in
+// ms.
+NumberFormat LevelFormat(const GateQuantity& quantity) {
+  if (quantity.name == "time") return {1e3, "ms", ".3g"};
+  if (quantity.name == "error") return {1.0, "deg", ".3g"};
+  return kPercent;
+}
+const NumberFormat kChange{100.0, "%", "+.2f"};
+
+std::string FormatLevel(const GateQuantity& quantity, double level) {
+  return FormatEstimate({.value = level}, LevelFormat(quantity));
+}
+
+std::string FormatChange(const GateRow& row) {
+  return FormatEstimate({row.difference, row.interval}, row.test.is_limit ? kPercent : kChange);
+}
+
+std::string FormatMargin(const GateTest& test) {
+  return fmt::format("{}{:.3g} %", test.is_limit ? "at most " : "+", 100.0 * test.margin);
+}
+
+Table MakePeopleTable(const GateReport& report) {
+  using R = const GateRow&;
+  std::vector<ColumnOf<GateRow>> columns = {
+      {{.name = "quantity", .is_key = true}, [](R r) { return r.test.Name(); }},
+      {{"verdict"}, [](R r) { return Name(r.verdict); }},
+      {{"pairs", ColumnType::kCount}, [](R r) { return r.n; }}};
+  if (!report.old_label.empty())
+    columns.push_back({{"old"}, [](R r) { return FormatLevel(r.test.quantity, r.of_old); }});
+  columns.push_back({{"new"}, [](R r) { return FormatLevel(r.test.quantity, r.of_new); }});
+  columns.push_back({{"change"}, [](R r) { return FormatChange(r); }});
+  columns.push_back({{"margin"}, [](R r) { return FormatMargin(r.test); }});
+  return MakeTable(columns, report.look.rows);
+}
+
+Table MakeFileTable(const GateReport& report) {
+  using R = const GateRow&;
+  const std::vector<ColumnOf<GateRow>> columns = {
+      {{"quantity"}, [](R r) { return r.test.Name(); }},
+      {{"verdict"}, [](R r) { return Name(r.verdict); }},
+      {{"pairs", ColumnType::kCount}, [](R r) { return r.n; }},
+      {{"old", ColumnType::kNumber}, [](R r) { return r.of_old; }},
+      {{"new", ColumnType::kNumber}, [](R r) { return r.of_new; }},
+      {{"change", ColumnType::kNumber}, [](R r) { return r.difference; }},
+      {{"lower,upper", ColumnType::kInterval}, [](R r) { return r.interval; }},
+      {{"margin", ColumnType::kNumber}, [](R r) { return r.test.margin; }},
+      {{"p_worse", ColumnType::kNumber}, [](R r) { return r.p_worse; }},
+      {{"p_not_worse", ColumnType::kNumber}, [](R r) { return r.p_not_worse; }}};
+  return MakeTable(columns, report.look.rows);
+}
+
+struct ListedTrial {
+  ChangedTrial trial;
+  std::vector<std::string> commands;
+};
+
+std::vector<ListedTrial> ListTrials(const GateReport& report, size_t most) {
+  std::vector<ListedTrial> listed;
+  for (const ChangedTrial& trial : report.changed) {
+    if (listed.size() == most) break;
+    listed.push_back({trial, {ShowCommand(report, trial)}});
+    if (!report.show_old.empty()) listed.back().commands.push_back(ShowCommand(report, trial, true));
+  }
+  return listed;
+}
+
+Table MakeTrialTable(const std::vector<ListedTrial>& trials) {
+  using T = const ListedTrial&;
+  const std::vector<ColumnOf<ListedTrial>> columns = {
+      {{"condition", ColumnType::kCount}, [](T t) { return std::int64_t{t.trial.condition}; }},
+      {{"trial", ColumnType::kCount}, [](T t) { return std::int64_t{t.trial.trial}; }},
+      {{"old"}, [](T t) { return t.trial.of_old; }},
+      {{"new"}, [](T t) { return t.trial.of_new; }},
+      {{"command"}, [](T t) { return fmt::format("{}", fmt::join(t.commands, "; ")); }}};
+  return MakeTable(columns, trials);
+}
+
+std::string DescribeChanged(const GateReport& report) {
+  const auto num_worse = std::ranges::count(report.changed, true, &ChangedTrial::is_for_worse);
+  return fmt::format("{} trials ended otherwise with the new version, {} of them for the worse.",
+                     report.changed.size(), num_worse);
+}
+
+std::string ListRows(const GateReport& report, GateVerdict verdict) {
+  std::vector<std::string> parts;
+  for (const GateRow& row : report.look.rows) {
+    if (row.verdict != verdict) continue;
+    parts.push_back(
+        row.test.is_limit
+            ? fmt::format("{} {}, {}", row.test.quantity.name, FormatChange(row), FormatMargin(row.test))
+            : fmt::format("{} {}, margin {}", row.test.Name(), FormatChange(row), FormatMargin(row.test)));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string TableLegend(const GateReport& report) {
+  return fmt::format(
+      "change: new less old, of error and time as a share. Each end of an interval holds at every look with "
+      "probability {:.0f} %. Worse: the change exceeds the margin, at level {:.0f} % for all {} tests "
+      "together "
+      "(Holm). Not worse: no change reaches its margin, at level {:.0f} %.",
+      100.0 * (1.0 - kGateLevel), 100.0 * kGateLevel, report.look.rows.size(), 100.0 * kGateLevel);
+}
+
+}  // namespace
+
+std::vector<std::string> ListAssumptions(const ReadableRun& run, const std::vector<GateTest>& tests) {
+  const RunDescription& description = run.description;
+  std::vector<std::string> assumptions = {
+      fmt::format(
+          "The verdict is for the mean over these {} conditions, each with the same weight; in a single "
+          "condition a change may be greater.",
+          description.conditions.size()),
+      "Trials are independent draws of the simulator, and an answer depends on the problem and the stream of "
+      "samples alone."};
+  const bool has_time =
+      std::ranges::any_of(tests, [](const GateTest& test) { return test.quantity.needs_same_run; });
+  if (has_time)
+    assumptions.push_back(
+        "Times: the noise of the machine favours neither version, and is independent from trial to trial.");
+  if (description.origin.program.find(',') != std::string::npos ||
+      description.origin.instruction_set.find(',') != std::string::npos)
+    assumptions.push_back(
+        fmt::format("The trials were computed by {} ({}); what is stored of their problems is "
+                    "equal in both.",
+                    description.origin.program, description.origin.instruction_set));
+  return assumptions;
+}
+
+std::string GateSentence(const GateReport& report) {
+  const GateLook& look = report.look;
+  const std::string trials =
+      fmt::format("{} trials in each of {} conditions", look.num_rounds, report.num_conditions);
+  const std::string against = report.old_label.empty() ? "" : fmt::format(" than {}", report.old_label);
+  switch (look.verdict) {
+    case GateVerdict::kWorse:
+      return fmt::format("{} is worse{} after {}: {}.", report.new_label,
+                         against.empty() ? " than allowed" : against, trials,
+                         ListRows(report, GateVerdict::kWorse));
+    case GateVerdict::kNotWorse:
+      return fmt::format("{} is not worse{} by its margins, after {}.", report.new_label,
+                         against.empty() ? " than allowed" : against, trials);
+    case GateVerdict::kUndecided:
+    case GateVerdict::kNotMeasured:
+      break;
+  }
+  return fmt::format("Undecided whether {} is worse{} after {}, {}{}{}.", report.new_label,
+                     against.empty() ? " than allowed" : against, trials,
+                     report.is_out_of_time ? "when the time was over" : "when no trials were left",
+                     look.rows.empty() ? "" : ": ", ListRows(report, GateVerdict::kUndecided));
+}
+
+std::string ShowCommand(const GateReport& report, const ChangedTrial& trial, bool of_old) {
+  return fmt::format("rcme show {} --condition {} --trial {}", of_old ? report.show_old : report.show_new,
+                     trial.condition, trial.trial);
+}
+
+std::string GateAsText(const GateReport& report) {
+  std::string text = FormatParagraph(GateSentence(report)) + "\n" + RenderText(MakePeopleTable(report)) +
+                     "\n" + FormatParagraph(TableLegend(report)) + "\n";
+  for (const std::string& assumption : report.assumptions) text += FormatParagraph(assumption);
+  if (report.old_label.empty()) return text;
+  text += "\n" + FormatParagraph(DescribeChanged(report));
+  for (const ListedTrial& listed : ListTrials(report, kMaxListed)) {
+    text += fmt::format("  {} -> {}:  {}\n", listed.trial.of_old, listed.trial.of_new,
+                        fmt::join(listed.commands, "; "));
+  }
+  return text;
+}
+
+std::string GateAsMarkdown(const GateReport& report) {
+  std::string text = fmt::format("**{}**\n\n{}\n{}\n\n", GateSentence(report),
+                                 RenderMarkdown(MakePeopleTable(report)), TableLegend(report));
+  for (const std::string& assumption : report.assumptions) text += fmt::format("- {}\n", assumption);
+  if (report.old_label.empty()) return text;
+  const std::vector<ListedTrial> trials = ListTrials(report, kMaxListed);
+  text += fmt::format("\n{}\n", DescribeChanged(report));
+  return trials.empty() ? text : text + "\n" + RenderMarkdown(MakeTrialTable(trials));
+}
+
+std::string GateAsJson(const GateReport& report) {
+  return JsonText(kGateFormat, {{"study", report.study},
+                                {"old", report.old_label},
+                                {"new", report.new_label},
+                                {"verdict", Name(report.look.verdict)},
+                                {"sentence", GateSentence(report)},
+                                {"level", kGateLevel},
+                                {"trials_per_condition", report.look.num_rounds},
+                                {"conditions", report.num_conditions},
+                                {"tests", RenderJson(MakeFileTable(report))},
+                                {"assumptions", report.assumptions},
+                                {"changed_trials",
+                                 RenderJson(MakeTrialTable(ListTrials(report, report.changed.size())))}});
+}
+
+std::string GateAsJUnit(const GateReport& report) {
+  const std::vector<GateRow>& rows = report.look.rows;
+  const auto count = [&](GateVerdict verdict) {
+    return std::ranges::count(rows, verdict, &GateRow::verdict);
+  };
+  const std::string name = XmlText("rcme gate " + report.study);
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n<testsuite name=\"{}\" tests=\"{}\" "
+      "failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n",
+      name, rows.size(), count(GateVerdict::kWorse), count(GateVerdict::kUndecided),
+      count(GateVerdict::kNotMeasured));
+  for (const GateRow& row : rows) {
+    const std::string what = XmlText(fmt::format("{}: change {}, margin {}", Name(row.verdict),
+                                                 FormatChange(row), FormatMargin(row.test)));
+    text += fmt::format("<testcase classname=\"{}\" name=\"{}\">", name, XmlText(row.test.Name()));
+    if (row.verdict == GateVerdict::kWorse) text += fmt::format("<failure message=\"{}\"/>", what);
+    if (row.verdict == GateVerdict::kUndecided) text += fmt::format("<error message=\"{}\"/>", what);
+    if (row.verdict == GateVerdict::kNotMeasured) text += "<skipped/>";
+    if (row.verdict == GateVerdict::kNotWorse) text += fmt::format("<system-out>{}</system-out>", what);
+    text += "</testcase>\n";
+  }
+  return text + fmt::format("<system-out>{}</system-out>\n</testsuite>\n</testsuites>\n",
+                            XmlText(GateSentence(report)));
+}
+
+}  // namespace rcme
