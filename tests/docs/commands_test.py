@@ -46,7 +46,7 @@ SHORTER = [
     (r"^rcme tune (\S+)", r"rcme tune \1 --set scene=room"),
     (r"\bSTUDY\b", "studies/failure_vs_outliers.yaml"),
     (r"\bPAIRS\b", "pairs"),
-    (r"^rcme run (?!.*--(until|trials) )(?!first.yaml|locked.yaml)(.*)$", r"rcme run \2 --trials 2"),
+    (r"^rcme run (?!.*--(until|trials) )(?!first.yaml|locked.yaml|regression_gate)(.*)$", r"rcme run \2 --trials 2"),
     (r"^rcme export (.*)--trials \d+", r"rcme export \1--trials 2"),
     (r"^rcme audit --budget full (--shard|--merge)", r"rcme audit --only sample_test.size.joint \1"),
     (r"^rcme audit --out", "rcme audit --only sampson.determinant --out"),
