@@ -57,7 +57,7 @@ const std::vector<GateQuantity>& GateQuantities() {
        GateScale::kRate, 0.01, false, Miscoverage},
       {"probability",
        "Brier score (P - failed)^2 of the stated P(failure), of trials in which both state one",
-       GateScale::kScore, 0.002, false, NumberOf("brier")},
+       GateScale::kScore, 0.005, false, NumberOf("brier")},
       {"error", "the greater of rotation and direction error, of trials in which both versions answer",
        GateScale::kRatio, 0.05, false, NumberOf("max_error_median_deg_answered")},
       {"time", "processor time of a call", GateScale::kRatio, 0.05, true, Seconds}};

@@ -66,9 +66,10 @@ TEST(GateQuantity, DifferencesAndMargins) {
   EXPECT_EQ(error.Difference(infinity, infinity), 0.0);
   EXPECT_NEAR(error.FromDifference(error.ToDifference(0.05)), 0.05, 1e-12);
   EXPECT_EQ(MakeGateTests({"time", "failure"}, {"time=0.2"}).back().margin, 0.2);
-  EXPECT_TRUE(ThrowsInputError([] { MakeGateTests({"failure"}, {"faliure=0.1"})); }, {"did you mean 'failure'?"});
-  EXPECT_TRUE(ThrowsInputError([] { MakeGateTests({"failure"}, {"failure=1.5"})); }, {"between 0 and 1"});
-  EXPECT_TRUE(ThrowsInputError([] { MakeGateTests({"failure"}, {"time=0.1"})); }, {"is not judged"});
+  const auto with_margin = [](const std::string& margin) { MakeGateTests({"failure"}, {margin}); };
+  EXPECT_TRUE(ThrowsInputError([&] { with_margin("faliure=0.1"); }, {"did you mean 'failure'?"}));
+  EXPECT_TRUE(ThrowsInputError([&] { with_margin("failure=1.5"); }, {"between 0 and 1"}));
+  EXPECT_TRUE(ThrowsInputError([&] { with_margin("time=0.1"); }, {"is not judged"}));
 }
 
 // Without a discordant pair a stake f of the gambler's grows by 1 + f (0.5 / 0.4975 - 1) a trial.
@@ -151,8 +152,8 @@ TEST(Gate, WhatOnlyOneVersionStatesCannotBeJudged) {
     return records;
   };
   const ReadableRun run = MakeRun(make, 100);
-  EXPECT_TRUE(
-      ThrowsInputError([&] { TakeGateLook(run, MakeGateTests({"probability"}, {}), 100); }, {"--of"}));
+  const std::vector<GateTest> probability = MakeGateTests({"probability"}, {});
+  EXPECT_TRUE(ThrowsInputError([&] { TakeGateLook(run, probability, 100); }, {"--of"}));
   const auto neither = [](std::uint32_t, std::uint32_t) {
     std::vector<TrialRecord> records(2, MakeGateRecord(false));
     for (TrialRecord& record : records) record.failure_probability = std::nan("");
