@@ -47,6 +47,8 @@ SHORTER = [
     (r"\bSTUDY\b", "studies/failure_vs_outliers.yaml"),
     (r"\bPAIRS\b", "pairs"),
     (r"^rcme run (?!.*--(until|trials) )(?!first.yaml|locked.yaml|regression_gate)(.*)$", r"rcme run \2 --trials 2"),
+    (r"regression_gate --trials 250", "regression_gate --trials 40"),
+    (r"^rcme gate before.sqlite .* --out", "rcme gate before.sqlite --of failure --margin failure=0.1 --out"),
     (r"^rcme export (.*)--trials \d+", r"rcme export \1--trials 2"),
     (r"^rcme audit --budget full (--shard|--merge)", r"rcme audit --only sample_test.size.joint \1"),
     (r"^rcme audit --out", "rcme audit --only sampson.determinant --out"),
