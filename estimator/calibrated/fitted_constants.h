@@ -48,25 +48,25 @@ inline constexpr FittedTerm kModeTerms[] = {
 //   studies/right_calibration.yaml, seed 54, 300 draws, 4 trials of each condition, weight 0.3, partners permuted, for P alone
 inline constexpr FittedTerm kFailureTerms[] = {
     {"constant", 2.11126, 1, 1},
-    {"posterior_log_odds", 0.119793, -11.5, 6.22974},
-    {"posterior", 2.24781, 0, 0.998034},
-    {"log_odds_by_neighbour_correlation", -0.0929766, -6.93363, 4.87419},
-    {"log_odds_by_spread_in_matches", 0.235376, -2.58779, 6.46974},
-    {"log_odds_by_planar_share", -0.164955, -11.2305, 5.04756},
-    {"log_odds_by_wrong_share", 0.175868, -8.74116, 2.6901},
-    {"log_parallax_share", -0.335656, -2.76602, -0.0287249},
-    {"noise_above", 0.850726, 0, 2},
-    {"noise_below", 0.910127, 0, 1.44605},
-    {"neighbour_root_z", 0.163517, -2.03725, 3.07806},
-    {"log_design_2", 0.177984, -2.06146, 6.0125},
+    {"posterior_log_odds", 0.119793, -11.5, 5.89135},
+    {"posterior", 2.24781, 0, 0.99724},
+    {"log_odds_by_neighbour_correlation", -0.0929766, -6.99354, 4.93136},
+    {"log_odds_by_spread_in_matches", 0.235376, -1.43053, 6.68048},
+    {"log_odds_by_planar_share", -0.164955, -11.3203, 5.38786},
+    {"log_odds_by_wrong_share", 0.175868, -8.76409, 2.25739},
+    {"log_parallax_share", -0.335656, -2.76667, -0.0335684},
+    {"noise_above", 0.850726, 0, 1.77118},
+    {"noise_below", 0.910127, 0, 1.47201},
+    {"neighbour_root_z", 0.163517, -2.05368, 3.11792},
+    {"log_design_2", 0.177984, -2.08854, 5.9541},
     {"num_rivals", 0.15817, 0, 6},
-    {"greatest_rival", 4.20019, 0, 0.448717},
-    {"log_rotation_sd", 0.364168, -10.2105, -1.86519},
+    {"greatest_rival", 4.20019, 0, 0.449187},
+    {"log_rotation_sd", 0.364168, -10.2403, -2.3192},
     {"wrong_coherence", 1.20015, 0, 1},
-    {"spread_in_image", -0.419411, -2.07698, 0.0394795},
-    {"direction_mass", -0.992866, 0.00503903, 1},
+    {"spread_in_image", -0.419411, -1.94585, 0.0395944},
+    {"direction_mass", -0.992866, 0.00411187, 1},
     {"low_depth", -0.13151, -3, 3},
-    {"partner_dependence", -0.436011, 0, 5},
+    {"partner_dependence", -0.436011, 0.70653, 5},
 };
 
 // Fitted to
@@ -88,8 +88,8 @@ inline constexpr FittedTerm kFailureTerms[] = {
 //   studies/calibrated/assumed_sigma.yaml, seed 53, 20 trials of each condition, weight 0.3
 inline constexpr FittedTerm kSpreadTerms[] = {
     {"constant", -0.0211958, 1, 1},
-    {"neighbour_root_z_above", 0.274215, 0, 3.07806},
-    {"log_design_4", 0.485035, -0.75557, 5.62858},
+    {"neighbour_root_z_above", 0.274215, 0, 3.11792},
+    {"log_design_4", 0.485035, -0.740797, 5.53366},
 };
 
 }  // namespace rcme

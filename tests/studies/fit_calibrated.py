@@ -109,13 +109,14 @@ class Trials:
     """Rows of the sources as arrays: failure and spread terms, posterior, outcome, cluster, regime."""
 
     def __init__(self, files, sources):
-        rows, self.weight, self.cluster, self.fits_covariance = [], [], [], []
+        rows, self.weight, self.cluster, self.fits_covariance, self.is_permuted = [], [], [], [], []
         for k, (path, source) in enumerate(zip(files, sources)):
             with open(path, newline="") as file:
                 for row in csv.DictReader(file):
                     rows.append(row)
                     self.weight.append(source.weight)
                     self.fits_covariance.append(source.fits_covariance)
+                    self.is_permuted.append(source.listing == "permuted")
                     self.cluster.append((k, row["condition"]))
         self.names = [key for key in rows[0] if key.startswith("failure_")]
         self.spread_names = [key for key in rows[0] if key.startswith("spread_")]
@@ -123,7 +124,7 @@ class Trials:
         self.x = np.column_stack([column(key) for key in self.names])
         self.spread = np.column_stack([column(key) for key in self.spread_names])
         self.posterior, self.nees, self.failed = column("posterior"), column("nees"), column("failed")
-        self.weight, self.fits_covariance = np.array(self.weight), np.array(self.fits_covariance)
+        self.weight, self.fits_covariance, self.is_permuted = (np.array(x) for x in (self.weight, self.fits_covariance, self.is_permuted))
         _, self.cluster = np.unique([f"{k}:{c}" for k, c in self.cluster], return_inverse=True)
         self.regime = np.array([self._regime(row) for row in rows])
 
@@ -306,8 +307,9 @@ def fit_check(arguments):
     sure = train.fits_covariance & (probability(train.names, train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
     a = fit_spread(train.spread[sure], train.nees[sure], train.weight[sure])
     if not arguments.report_only:
-        write_constants("kFailureTerms", training, train.names, b, train.x)
-        write_constants("kSpreadTerms", [s for s in training if s.fits_covariance], train.spread_names, a, train.spread)
+        # Random partners are no domain in which P could be verified.
+        write_constants("kFailureTerms", training, train.names, b, train.x[~train.is_permuted])
+        write_constants("kSpreadTerms", [s for s in training if s.fits_covariance], train.spread_names, a, train.spread[~train.is_permuted])
     tests = [Trials([path], [source]) for path, source in zip(files[len(training):], held_out)]
     write_tables(arguments.programs, arguments.out, train, held_out, tests)
     now_b, _, now_a = read_header()

@@ -91,6 +91,7 @@ TEST(CheckedProbability, DoubtsRaiseIt) {
   plain.log_parallax_share = -0.5;
   plain.low_depth = 1.0;
   plain.wrong_share = 0.3;
+  plain.partner_dependence = 5.0;
   const double p = CheckedFailureProbability(1e-6, plain);
   EXPECT_LT(p, 0.02);
   const auto raised = [&](auto change) {
@@ -104,6 +105,7 @@ TEST(CheckedProbability, DoubtsRaiseIt) {
   EXPECT_GT(raised([](ModelCheck& c) { c.log_noise_ratio = std::log(3.0); }), 1.5 * p);
   EXPECT_GT(raised([](ModelCheck& c) { c.wrong_coherence = 0.9; }), 1.5 * p);
   EXPECT_GT(raised([](ModelCheck& c) { c.spread_in_matches = -1.0; }), 1.5 * p);
+  EXPECT_GT(raised([](ModelCheck& c) { c.partner_dependence = 1.0; }), 3.0 * p);
 }
 
 // Noise a hundred times the assumed was in no trial that the constants were fitted to.

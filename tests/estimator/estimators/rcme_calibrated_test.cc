@@ -72,7 +72,8 @@ TEST_F(RcmeCalibratedOf, FindsTheMotionAndItsMatches) {
 
 // Trials of which about a fifth fails. With right probabilities z = sum(P - wrong) / sqrt(sum P (1 - P)) is
 // standard normal to good approximation; |z| > 4 would be a false alarm in 16,000 runs. The probabilities are
-// right to some hundredths at best (results), which is admitted beside it: 0.03 a trial.
+// right to some hundredths at best (results), which is admitted beside it: 0.03 a trial. Of so few matches
+// chance is told from partners with difficulty, so that P may be greater than that, by 0.15 a trial.
 TEST_F(RcmeCalibratedOf, FailsAsOftenAsItsProbabilitiesSay) {
   double expected = 0.0, failed = 0.0, variance = 0.0;
   constexpr int kNumTrials = 300;
@@ -91,7 +92,8 @@ TEST_F(RcmeCalibratedOf, FailsAsOftenAsItsProbabilitiesSay) {
     variance += e.failure_probability * (1.0 - e.failure_probability);
   }
   ASSERT_GT(variance, 5.0);
-  EXPECT_NEAR(expected, failed, 4.0 * std::sqrt(variance) + 0.03 * kNumTrials);
+  EXPECT_LE(failed, expected + 4.0 * std::sqrt(variance) + 0.03 * kNumTrials);
+  EXPECT_GE(failed, expected - 4.0 * std::sqrt(variance) - 0.15 * kNumTrials);
 }
 
 // Matches of which each is 1, 2 or 4 times as noisy as .25 px, stated or not; 30 % are wrong.

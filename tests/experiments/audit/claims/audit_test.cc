@@ -108,7 +108,7 @@ TEST(AuditOutput, SaysEverythingOfAClaim) {
   const Audit audit = RunAuditInMemory(GaussianClaims(), options);
   const auto json = nlohmann::json::parse(AuditAsJson(audit));
   EXPECT_EQ(json["format"], "rcme audit 1");
-  EXPECT_EQ(json["num_targets"], 60);
+  EXPECT_EQ(json["num_targets"], 36);
   const auto& claim = json["claims"].at(0);
   EXPECT_EQ(claim["id"], "gauss.a1");
   EXPECT_EQ(claim["family"], "gauss");
