@@ -116,6 +116,7 @@ TEST(IsInDomain, IsOfWhatTheConstantsWereFittedTo) {
   plain.log_parallax_share = -0.5;
   plain.spread_in_image = -0.3;
   plain.wrong_share = 0.3;
+  plain.partner_dependence = 5.0;
   EXPECT_TRUE(IsInDomain(1e-4, plain));
   ModelCheck noisy = plain;
   noisy.log_noise_ratio = std::log(100.0);
@@ -123,6 +124,9 @@ TEST(IsInDomain, IsOfWhatTheConstantsWereFittedTo) {
   ModelCheck vague = plain;
   vague.log_rotation_sd = 1.0;
   EXPECT_FALSE(IsInDomain(1e-4, vague));
+  ModelCheck random = plain;  // partners
+  random.partner_dependence = 0.0;
+  EXPECT_FALSE(IsInDomain(1e-4, random));
 }
 
 TEST(CovarianceFactor, IsAtLeastOneAndGrowsWithSharedErrors) {
