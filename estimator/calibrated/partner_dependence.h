@@ -20,7 +20,7 @@ namespace rcme {
 //   of points seen under a large parallax, a and b rise together;
 // - the rank of a match's b among those of the first 128 matches of the problem, right or wrong, that are
 //   greater than its a: under a small parallax it is one of the next.
-// Each is normal where partners are random, the second about so: as if the b of the problem were not chosen.
+// Where partners are random, each is about standard normal; the second takes the b of the problem as fixed.
 double FindPartnerDependence(const MotionProblem& problem, const RelativePose& pose,
                              std::span<const size_t> some);
 

@@ -134,7 +134,7 @@ std::int64_t FirstLook(const ReadableRun& run) {
 }
 
 // Worse ones rise.
-int RankOf(TrialOutcome outcome) {
+int RankOutcome(TrialOutcome outcome) {
   return outcome == TrialOutcome::kSuccess ? 0 : outcome == TrialOutcome::kRefusal ? 1 : 2;
 }
 
@@ -202,7 +202,7 @@ std::vector<ChangedTrial> FindChangedTrials(const ReadableRun& run, std::int64_t
     const TrialOutcome before = OutcomeOf(of_old, bounds), after = OutcomeOf(of_new, bounds);
     if (before == after) return;
     changed.push_back({problem.condition, problem.trial, OutcomeInFull(of_old, bounds),
-                       OutcomeInFull(of_new, bounds), RankOf(after) > RankOf(before)});
+                       OutcomeInFull(of_new, bounds), RankOutcome(after) > RankOutcome(before)});
   });
   std::ranges::stable_sort(changed, std::greater<>(), &ChangedTrial::is_for_worse);
   return changed;

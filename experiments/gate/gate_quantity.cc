@@ -18,7 +18,7 @@ namespace {
 using GatedNumber = std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)>;
 
 // As `rcme compare` has it.
-GatedNumber NumberOf(const std::string& compared) { return ComparedByName({compared}).front().of; }
+GatedNumber FindNumber(const std::string& compared) { return ComparedByName({compared}).front().of; }
 
 // Whether the stated 95 % region of an answer lacks the truth.
 std::optional<double> Miscoverage(const TrialRecord& record, const FailureBounds&) {
@@ -51,15 +51,15 @@ double GateQuantity::FromDifference(double difference) const {
 const std::vector<GateQuantity>& GateQuantities() {
   static const std::vector<GateQuantity> all = {
       {"failure", "a motion beyond a failure bound, or an answer that is not valid, of all trials",
-       GateScale::kRate, 0.005, false, NumberOf("failure")},
-      {"refusal", "no motion, of all trials", GateScale::kRate, 0.005, false, NumberOf("refusal")},
+       GateScale::kRate, 0.005, false, FindNumber("failure")},
+      {"refusal", "no motion, of all trials", GateScale::kRate, 0.005, false, FindNumber("refusal")},
       {"miscoverage", "the stated 95 % region lacks the truth, of trials in which both versions answer",
        GateScale::kRate, 0.01, false, Miscoverage},
       {"probability",
        "Brier score (P - failed)^2 of the stated P(failure), of trials in which both state one",
-       GateScale::kScore, 0.005, false, NumberOf("brier")},
+       GateScale::kScore, 0.005, false, FindNumber("brier")},
       {"error", "the greater of rotation and direction error, of trials in which both versions answer",
-       GateScale::kRatio, 0.05, false, NumberOf("max_error_median_deg_answered")},
+       GateScale::kRatio, 0.05, false, FindNumber("max_error_median_deg_answered")},
       {"time", "processor time of a call", GateScale::kRatio, 0.05, true, Seconds}};
   return all;
 }

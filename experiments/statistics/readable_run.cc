@@ -19,7 +19,7 @@ struct WholeTrial {
   std::vector<TrialRecord> records;
 };
 
-std::vector<double> NumbersOf(const ProblemRecord& problem, const TrialRecord& record) {
+std::vector<double> ListNumbers(const ProblemRecord& problem, const TrialRecord& record) {
   std::vector<double> numbers = {static_cast<double>(record.num_matches)};
   VisitColumns(problem, [&](const StoredColumn&, const auto& field) {
     numbers.push_back(static_cast<double>(field));
@@ -35,8 +35,8 @@ bool AreEqual(double a, double b) {
 
 void RequireSameProblem(const WholeTrial& first, const WholeTrial& second) {
   if (!WasSimulated(first.records.front()) && !WasSimulated(second.records.front())) return;
-  if (std::ranges::equal(NumbersOf(first.problem, first.records.front()),
-                         NumbersOf(second.problem, second.records.front()), AreEqual))
+  if (std::ranges::equal(ListNumbers(first.problem, first.records.front()),
+                         ListNumbers(second.problem, second.records.front()), AreEqual))
     return;
   throw InputError(fmt::format(
       "condition {}, trial {}: the two result files hold different problems, made by simulators that differ; "
@@ -44,7 +44,7 @@ void RequireSameProblem(const WholeTrial& first, const WholeTrial& second) {
       first.problem.condition, first.problem.trial));
 }
 
-std::vector<WholeTrial> TrialsOf(const ResultStore& store, std::uint32_t condition) {
+std::vector<WholeTrial> ReadTrials(const ResultStore& store, std::uint32_t condition) {
   std::vector<WholeTrial> trials;
   store.ForEachTrial(
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
@@ -128,7 +128,8 @@ ReadableRun JoinRuns(const ResultStore& first, const std::vector<size_t>& of_fir
   const RunDescription joined = JoinDescriptions(of_old, of_first, of_new, of_second);
   return {joined, [=, &first, &second](const VisitTrial& visit) {
             for (std::uint32_t c = 0; c < joined.conditions.size(); ++c) {
-              const std::vector<WholeTrial> old_trials = TrialsOf(first, c), new_trials = TrialsOf(second, c);
+              const std::vector<WholeTrial> old_trials = ReadTrials(first, c),
+                                            new_trials = ReadTrials(second, c);
               auto old_trial = old_trials.begin();
               for (const WholeTrial& trial : new_trials) {
                 while (old_trial != old_trials.end() && old_trial->problem.trial < trial.problem.trial)
