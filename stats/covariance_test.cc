@@ -1,11 +1,11 @@
 #include "stats/covariance_test.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "stats/eigen_solvers.h"
 
 namespace rcme {
 

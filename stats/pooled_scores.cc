@@ -1,12 +1,12 @@
 #include "stats/pooled_scores.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "stats/constants.h"
 #include "stats/distributions.h"
+#include "stats/eigen_solvers.h"
 #include "stats/shared_members.h"
 
 namespace rcme {

@@ -187,7 +187,7 @@ Solution SolveMoments(const Moments& moments) {
     if (moments.M(a, a) >= kLeastPairs || a == kOwn) known.push_back(a);
   }
   const Eigen::MatrixXd T = moments.T(known, known);
-  const Eigen::MatrixXd weighted = moments.M(known, known).ldlt().solve(T);
+  const Eigen::MatrixXd weighted = Eigen::MatrixXd(moments.M(known, known)).ldlt().solve(T);
   const Eigen::MatrixXd normal = T.transpose() * weighted;
   const Eigen::VectorXd right = weighted.transpose() * Eigen::VectorXd(moments.q(known));
   Solution best;
@@ -198,7 +198,8 @@ Solution SolveMoments(const Moments& moments) {
     for (size_t k = 1; k < known.size(); ++k) {
       if ((chosen >> (k - 1) & 1u) != 0) active.push_back(static_cast<int>(k));
     }
-    const Eigen::VectorXd v = normal(active, active).ldlt().solve(right(active));
+    const Eigen::VectorXd v =
+        Eigen::MatrixXd(normal(active, active)).ldlt().solve(Eigen::VectorXd(right(active)));
     if (!(v.minCoeff() >= 0.0)) continue;
     const double deviance = (right(active).dot(v) - alone) / (2.0 * variance * variance);
     if (!(deviance > std::max(best.deviance, kLeastDeviance))) continue;
@@ -211,7 +212,7 @@ Solution SolveMoments(const Moments& moments) {
 
 // Without what thinning may leave of negative eigenvalues.
 Matrix5d Nonnegative(const Matrix5d& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(0.5 * (matrix + matrix.transpose()));
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(Matrix5d(0.5 * (matrix + matrix.transpose())));
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
          eigen.eigenvectors().transpose();
 }

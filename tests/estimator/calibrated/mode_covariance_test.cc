@@ -174,7 +174,7 @@ TEST(SandwichCovariance, IsThatOfTheHeader) {
     // The greater of S and of equal residuals along every direction: in coordinates in which the latter is
     // one.
     const Matrix5d L = Matrix5d(squares / freedom * geometry).llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(L.inverse() * S * L.inverse().transpose());
+    const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(Matrix5d(L.inverse() * S * L.inverse().transpose()));
     const Matrix5d root = L * eigen.eigenvectors();
     const Matrix5d middle = root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose() + doubt;
     const Matrix5d covariance = inverse * middle * inverse;

@@ -111,9 +111,9 @@ ResidualVariances VariancesByHand(const Sample& sample) {
       if ((chosen >> k & 1u) != 0) active.push_back(known[k]);
     }
     const Eigen::MatrixXd T_active = T(known, active);
-    const Eigen::VectorXd solved = (T_active.transpose() * M_inverse * T_active)
-                                       .ldlt()
-                                       .solve(T_active.transpose() * M_inverse * q_known);
+    const Eigen::MatrixXd normal = T_active.transpose() * M_inverse * T_active;
+    const Eigen::VectorXd right = T_active.transpose() * M_inverse * q_known;
+    const Eigen::VectorXd solved = normal.ldlt().solve(right);
     v->setZero(5);
     (*v)(active) = solved;
     const Eigen::VectorXd left = q_known - T_active * solved;

@@ -80,7 +80,7 @@ TEST(FitLinear, IsTheSmallestEigenvectorAndThePseudoInverse) {
       AddNoise(1.0, rng, &random.problem);
       const LinearFit fit = Fit(random.problem).value();
       const Eigen::MatrixXd M = MatrixOf(ComputeRays(random.problem));
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(M.transpose() * M);
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(M.transpose() * M));
       const double tolerance = 1e-13 / (fit.conditioning * fit.conditioning);
       EXPECT_LT(DistanceOfLines(fit.f, eigen.eigenvectors().col(0)), tolerance);
       EXPECT_NEAR(fit.conditioning, std::sqrt(eigen.eigenvalues()(1) / eigen.eigenvalues()(8)),

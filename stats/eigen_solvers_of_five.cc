@@ -1,0 +1,5 @@
+#include "stats/eigen_solvers.h"
+
+namespace Eigen {
+RCME_SOLVERS_OF_FIVE()
+}  // namespace Eigen
