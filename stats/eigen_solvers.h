@@ -38,12 +38,17 @@ namespace Eigen {
 namespace rcme_sizes {
 using M5 = Matrix<double, 5, 5>;
 using V5 = Matrix<double, 5, 1>;
+using M7 = Matrix<double, 7, 7>;
+using M9 = Matrix<double, 9, 9>;
 }  // namespace rcme_sizes
-#define RCME_SOLVERS_OF_FIVE(WHERE)       \
+#define RCME_SOLVERS_OF_MANY(WHERE)       \
   RCME_EIGENVALUES(WHERE, rcme_sizes::M5) \
+  RCME_EIGENVALUES(WHERE, rcme_sizes::M7) \
+  RCME_EIGENVALUES(WHERE, rcme_sizes::M9) \
   RCME_LINEAR_SOLVERS(WHERE, rcme_sizes::M5, rcme_sizes::V5)
 
 #define RCME_SOLVERS_OF_OTHER_SIZES(WHERE)                             \
+  RCME_EIGENVALUES(WHERE, Matrix2d)                                    \
   RCME_EIGENVALUES(WHERE, Matrix3d)                                    \
   RCME_EIGENVALUES(WHERE, Matrix4d)                                    \
   RCME_EIGENVALUES(WHERE, MatrixXd)                                    \
@@ -51,6 +56,6 @@ using V5 = Matrix<double, 5, 1>;
   WHERE template void ColPivHouseholderQR<MatrixXd>::computeInPlace(); \
   WHERE template void ColPivHouseholderQR<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
 
-RCME_SOLVERS_OF_FIVE(extern)
+RCME_SOLVERS_OF_MANY(extern)
 RCME_SOLVERS_OF_OTHER_SIZES(extern)
 }  // namespace Eigen

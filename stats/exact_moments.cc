@@ -114,9 +114,7 @@ std::string ExactSum::Text() const {
   number = abs(number);
   const auto num_zeros = static_cast<int>(lsb(number));
   number >>= num_zeros;
-  std::string text = sign + number.str(0, std::ios_base::hex);
-  text += "p" + std::to_string(num_zeros + kUnit);
-  return text;
+  return sign + number.str(0, std::ios_base::hex) + 'p' + std::to_string(num_zeros + kUnit);
 }
 
 ExactSum ExactSum::FromText(const std::string& text) {

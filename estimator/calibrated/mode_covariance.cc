@@ -39,7 +39,8 @@ Matrix5d GreaterOf(const Matrix5d& a, const Matrix5d& b) {
 // that rounding does not make it indefinite.
 Matrix5d WidenedForFew(const Matrix5d& root, const Matrix5d& inverse, const Mode& mode, const Explanation& e,
                        double freedom) {
-  const Matrix5d axes = Eigen::SelfAdjointEigenSolver<Matrix5d>(root * root.transpose()).eigenvectors();
+  const Matrix5d axes =
+      Eigen::SelfAdjointEigenSolver<Matrix5d>(Matrix5d(root * root.transpose())).eigenvectors();
   const Vector5d effective = EffectiveMatches(mode, e, inverse * axes);
   Vector5d factor;
   for (int axis = 0; axis < 5; ++axis) {

@@ -74,7 +74,7 @@ std::optional<Eigen::Vector3d> FindPlane(const MotionProblem& problem, const Rel
 
 std::optional<RelativePose> OtherMotionOfPlane(const RelativePose& pose, const Eigen::Vector3d& plane) {
   const Eigen::Matrix3d H0 = pose.R + pose.t * plane.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(H0.transpose() * H0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(Eigen::Matrix3d(H0.transpose() * H0));
   const double middle = std::sqrt(eigen.eigenvalues()(1));
   if (!(middle > 1e-9)) return std::nullopt;
   const Eigen::Matrix3d H = H0 / middle;

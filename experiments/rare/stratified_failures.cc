@@ -184,9 +184,11 @@ class StrataSum {
 
 double FailureChanceOfBound(const Matrix5d& bound, const FailureBounds& bounds) {
   const double rotation =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(bound.topLeftCorner<3, 3>()).eigenvalues()(2);
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(Eigen::Matrix3d(bound.topLeftCorner<3, 3>()))
+          .eigenvalues()(2);
   const double direction =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(bound.bottomRightCorner<2, 2>()).eigenvalues()(1);
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(Eigen::Matrix2d(bound.bottomRightCorner<2, 2>()))
+          .eigenvalues()(1);
   return std::max(TailOf(bounds.max_rotation_error_deg, rotation),
                   TailOf(bounds.max_direction_error_deg, direction));
 }

@@ -1,5 +1,5 @@
 #include "stats/eigen_solvers.h"
 
 namespace Eigen {
-RCME_SOLVERS_OF_FIVE()
+RCME_SOLVERS_OF_MANY()
 }  // namespace Eigen
