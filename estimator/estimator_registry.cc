@@ -19,9 +19,10 @@
 namespace rcme {
 namespace {
 
-// Every estimator can be given a robust covariance and be put behind the gate of model choice.
+// Estimators can be given a robust covariance and be put behind the gate of model choice.
 std::vector<EstimatorEntry> WithCommonOptions(std::vector<EstimatorEntry> entries) {
   for (EstimatorEntry& entry : entries) {
+    if (!entry.takes_common_options) continue;
     entry.make = [make = std::move(entry.make), uses_scale = entry.uses_noise_scale] {
       return WithGate(WithRobustCovariance(make(), uses_scale));
     };

@@ -21,13 +21,16 @@ struct EstimatorEntry {
   // Whether its last fit weighs matches by how noisy they are said to be (MotionProblem::noise_scale), and so
   // what the robust covariance is of. No search does.
   bool uses_noise_scale = false;
+  // Whether it gets the options of the robust covariance and of the gate of model choice beside its own.
+  bool takes_common_options = true;
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 
 // Adds a user-defined estimator to the table, with the robust covariance and behind the gate of model choice
-// as all are (robust_covariance/covariance_option.h, model_choice/gate.h); to be called before anything reads
-// it, from one thread. Throws InputError if its name is taken or empty, or if an option of it has no name, a
-// name that another has, a name that a command line cannot take (`.`, `=`), or a default that is not allowed.
+// as all are that take them (robust_covariance/covariance_option.h, model_choice/gate.h); to be called before
+// anything reads it, from one thread. Throws InputError if its name is taken or empty, or if an option of it
+// has no name, a name that another has, a name that a command line cannot take (`.`, `=`), or a default that
+// is not allowed.
 void AddEstimator(EstimatorEntry entry);
 
 // The entry called `name`; throws InputError that lists the known names.

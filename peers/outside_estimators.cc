@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -244,6 +245,9 @@ void AddOutsideEstimators() {
                 [] { return std::make_unique<ProcessModel>(); }, /*is_peer=*/false, /*is_audited=*/false});
   AddEstimator({"answers", "a file of answers that were made elsewhere (rcme import)",
                 [] { return std::make_unique<AnswersModel>(); }, /*is_peer=*/false, /*is_audited=*/false});
+  AddEstimator({kConformEstimator, "another estimator, made to keep its word (rcme conform)", ConformModel,
+                /*is_peer=*/false, /*is_audited=*/false, /*uses_noise_scale=*/false,
+                /*takes_common_options=*/false});
 }
 
 }  // namespace rcme

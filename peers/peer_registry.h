@@ -12,7 +12,8 @@ namespace rcme {
 // version, or a machine with other vector instructions, may give other bytes.
 void AddPeers();
 
-// Adds `process` and `answers`: estimators outside the program, in any language. Likewise.
+// Adds `process` and `answers`, estimators outside the program in any language, and `conform`, which wraps
+// any other. Likewise.
 void AddOutsideEstimators();
 
 // Starts the command of an estimator `process` and asks it a small problem. Throws InputError if the process

@@ -109,9 +109,9 @@ py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const
                   const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process,
                   const std::vector<std::pair<double, double>>& bounds) {
   std::vector<EstimatorSpec> specs = {file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file)};
-  if (allow_process) AllowCommands(&specs);
   EstimatorSpec& spec = specs.front();
   SetOwnOptions(&spec, options);
+  if (allow_process) AllowCommands(&specs);
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
   MotionProblem problem{{}, camera1, camera2, sigma_px, std::move(noise_scale)};
   for (py::ssize_t i = 0; i < x1.shape(0); ++i)

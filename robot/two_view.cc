@@ -6,6 +6,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
 #include "estimator/geometry/triangulation.h"
 #include "estimator/noise_scale.h"
@@ -64,13 +65,22 @@ void Triangulate(const MotionProblem& problem, const RelativePose& pose, TwoView
   }
 }
 
+std::unique_ptr<MotionEstimator> MakeChosen(const TwoViewOptions& options) {
+  if (options.conform.empty()) return MakeEstimator(options.estimator, options.options);
+  const std::unique_ptr<EstimatorModel> model = ConformModel();
+  FindParameter(model->Parameters(), "file").SetFromText(options.conform);
+  return model->Make();
+}
+
+// `is_conformed`: the answer's domain is that of the file.
 TwoViewMotion MotionFrom(const MotionProblem& problem, const MotionEstimate& estimate,
-                         double greatest_probability) {
+                         double greatest_probability, bool is_conformed) {
   TwoViewMotion motion;
   const size_t n = problem.matches.size();
   motion.status = StatusName(estimate.status);
   motion.message = estimate.message;
   motion.failure_probability = estimate.failure_probability;
+  motion.probability_domain = Name(estimate.probability_domain);
   motion.sigma_px = estimate.sigma_estimated_px;
   motion.is_inlier.resize(n);
   motion.points.resize(n);
@@ -79,8 +89,10 @@ TwoViewMotion MotionFrom(const MotionProblem& problem, const MotionEstimate& est
   motion.verdict = TwoViewVerdict::kRefused;
   if (estimate.status != MotionStatus::kOk) return motion;
   const RelativePose& pose = estimate.cam2_from_cam1;
-  motion.verdict = estimate.failure_probability <= greatest_probability ? TwoViewVerdict::kGood
-                                                                        : TwoViewVerdict::kDoubtful;
+  const bool is_promised = !is_conformed || estimate.probability_domain == ProbabilityDomain::kVerified;
+  motion.verdict = is_promised && estimate.failure_probability <= greatest_probability
+                       ? TwoViewVerdict::kGood
+                       : TwoViewVerdict::kDoubtful;
   motion.R = ToCv(pose.R);
   motion.t = ToCv(pose.t);
   motion.covariance = ToCv(estimate.pose_cov);
@@ -97,6 +109,7 @@ struct TwoViewInitializer::Setup {
   double sigma_px, greatest_failure_probability;
   std::uint64_t seed;
   std::unique_ptr<MotionEstimator> estimator;
+  bool is_conformed;
 };
 
 const char* Name(TwoViewVerdict verdict) {
@@ -116,7 +129,7 @@ const char* Name(TwoViewVerdict verdict) {
 TwoViewInitializer::TwoViewInitializer(const TwoViewOptions& options)
     : setup_(new Setup{CameraFrom(options.K1, options.size1, 1), CameraFrom(options.K2, options.size2, 2),
                        options.sigma_px, options.greatest_failure_probability, options.seed,
-                       MakeEstimator(options.estimator, options.options)}) {
+                       MakeChosen(options), !options.conform.empty()}) {
   if (!(options.sigma_px > 0.0) || !std::isfinite(options.sigma_px))
     throw std::runtime_error(
         fmt::format("sigma_px: {} is not allowed; give a number above 0", options.sigma_px));
@@ -142,7 +155,7 @@ TwoViewMotion TwoViewInitializer::Estimate(const std::vector<cv::Point2f>& point
     problem.noise_scale = NoiseScaleOf(sigmas);
     RandomStream rng({.seed = setup_->seed});
     return MotionFrom(problem, setup_->estimator->Estimate(problem, rng),
-                      setup_->greatest_failure_probability);
+                      setup_->greatest_failure_probability, setup_->is_conformed);
   } catch (const std::exception& error) {  // memory, or a fault of ours: a robot goes on without this pair
     return BadInput(fmt::format("internal error: {}", error.what()));
   }

@@ -31,12 +31,16 @@ struct TwoViewOptions {
   std::string estimator = "rcme_calibrated";   // any of `rcme list estimators` but those of other libraries
   // By name, as `rcme list options` has them.
   std::vector<std::pair<std::string, std::string>> options = {{"covariance", "robust"}};
+  // A file of `rcme conform`, in place of estimator and options, which it names: covariance and probability
+  // are then those that it promises, and what its accept rule does not accept is refused. Empty: none.
+  std::string conform;
   std::uint64_t seed = 1;  // of the samples: equal input, equal answer
 };
 
 enum class TwoViewVerdict {
   kGood,      // a motion, wrong with a probability of at most greatest_failure_probability
-  kDoubtful,  // a motion that is more likely wrong, or whose estimator states no probability
+  kDoubtful,  // a motion that is more likely wrong, or whose estimator states no probability, or of matches
+              // unlike those that the file `conform` is of
   kRefused,   // no motion: too few matches, no parallax, no more agreement than by chance, ... (`status`,
               // `message`)
   kBadInput,  // nothing was computed: `message` says what is wrong
@@ -57,6 +61,8 @@ struct TwoViewMotion {
   // That the rotation is off by more than 3 degrees or the direction by more than 15, or what bounds the
   // options name.
   double failure_probability = std::numeric_limits<double>::quiet_NaN();
+  // Whether that holds for matches such as these: "verified", "extrapolated" or "not_stated".
+  std::string probability_domain = "not_stated";
   double sigma_px = std::numeric_limits<double>::quiet_NaN();  // as estimated from the residuals
 
   // One per match given: whether it agrees with the motion; its point in camera 1's frame, baselines, and
@@ -70,7 +76,7 @@ struct TwoViewMotion {
 class TwoViewInitializer {
  public:
   // Throws std::runtime_error for options that make no sense, which are the programmer's: K, sizes, an
-  // unknown estimator or option.
+  // unknown estimator or option, a file `conform` that is none.
   explicit TwoViewInitializer(const TwoViewOptions& options);
   ~TwoViewInitializer();
 

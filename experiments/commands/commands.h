@@ -16,6 +16,7 @@ void AddRunCommand(CLI::App& app);
 void AddAuditCommand(CLI::App& app);
 void AddSummarizeCommand(CLI::App& app);
 void AddCompareCommand(CLI::App& app);
+void AddConformCommand(CLI::App& app);
 void AddGateCommand(CLI::App& app);
 void AddReliabilityCommand(CLI::App& app);
 void AddMarginalsCommand(CLI::App& app);

@@ -1,10 +1,12 @@
 #include "experiments/commands/estimator_source.h"
 
 #include <algorithm>
+#include <filesystem>
 
+#include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
-#include "experiments/core/files/shared_files.h"
 #include "experiments/commands/process_option.h"
+#include "experiments/core/files/shared_files.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
 
@@ -16,6 +18,11 @@ void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* 
                    "estimator file with name and options, or the name of an installed one (`rcme list "
                    "estimator_files`)")
       ->excludes(name);
+  command
+      ->add_option("--conform", choice->conform,
+                   "the estimator of a file that `rcme conform` wrote, made to keep its word")
+      ->excludes(name)
+      ->excludes("--estimator-file");
   command
       ->add_option(
           "--set", choice->overrides,
@@ -36,10 +43,12 @@ bool IsNameOfFile(const std::string& name) {
 }  // namespace
 
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
-  EstimatorSpec spec = choice.file                 ? LoadEstimatorFile(*choice.file)
+  EstimatorSpec spec = choice.conform              ? DefaultEstimator(kConformEstimator)
+                       : choice.file               ? LoadEstimatorFile(*choice.file)
                        : IsNameOfFile(choice.name) ? LoadEstimatorFile(choice.name)
                                                    : DefaultEstimator(choice.name);
   Settings options;
+  if (choice.conform) options.emplace_back("file", *choice.conform);
   for (const std::string& text : choice.overrides) {
     const size_t equals = std::min(text.find('='), text.size());
     const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
@@ -50,6 +59,16 @@ EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
   if (choice.allow_process) AllowAndSay(&chosen);
   RequireAllowedCommands(chosen);  // now, not after the pairs have been read
   return chosen.front();
+}
+
+EstimatorSpec FindStudyEstimator(const Study& study, const std::string& name, bool allow_process) {
+  const auto spec = std::ranges::find(study.estimators, name, &EstimatorSpec::label);
+  if (spec != study.estimators.end()) return *spec;
+  EstimatorChoice choice;
+  choice.name = name;
+  choice.allow_process = allow_process;
+  if (std::filesystem::is_regular_file(name)) choice.file = name;
+  return ChosenEstimator(choice);
 }
 
 }  // namespace rcme

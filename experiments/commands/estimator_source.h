@@ -12,15 +12,20 @@ namespace rcme {
 
 struct EstimatorChoice {
   std::string name = "rcme_calibrated";
-  std::optional<std::string> file;
+  std::optional<std::string> file, conform;
   std::vector<std::string> overrides;  // option=value each
   bool allow_process = false;          // the command of the file
 };
 
-// The options --estimator-file, --set and --allow-process; `name` is the command's own option for the name.
+// The options --estimator-file, --conform, --set and --allow-process; `name` is the command's own option for
+// the name.
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice);
 
 // Throws InputError (estimator_file.h, estimator_spec.h). Says which command it allows.
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice);
+
+// The estimator of the study with this label, or one by its name or estimator file. Throws InputError as
+// ChosenEstimator.
+EstimatorSpec FindStudyEstimator(const Study& study, const std::string& name, bool allow_process);
 
 }  // namespace rcme

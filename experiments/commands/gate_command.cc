@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -53,17 +52,6 @@ std::vector<GateTest> TestsFrom(const GateArguments& arguments, bool has_old, bo
   }
   if (tests.empty()) throw InputError("gate: there is nothing to test; give --old or --failure-at-most");
   return tests;
-}
-
-// A label of the study, or an estimator by its name or file.
-EstimatorSpec FindVersion(const Study& study, const std::string& name, bool allow_process) {
-  const auto spec = std::ranges::find(study.estimators, name, &EstimatorSpec::label);
-  if (spec != study.estimators.end()) return *spec;
-  EstimatorChoice choice;
-  choice.name = name;
-  choice.allow_process = allow_process;
-  if (std::filesystem::is_regular_file(name)) choice.file = name;
-  return ChosenEstimator(choice);
 }
 
 // Trials of match files are the same pairs again and again.
@@ -130,8 +118,8 @@ GateReport GateStudy(const GateArguments& arguments) {
   if (arguments.new_name.empty()) throw InputError("gate: --new is missing; give the estimator to be judged");
   const bool has_old = !arguments.old_name.empty(), allow = arguments.changes.allow_process;
   std::vector<EstimatorSpec> versions;
-  if (has_old) versions.push_back(FindVersion(study, arguments.old_name, allow));
-  versions.push_back(FindVersion(study, arguments.new_name, allow));
+  if (has_old) versions.push_back(FindStudyEstimator(study, arguments.old_name, allow));
+  versions.push_back(FindStudyEstimator(study, arguments.new_name, allow));
   if (has_old) TellApart(&versions.front().label, &versions.back().label);
   study.estimators = versions;
   const std::vector<GateTest> tests = TestsFrom(arguments, has_old, /*is_same_run=*/true);
@@ -154,8 +142,9 @@ GateReport GateAgainstBaseline(const GateArguments& arguments) {
   RequireFixedOptions(study, "a gate");
   RequireSimulated(study);
   std::vector<EstimatorSpec> version = {
-      arguments.new_name.empty() ? study.estimators.at(e)
-                                 : FindVersion(study, arguments.new_name, arguments.changes.allow_process)};
+      arguments.new_name.empty()
+          ? study.estimators.at(e)
+          : FindStudyEstimator(study, arguments.new_name, arguments.changes.allow_process)};
   if (arguments.changes.allow_process) AllowAndSay(&version);
   study.estimators = version;
   const std::vector<GateTest> tests = TestsFrom(arguments, true, /*is_same_run=*/false);

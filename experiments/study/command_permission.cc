@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "estimator/conform/conform_estimator.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -22,6 +23,7 @@ std::string ShownCommand(const std::string& command) {
 }  // namespace
 
 std::string FindCommand(const EstimatorSpec& spec) {
+  if (const std::optional<EstimatorSpec> inner = FindConformed(spec)) return FindCommand(*inner);
   if (spec.name != kProcess) return {};
   const auto command = std::ranges::find(spec.options, kCommand, &Settings::value_type::first);
   return command == spec.options.end() || command->second == kNoCommand ? std::string() : command->second;
@@ -45,6 +47,7 @@ void SetOwnOptions(EstimatorSpec* spec, const Settings& options) {
   SetOptions(spec, options);
   for (const auto& [option, value] : options) {
     if (IsCommand(*spec, option)) spec->command_place.clear();
+    if (spec->name == kConformEstimator && option == "file") NoteCommandPlace(value, spec);  // not his own
   }
 }
 

@@ -13,7 +13,7 @@ namespace rcme {
 
 inline constexpr size_t kMaxCommandBytes = 2000;  // so that a message shows all of it
 
-// The command that the estimator runs; empty: none.
+// The command that the estimator, or the one that it conforms, runs; empty: none.
 std::string FindCommand(const EstimatorSpec& spec);
 
 // Whether this option of the estimator is such a command.

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_keys.h"
@@ -24,14 +25,16 @@ void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec
 }
 
 // {process: COMMAND} is short for the estimator `process` with that command, {answers: FILE} for `answers`
-// with that file, seen from the folder of the file that names it.
-void ReadOutside(const Place& place, const YAML::Node& value, const std::string& key, EstimatorSpec* spec) {
+// and {conform: FILE} for `conform` with that file, seen from the folder of the file that names it.
+void ReadShortForm(const Place& place, const YAML::Node& value, const std::string& key, EstimatorSpec* spec) {
   const std::string text = Scalar(place, value, key);
   if (text.empty()) place.Fail(value, fmt::format("{}: is empty", key));
   spec->name = key;
   const std::filesystem::path file = std::filesystem::path(place.path()).parent_path() / text;
   place.At(value, [&] {
-    SetOptions(spec, key == "process" ? Settings{{"command", text}} : AnswersOptions(file.string()));
+    SetOptions(spec, key == "process"   ? Settings{{"command", text}}
+                     : key == "answers" ? AnswersOptions(file.string())
+                                        : ConformOptions(file.string()));
   });
 }
 
@@ -48,11 +51,12 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
   std::set<std::string> known = StudyKeysOf("estimator");
   known.insert(keys_of_caller.begin(), keys_of_caller.end());
   for (const auto& [key, value] : Entries(place, node, block, known)) {
-    const bool is_outside = key == "process" || key == "answers";
-    if ((key == "name" || is_outside) && !spec.name.empty())
-      place.Fail(value, fmt::format("{}: name, process and answers exclude each other; give one", block));
+    const bool is_short = key == "process" || key == "answers" || key == kConformEstimator;
+    if ((key == "name" || is_short) && !spec.name.empty())
+      place.Fail(value,
+                 fmt::format("{}: name, process, answers and conform exclude each other; give one", block));
     if (key == "name") spec.name = Name(place, value, key);
-    if (is_outside) ReadOutside(place, value, key, &spec);
+    if (is_short) ReadShortForm(place, value, key, &spec);
     if (key == "label") spec.label = Name(place, value, key);
     if (key == "budget_ms") {
       place.At(value, [&, value = value] {

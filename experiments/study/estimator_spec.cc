@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
 #include "experiments/study/command_permission.h"
 #include "peers/peer_registry.h"
@@ -27,6 +28,16 @@ Settings AnswersOptions(const std::string& path) {
   return {{"file", path}, {"digest", DigestOfAnswers(path)}};
 }
 
+std::optional<EstimatorSpec> FindConformed(const EstimatorSpec& spec) {
+  if (spec.name != kConformEstimator) return std::nullopt;
+  const std::unique_ptr<EstimatorModel> model = Configure(spec);
+  const std::string file = FindParameter(model->Parameters(), "file").Value();
+  if (file == "none") return std::nullopt;
+  ConformRule rule = ReadConformFile(file).rule;
+  if (rule.estimator == kConformEstimator) return std::nullopt;  // refused where it is made
+  return EstimatorSpec{spec.label, rule.estimator, rule.options, {}};
+}
+
 std::string DescribeEffort(const EstimatorSpec& spec) {
   const std::unique_ptr<EstimatorModel> model = Configure(spec);
   const std::optional<Effort> effort = model->EffortOption();
@@ -40,7 +51,8 @@ std::string DescribeEffort(const EstimatorSpec& spec) {
 
 void CheckProcessEstimators(const std::vector<EstimatorSpec>& specs) {
   RequireAllowedCommands(specs);
-  for (const EstimatorSpec& spec : specs) {
+  for (const EstimatorSpec& given : specs) {
+    const EstimatorSpec spec = FindConformed(given).value_or(given);
     if (spec.name != "process") continue;
     const std::unique_ptr<EstimatorModel> model = Configure(spec);
     const std::vector<Parameter> parameters = model->Parameters();

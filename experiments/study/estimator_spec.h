@@ -31,6 +31,10 @@ void SetOptions(EstimatorSpec* spec, const Settings& options);
 // file that holds no answers.
 Settings AnswersOptions(const std::string& path);
 
+// The estimator that one called `conform` wraps, from its file; nothing for another. Throws InputError as
+// ReadConformFile.
+std::optional<EstimatorSpec> FindConformed(const EstimatorSpec& spec);
+
 // What limits the work of a call, in words: "num_iterations 200", "3.1 ms a call (num_iterations 1840)",
 // "own rule, max_iterations 5000"; empty: nobody knows.
 std::string DescribeEffort(const EstimatorSpec& spec);

@@ -11,6 +11,7 @@ namespace rcme {
 inline constexpr const char* kAuditFormat = "rcme audit 1";
 inline constexpr const char* kPartFormat = "rcme part 2";
 inline constexpr const char* kComparisonFormat = "rcme comparison 1";
+inline constexpr const char* kConformReportFormat = "rcme conform report 1";
 inline constexpr const char* kCrossingsFormat = "rcme crossings 1";
 inline constexpr const char* kEstimateFormat = "rcme estimate 2";
 inline constexpr const char* kGateFormat = "rcme gate 1";

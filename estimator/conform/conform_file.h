@@ -1,0 +1,29 @@
+// The file that `rcme conform` writes: a ConformRule as JSON, beside sentences for people.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimator/conform/conform_rule.h"
+
+namespace rcme {
+
+inline constexpr const char* kConformFormat = "rcme conform 1";
+inline constexpr size_t kMaxConformBytes = size_t{4} << 20;
+
+struct ConformFile {
+  ConformRule rule;
+  std::string digest;  // of the text: 16 hexadecimal digits
+};
+
+// Throws InputError that names the file and what is wrong: no file, too long, no JSON, another format, a key
+// that is missing or not allowed, numbers that are no rule.
+ConformFile ReadConformFile(const std::string& path);
+ConformFile ParseConformFile(std::string_view text, const std::string& path);
+
+// The text; ParseConformFile gives the same rule back to the last bit. `guarantees`: sentences that say what
+// is promised and what for.
+std::string ConformFileText(const ConformRule& rule, const std::vector<std::string>& guarantees);
+
+}  // namespace rcme

@@ -1,0 +1,221 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "estimator/conform/conform_estimator.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_source.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
+#include "experiments/commands/shard_options.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/conform/calibration_work.h"
+#include "experiments/conform/conform_output.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/study/command_permission.h"
+#include "experiments/study/study_plan.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kShiftIsNoticed = 1;  // exit code
+
+struct ConformArguments {
+  std::string study, estimator, out, check, format = "table";
+  std::string new_problem = "usual";
+  bool is_needs = false;
+  std::int64_t trials = -1;
+  ConformPromise promise;
+  int threads = 0;
+  StudyChanges changes;
+  ShardArguments shards;
+};
+
+EstimatorSpec ChooseEstimator(const ConformArguments& arguments, const Study& study) {
+  if (!arguments.check.empty()) {
+    if (!arguments.estimator.empty())
+      throw InputError(
+          "conform: --check names a file that says which estimator it is of; leave --estimator out");
+    EstimatorSpec spec = DefaultEstimator(kConformEstimator);
+    SetOwnOptions(&spec, {{"file", arguments.check}});
+    std::vector<EstimatorSpec> chosen = {std::move(spec)};
+    if (arguments.changes.allow_process) AllowAndSay(&chosen);
+    RequireAllowedCommands(chosen);
+    EstimatorSpec conformed = *FindConformed(chosen.front());
+    conformed.label = conformed.name;
+    return conformed;
+  }
+  if (arguments.estimator.empty() && study.estimators.size() != 1)
+    throw InputError("conform: the study has several estimators; choose one with --estimator");
+  return arguments.estimator.empty()
+             ? study.estimators.front()
+             : FindStudyEstimator(study, arguments.estimator, arguments.changes.allow_process);
+}
+
+StudyPlan MakeCalibrationPlan(const ConformArguments& arguments) {
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
+  RequireFixedOptions(study, "a calibration");
+  study.estimators = {ChooseEstimator(arguments, study)};
+  if (study.estimators.front().name == kConformEstimator)
+    throw InputError("conform: the estimator is conformed already; to test its file give --check FILE");
+  if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
+  StudyPlan plan = MakePlan(study, arguments.study);
+  for (const Condition& condition : plan.conditions) {
+    if (condition.source->ChosenParts().empty()) continue;
+    for (const auto& [key, value] : SettingsOf(study, condition.levels))
+      if (key == "tilted_to" && value != "none")
+        throw InputError("conform: the trials of this study are weighted (tilted_to); leave that out");
+  }
+  return plan;
+}
+
+NewProblem ChosenNewProblem(const ConformArguments& arguments, const StudyPlan& plan) {
+  if (arguments.new_problem == "trial") return NewProblem::kTrial;
+  if (arguments.new_problem == "condition") return NewProblem::kCondition;
+  return UsualNewProblem(plan);
+}
+
+ConformReport Calibrate(const ConformArguments& arguments, const StudyPlan& plan, NewProblem new_problem,
+                        const AnswerRows& answers) {
+  const EstimatorSpec& spec = plan.study.estimators.front();
+  ConformReport report;
+  report.label = spec.label;
+  report.rule = FitConformRule(answers.rows, arguments.promise);
+  report.rule.estimator = spec.name;
+  report.rule.options = spec.options;
+  report.rule.max_rotation_error_deg = plan.study.failure.max_rotation_error_deg;
+  report.rule.max_direction_error_deg = plan.study.failure.max_direction_error_deg;
+  report.rule.origin = {plan.study.name, std::ssize(answers.rows), answers.num_refusals,
+                        CountGroups(answers.rows), new_problem == NewProblem::kCondition};
+  report.judged = CrossValidate(answers.rows, arguments.promise);
+  WriteFileWhole(arguments.out, ConformFileText(report.rule, DescribePromises(report.rule)));
+  return report;
+}
+
+ConformReport Check(const ConformArguments& arguments, const StudyPlan& plan, const AnswerRows& answers) {
+  ConformReport report;
+  report.is_check = true;
+  report.label = plan.study.estimators.front().label;
+  report.rule = ReadConformFile(arguments.check).rule;
+  report.judged = JudgeAnswers(report.rule, answers.rows);
+  report.shift = LookForShift(report.rule, answers.rows);
+  return report;
+}
+
+void Conform(const ConformArguments& arguments) {
+  if (arguments.is_needs) {
+    fmt::print("{}", DescribeNeeds(arguments.promise));
+    return;
+  }
+  if (arguments.study.empty()) throw InputError("conform: a study is missing, or --needs");
+  const bool is_check = !arguments.check.empty();
+  if (!is_check && arguments.out.empty())
+    throw InputError("conform: --out is missing; give the file to be written");
+  const StopOnSignals stop;
+  StartTimeLimit(arguments.shards.max_time);
+  const StudyPlan plan = MakeCalibrationPlan(arguments);
+  const NewProblem new_problem = is_check && ReadConformFile(arguments.check).rule.origin.new_groups
+                                     ? NewProblem::kCondition
+                                     : ChosenNewProblem(arguments, plan);
+  if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
+  const std::string checkpoint = arguments.out.empty() ? "" : FindCheckpointBeside(arguments.out);
+  Runner runner =
+      MakeRunner(PlanCalibration(plan), arguments.shards, arguments.out, checkpoint, arguments.threads);
+  if (!runner.ReadsParts()) GetCalibration(plan, &runner);
+  if (!arguments.shards.shard.empty()) return PrintPartIsDone(runner.shard(), arguments.out);
+  if (runner.ReadsParts()) {
+    RequireNoneMissing(runner.plan(),
+                       FindMissingIn(runner.plan(), runner.results(), 0, runner.plan().groups.size()),
+                       runner.results().num_shards);
+    PrintCosts(runner);
+  }
+  const AnswerRows answers = ReadCalibration(plan, new_problem, runner);
+  ConformReport report =
+      is_check ? Check(arguments, plan, answers) : Calibrate(arguments, plan, new_problem, answers);
+  report.num_refusals = answers.num_refusals;
+  report.num_unscored = answers.num_unscored;
+  const std::string text = arguments.format == "json" ? ConformAsJson(report) : ConformAsText(report);
+  PrintOrWrite(is_check ? arguments.out : "", text);
+  runner.RemoveCheckpoint();
+  if (report.shift && report.shift->noticed_after) throw EndWith{kShiftIsNoticed};
+}
+
+}  // namespace
+
+void AddConformCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("conform", "Make an estimator keep its word, by problems whose truth is known");
+  command->footer(R"(Runs one estimator on the problems of a study (simulated ones, your own pairs with their
+truth, or a twin of your pairs) and writes a file with what they teach:
+
+  region       factors that make its covariance hold the truth as often as promised, also
+               among the answers that look hardest (split conformal prediction)
+  probability  that an answer is wrong, from what can be seen of it
+  accept rule  which answers to refuse so that few are wrong and accepted (learn then test)
+  familiarity  whether a new problem is like those of the calibration
+
+A study, `rcme estimate`, Python and the robot's header take the file as an estimator:
+{conform: FILE} in a study, --conform FILE for `rcme estimate`.
+
+Prints what such rules do for answers that they have not seen (cross-validation), beside the
+stated covariance and plain conformal regions. The promises hold for problems exchangeable
+with those of the study. Of a population of conditions, and of several real scenes, a new
+problem is of a new condition or scene, and these are what is counted; --new trial promises
+for the same conditions and scenes alone.
+
+With --check FILE the study has new problems: how the file does on them, and whether they are
+like those of its calibration. The test is valid at every look. Exit code: 1 if a shift is
+noticed (at level 5 %), else 0; 2: wrong input.
+
+Examples:
+  rcme conform --needs --wrong-and-accepted 0.01
+  rcme conform own_camera --estimator rcme_calibrated --out mine.conform.json
+  rcme conform pairs.yaml --estimator opencv_magsac --level 0.9 --out mine.conform.json
+  rcme conform new_pairs.yaml --check mine.conform.json
+  rcme estimate matches.csv --conform mine.conform.json)");
+  auto arguments = std::make_shared<ConformArguments>();
+  command->add_option("study", arguments->study, "study file (YAML) or its name");
+  command->add_option("--estimator", arguments->estimator,
+                      "label of the study, estimator or estimator file; default: the study's only one");
+  command->add_option("-o,--out", arguments->out,
+                      "the file to be written; with --check the report, instead of standard output");
+  command->add_option("--check", arguments->check, "a file of before, to be tested on the study's problems");
+  command->add_option("--level", arguments->promise.level, "probability that a region holds the truth")
+      ->transform(NumberIn({0.51, 0.999}))
+      ->capture_default_str();
+  command
+      ->add_option("--wrong-and-accepted", arguments->promise.wrong_and_accepted,
+                   "greatest probability that an answer is wrong and accepted")
+      ->transform(NumberIn({1e-4, 0.5}))
+      ->capture_default_str();
+  command
+      ->add_option("--risk", arguments->promise.risk,
+                   "probability that the accept rule does not keep its promise")
+      ->transform(NumberIn({1e-4, 0.5}))
+      ->capture_default_str();
+  command
+      ->add_option("--new", arguments->new_problem,
+                   "what a new problem is: another trial of these conditions, one of another condition (or "
+                   "scene), or the usual of these for the study")
+      ->check(IsOneOf({"usual", "trial", "condition"}))
+      ->capture_default_str();
+  command->add_flag("--needs", arguments->is_needs, "print how many answers the promises need, and end");
+  command->add_option("--trials", arguments->trials, "trials per condition, instead of the study's number")
+      ->transform(WholeNumberIn(1, 100'000'000));
+  command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
+      ->check(IsOneOf({"table", "json"}))
+      ->capture_default_str();
+  AddStudyOptions(command, &arguments->changes);
+  AddShardOptions(command, "trials", &arguments->shards);
+  AddProcessOption(command, &arguments->changes.allow_process);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The result does not depend on it")
+      ->transform(WholeNumberIn(0, 1024));
+  command->callback([arguments] { Conform(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,331 @@
+#include "experiments/conform/fit_rule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "parameters/input_error.h"
+#include "stats/conformal.h"
+#include "stats/constants.h"
+#include "stats/distributions.h"
+#include "stats/logistic_regression.h"
+#include "stats/risk_control.h"
+#include "stats/score_mean.h"
+
+namespace rcme {
+namespace {
+
+using Rows = std::vector<AnswerRow>;
+
+constexpr double kHardShare = 0.2;
+constexpr double kPenalty = 2.0;       // of weights of standardised features
+constexpr double kSlopePenalty = 5.0;  // of the slope of the log odds, from 1
+constexpr size_t kMostStrata = 10, kMostFamiliar = 500;
+constexpr size_t kStatedOdds = static_cast<size_t>(VisibleFeature::kStatedOdds),
+                 kAgreeing = static_cast<size_t>(VisibleFeature::kAgreeing);
+constexpr double kEverything = 1e9;  // log odds that every answer keeps
+
+// A number for each group, in an order that says nothing of them: the same for the same groups.
+std::map<std::int64_t, size_t> ShuffleGroups(const Rows& rows) {
+  std::set<std::int64_t> names;
+  for (const AnswerRow& row : rows) names.insert(row.group);
+  std::vector<std::int64_t> order(names.begin(), names.end());
+  RandomStream rng({.seed = 1, .condition = 0, .trial = 0, .purpose = 1});
+  rng.Shuffle(std::span(order));
+  std::map<std::int64_t, size_t> places;
+  for (size_t i = 0; i < order.size(); ++i) places[order[i]] = i;
+  return places;
+}
+
+bool HasFeature(const Rows& rows, size_t feature) {
+  constexpr double kMostMissing = 0.05;
+  const auto missing =
+      std::ranges::count_if(rows, [&](const AnswerRow& row) { return std::isnan(row.features[feature]); });
+  return static_cast<double>(missing) <= kMostMissing * static_cast<double>(rows.size());
+}
+
+// Centre and scale: mean and standard deviation of what is there; no term for a feature that is always the
+// same.
+std::vector<FeatureModel::Term> StandardTerms(const Rows& rows) {
+  std::vector<FeatureModel::Term> terms;
+  for (size_t feature = 0; feature < kNumVisibleFeatures; ++feature) {
+    if (!HasFeature(rows, feature)) continue;
+    Moments moments;
+    for (const AnswerRow& row : rows)
+      if (!std::isnan(row.features[feature])) moments.Add(row.features[feature]);
+    const double scale = std::sqrt(moments.variance());
+    constexpr double kLeastScale = 1e-6;
+    if (!(scale > kLeastScale)) continue;
+    terms.push_back({feature, moments.mean(), scale, 0.0, 0.0});
+  }
+  return terms;
+}
+
+// Log odds of an event by all features; `has_prior`: the stated odds are right unless the answers say
+// otherwise.
+FeatureModel FitModel(const Rows& rows, const std::vector<bool>& happened, bool has_prior) {
+  FeatureModel model{0.0, StandardTerms(rows)};
+  std::vector<double> prior;
+  for (const FeatureModel::Term& term : model.terms) {
+    prior.push_back(has_prior && term.feature == kStatedOdds ? term.scale : 0.0);
+    prior.push_back(0.0);
+  }
+  std::vector<double> features;
+  for (const AnswerRow& row : rows) {
+    for (const FeatureModel::Term& term : model.terms) {
+      const double z = ScoreOfFeature(term, row.features[term.feature]);
+      features.push_back(z);
+      features.push_back(std::isnan(row.features[term.feature]) ? 0.0 : z * z - 1.0);
+    }
+  }
+  const LogisticFit fit = FitLogistic(features, happened, prior, kPenalty);
+  model.intercept = fit.intercept;
+  for (size_t i = 0; i < model.terms.size(); ++i) {
+    model.terms[i].linear = fit.weights[2 * i];
+    model.terms[i].square = fit.weights[2 * i + 1];
+  }
+  return model;
+}
+
+// Of log odds x themselves, over the whole range that a probability has.
+FeatureModel OneFeature(size_t feature, double sign) {
+  constexpr double kScale = 4.0;
+  return {0.0, {{feature, 0.0, kScale, sign * kScale, 0.0}}};
+}
+
+std::vector<double> Difficulties(const FeatureModel& model, const Rows& rows) {
+  std::vector<double> difficulties;
+  for (const AnswerRow& row : rows) difficulties.push_back(model.At(row.features));
+  return difficulties;
+}
+
+// What may be chosen freely, by answers that set no promise.
+void TrainModels(const Rows& rows, ConformRule* rule) {
+  std::vector<double> nees;
+  for (const AnswerRow& row : rows) nees.push_back(row.nees);
+  const auto hard =
+      nees.begin() + static_cast<std::ptrdiff_t>((1.0 - kHardShare) * static_cast<double>(nees.size()));
+  std::ranges::nth_element(nees, hard);
+  std::vector<bool> is_hard, is_wrong;
+  for (const AnswerRow& row : rows) {
+    is_hard.push_back(row.nees >= *hard);
+    is_wrong.push_back(row.is_wrong);
+  }
+  rule->difficulty = FitModel(rows, is_hard, /*has_prior=*/false);
+  rule->failure = FitModel(rows, is_wrong, /*has_prior=*/true);
+}
+
+void UseNoModel(const Rows& rows, ConformRule* rule) {
+  rule->difficulty = {};
+  rule->failure = HasFeature(rows, kStatedOdds) ? OneFeature(kStatedOdds, 1.0) : OneFeature(kAgreeing, -1.0);
+}
+
+// Equally many of the training answers between two edges.
+std::vector<double> Edges(std::vector<double> difficulties, size_t num_strata) {
+  std::ranges::sort(difficulties);
+  std::vector<double> edges;
+  for (size_t k = 1; k < num_strata; ++k) edges.push_back(difficulties[k * difficulties.size() / num_strata]);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+// What makes the ellipsoid of the covariance at this level hold scores up to `bound`.
+double FactorFor(double bound, double level) { return bound / ChiSquareQuantile(5, level); }
+
+double BoundOf(const Rows& rows, double level, double AnswerRow::*score) {
+  std::vector<double> scores;
+  std::vector<std::int64_t> groups;
+  for (const AnswerRow& row : rows) {
+    scores.push_back(row.*score);
+    groups.push_back(row.group);
+  }
+  return ConformalBound(scores, groups, level);
+}
+
+void SetFactors(const Rows& rows, ConformRule* rule) {
+  std::vector<Rows> strata(rule->edges.size() + 1);
+  for (const AnswerRow& row : rows) {
+    const double difficulty = rule->difficulty.At(row.features);
+    const auto k = std::ranges::upper_bound(rule->edges, difficulty) - rule->edges.begin();
+    strata[static_cast<size_t>(k)].push_back(row);
+  }
+  for (const Rows& stratum : strata)
+    rule->factors.push_back(FactorFor(BoundOf(stratum, rule->level, &AnswerRow::nees), rule->level));
+}
+
+void CorrectLogOdds(const Rows& rows, ConformRule* rule) {
+  std::vector<double> log_odds;
+  std::vector<bool> is_wrong;
+  for (const AnswerRow& row : rows) {
+    log_odds.push_back(rule->failure.At(row.features));
+    is_wrong.push_back(row.is_wrong);
+  }
+  const double one = 1.0;
+  const LogisticFit fit = FitLogistic(log_odds, is_wrong, {&one, 1}, kSlopePenalty);
+  rule->log_odds_intercept = fit.intercept;
+  rule->log_odds_slope = std::max(fit.weights.front(), 0.0);
+}
+
+// p-value of "P(wrong and at most `threshold`) exceeds `at_most`".
+double AcceptPValue(const Rows& rows, const std::vector<double>& scores, double threshold, double at_most,
+                    bool shares_groups) {
+  if (!shares_groups) {
+    ErrorCount count{0, std::ssize(rows)};
+    for (size_t i = 0; i < rows.size(); ++i) count.errors += rows[i].is_wrong && scores[i] <= threshold;
+    return ExcessPValue(count, at_most);
+  }
+  std::map<std::int64_t, std::pair<double, double>> groups;  // losses, answers
+  for (size_t i = 0; i < rows.size(); ++i) {
+    auto& [losses, answers] = groups[rows[i].group];
+    losses += rows[i].is_wrong && scores[i] <= threshold;
+    answers += 1.0;
+  }
+  ScoreMean mean;
+  for (const auto& [group, sums] : groups) mean.Add(sums.first / sums.second);
+  return mean.PValueOfAtLeast(at_most);
+}
+
+// From strict to lax, fixed beforehand, whatever the answers are.
+std::vector<double> Thresholds() {
+  std::vector<double> thresholds;
+  for (int k = -120; k <= 120; ++k) thresholds.push_back(0.1 * k);
+  thresholds.push_back(kEverything);
+  return thresholds;
+}
+
+// The laxest certified threshold of `scores`, the greater the worse; nothing: none is.
+std::optional<double> CertifyThreshold(const Rows& rows, const std::vector<double>& scores,
+                                       const ConformPromise& promise) {
+  const bool shares_groups = CountGroups(rows) < std::ssize(rows);
+  const std::vector<double> thresholds = Thresholds();
+  std::vector<double> p_values;
+  for (const double threshold : thresholds) {
+    p_values.push_back(AcceptPValue(rows, scores, threshold, promise.wrong_and_accepted, shares_groups));
+    if (p_values.back() > promise.risk) break;
+  }
+  const size_t num_certified = CountCertified(p_values, promise.risk);
+  if (num_certified == 0) return std::nullopt;
+  return thresholds[num_certified - 1];
+}
+
+std::vector<double> FewAgreeing(const Rows& rows) {
+  std::vector<double> scores;
+  for (const AnswerRow& row : rows) {
+    const double agreeing = row.features[kAgreeing];
+    scores.push_back(std::isnan(agreeing) ? kEverything : -agreeing);
+  }
+  return scores;
+}
+
+// One answer of each group where groups are what is new, spread evenly over all.
+void SetFamiliar(const Rows& rows, ConformRule* rule) {
+  for (size_t feature = 0; feature < kNumVisibleFeatures; ++feature)
+    if (HasFeature(rows, feature)) rule->familiar_features.push_back(feature);
+  Rows whole;
+  std::set<std::int64_t> groups;
+  for (const AnswerRow& row : rows) {
+    const bool is_whole = std::ranges::none_of(
+        rule->familiar_features, [&](size_t feature) { return std::isnan(row.features[feature]); });
+    if (is_whole && groups.insert(row.group).second) whole.push_back(row);
+  }
+  const size_t step = std::max<size_t>(1, (whole.size() + kMostFamiliar - 1) / kMostFamiliar);
+  for (size_t i = 0; i < whole.size(); i += step)
+    for (const size_t feature : rule->familiar_features) rule->familiar.push_back(whole[i].features[feature]);
+  if (rule->familiar.empty()) rule->familiar_features.clear();
+}
+
+struct Split {
+  Rows trained, calibrated;
+};
+Split SplitRows(const Rows& rows) {
+  const std::map<std::int64_t, size_t> places = ShuffleGroups(rows);
+  const auto num_groups = static_cast<double>(places.size());
+  const bool trains = rows.size() >= kLeastAnswers && std::ssize(places) >= kLeastGroups;
+  Split split;
+  for (const AnswerRow& row : rows) {
+    const bool is_trained = trains && static_cast<double>(places.at(row.group)) < kTrainedShare * num_groups;
+    (is_trained ? split.trained : split.calibrated).push_back(row);
+  }
+  return split;
+}
+
+}  // namespace
+
+std::int64_t FewestGroupsToCertify(const ConformPromise& promise) {
+  for (std::int64_t n = FewestCertifyingTrials(promise.wrong_and_accepted, promise.risk);; n += 1 + n / 100) {
+    ScoreMean mean;
+    mean.Add(0.0, n);
+    if (mean.PValueOfAtLeast(promise.wrong_and_accepted) <= promise.risk) return n;
+  }
+}
+
+std::int64_t CountGroups(const Rows& rows) {
+  std::set<std::int64_t> groups;
+  for (const AnswerRow& row : rows) groups.insert(row.group);
+  return std::ssize(groups);
+}
+
+ConformRule FitConformRule(const Rows& rows, const ConformPromise& promise) {
+  if (rows.empty()) throw InputError("conform: no answer has a truth to compare with");
+  const Split split = SplitRows(rows);
+  ConformRule rule;
+  rule.level = promise.level;
+  rule.wrong_and_accepted = promise.wrong_and_accepted;
+  rule.risk = promise.risk;
+  if (split.trained.empty()) {
+    UseNoModel(rows, &rule);
+  } else {
+    TrainModels(split.trained, &rule);
+    const std::int64_t per_stratum = 3 * FewestGroupsForBound(promise.level);
+    const auto most = static_cast<size_t>(CountGroups(split.calibrated) / per_stratum);
+    rule.edges =
+        Edges(Difficulties(rule.difficulty, split.trained), std::clamp<size_t>(most, 1, kMostStrata));
+  }
+  SetFactors(split.calibrated, &rule);
+  CorrectLogOdds(split.calibrated, &rule);
+  rule.greatest_log_odds =
+      CertifyThreshold(split.calibrated, Difficulties(rule.failure, split.calibrated), promise);
+  SetFamiliar(rows, &rule);
+  return rule;
+}
+
+std::vector<JudgedAnswer> JudgeAnswers(const ConformRule& rule, const Rows& rows) {
+  const ConformJudge judge(rule);
+  std::vector<JudgedAnswer> judged;
+  for (const AnswerRow& row : rows) {
+    JudgedAnswer& answer = judged.emplace_back();
+    answer.row = row;
+    answer.verdict = judge.Judge(row.features);
+    answer.difficulty = rule.difficulty.At(row.features);
+    answer.level = rule.level;
+  }
+  return judged;
+}
+
+std::vector<JudgedAnswer> CrossValidate(const Rows& rows, const ConformPromise& promise) {
+  const std::map<std::int64_t, size_t> places = ShuffleGroups(rows);
+  const size_t num_folds = std::min<size_t>(kMostFolds, places.size());
+  std::vector<JudgedAnswer> judged;
+  for (size_t fold = 0; num_folds > 1 && fold < num_folds; ++fold) {
+    Rows others, held_out;
+    for (const AnswerRow& row : rows)
+      (places.at(row.group) % num_folds == fold ? held_out : others).push_back(row);
+    const ConformRule rule = FitConformRule(others, promise);
+    const double one_factor = FactorFor(BoundOf(others, promise.level, &AnswerRow::nees), promise.level);
+    const double ball_deg = BoundOf(others, promise.level, &AnswerRow::max_error_deg);
+    const std::optional<double> by_count = CertifyThreshold(others, FewAgreeing(others), promise);
+    for (JudgedAnswer& answer : JudgeAnswers(rule, held_out)) {
+      answer.one_factor = one_factor;
+      answer.ball_deg = ball_deg;
+      answer.is_accepted_by_count = by_count && FewAgreeing({answer.row}).front() <= *by_count;
+      judged.push_back(std::move(answer));
+    }
+  }
+  return judged;
+}
+
+}  // namespace rcme

@@ -1,0 +1,134 @@
+// rcme conform: the file it writes, what takes it, the same bytes for threads and shards, and its exit codes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/end_to_end/bad_input.h"
+#include "tests/test_support/match_text.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class Conform : public BadInput {
+ protected:
+  ProgramResult RunConform(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"conform", study_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunRcme(arguments);
+  }
+  // Of 200 answers of `standard`.
+  std::string Make() {
+    const ProgramResult made = RunConform({"--estimator", "standard", "--trials", "100", "--out", file_});
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    return made.out;
+  }
+
+  std::string file_ = folder_.Path("mine.conform.json");
+};
+
+TEST_F(Conform, WritesAFileAndSaysWhatItPromises) {
+  const std::string text = Make();
+  EXPECT_THAT(text, HasSubstr("conformed"));
+  EXPECT_THAT(text, HasSubstr("holds the truth with probability at least 95 %"));
+  EXPECT_THAT(ReadBytes(file_), HasSubstr("\"format\": \"rcme conform 1\""));
+  EXPECT_EQ(folder_.NumEntries(), 2);  // the study and the file: no checkpoint is left
+}
+
+TEST_F(Conform, GivesTheSameBytesForThreadsAndShards) {
+  Make();
+  const std::string bytes = ReadBytes(file_), other = folder_.Path("other.json");
+  const std::vector<std::string> same = {"--estimator", "standard", "--trials", "100"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), same.begin(), same.end());
+    return RunConform(more);
+  };
+  EXPECT_EQ(with({"--threads", "1", "--out", other}).exit_code, 0);
+  EXPECT_EQ(ReadBytes(other), bytes);
+  const std::string first = folder_.Path("1.part"), second = folder_.Path("2.part");
+  EXPECT_EQ(with({"--shard", "1/2", "--out", first}).exit_code, 0);
+  EXPECT_EQ(with({"--merge", first, "--out", other}).exit_code, 75);
+  EXPECT_EQ(with({"--shard", "2/2", "--out", second}).exit_code, 0);
+  const ProgramResult merged = with({"--out", other, "--merge", first, second});
+  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_EQ(ReadBytes(other), bytes);
+}
+
+TEST_F(Conform, NoticesAShiftAndNothingElse) {
+  Make();
+  const ProgramResult same = RunConform({"--check", file_, "--trials", "50", "--seed", "77"});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+  EXPECT_THAT(same.out, HasSubstr("No shift is seen"));
+  const ProgramResult noisy = RunConform(
+      {"--check", file_, "--trials", "50", "--seed", "77", "--set", "sigma_px=1.5", "--format", "json"});
+  EXPECT_EQ(noisy.exit_code, 1) << noisy.out << noisy.err;
+  EXPECT_THAT(noisy.out, HasSubstr("\"format\": \"rcme conform report 1\""));
+  EXPECT_THAT(noisy.out, Not(HasSubstr("\"noticed_after\": null")));
+}
+
+// A study, rcme estimate and an estimator file take it.
+TEST_F(Conform, TheFileIsAnEstimator) {
+  Make();
+  const std::string study =
+      folder_.Write("with.yaml",
+                    "name: with\nseed: 9\ntrials: 20\ndata: {scene: uniform_volume, num_matches: 60}\n"
+                    "estimators:\n  - {conform: mine.conform.json, label: kept}\n  - {name: standard}\n");
+  const std::string run = folder_.Path("with.sqlite");
+  const ProgramResult ran = RunRcme({"run", study, "--out", run});
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  const ProgramResult reliability = RunRcme({"reliability", run});
+  EXPECT_THAT(reliability.out, HasSubstr("kept"));
+  const std::string matches = folder_.Write("m.csv", MatchHeader() + MatchRows(60));
+  const ProgramResult estimate = RunRcme({"estimate", matches, "--conform", file_, "--json"});
+  EXPECT_THAT(estimate.out, HasSubstr("\"format\": \"rcme estimate 2\"")) << estimate.err;
+  folder_.Write("mine.conform.json", ReadBytes(file_) + " ");
+  EXPECT_TRUE(IsRefused(RunRcme({"replay", run, "--condition", "0", "--trial", "0"}), {"has changed since"}));
+}
+
+TEST_F(Conform, RefusesWhatMakesNoSense) {
+  Make();
+  EXPECT_TRUE(IsRefused(RunRcme({"conform"}), {"a study is missing"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--estimator", "standard"}), {"--out is missing"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--out", file_}), {"choose one with --estimator"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--estimator", "nobody", "--out", file_}), {"nobody"}));
+  EXPECT_TRUE(
+      IsRefused(RunConform({"--check", file_, "--estimator", "standard"}), {"leave --estimator out"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--check", study_}), {"is no JSON"}));
+  EXPECT_TRUE(
+      IsRefused(RunConform({"--level", "1", "--estimator", "standard", "--out", file_}), {"--level"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", folder_.Write("m.csv", MatchHeader() + MatchRows(60)), "--conform", study_}),
+                        {"is no JSON"}));
+}
+
+// A file of somebody else may name a command.
+TEST_F(Conform, RunsNoCommandThatNobodyAllowed) {
+  Make();
+  std::string bytes = ReadBytes(file_);
+  const size_t name = bytes.find("\"name\": \"standard\""), end = bytes.find("},\n \"calibration\"");
+  ASSERT_NE(end, std::string::npos);
+  const std::string marker = folder_.Path("it_ran");
+  bytes.replace(name, bytes.rfind('}', end - 1) - name,
+                "\"name\": \"process\", \"options\": {\"command\": \"touch " + marker + "\"");
+  const std::string theirs = folder_.Write("theirs.json", bytes);
+  const std::string matches = folder_.Write("m.csv", MatchHeader() + MatchRows(60));
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"estimate", matches, "--conform", theirs},
+        std::vector<std::string>{"estimate", matches, "--estimator", "conform", "--set", "file=" + theirs},
+        std::vector<std::string>{"conform", study_, "--check", theirs},
+        std::vector<std::string>{"run",
+                                 folder_.Write("s.yaml",
+                                               "name: s\ntrials: 2\ndata: {scene: uniform_volume}\n"
+                                               "estimators:\n  - {conform: theirs.json}\n"),
+                                 "--out", out_}}) {
+    EXPECT_TRUE(IsRefused(RunRcme(arguments), {"touch", "--allow-process"})) << arguments[0];
+    EXPECT_FALSE(std::filesystem::exists(marker)) << arguments[0];
+  }
+}
+
+}  // namespace
+}  // namespace rcme

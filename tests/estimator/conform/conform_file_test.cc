@@ -1,0 +1,142 @@
+#include "estimator/conform/conform_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "estimator/conform/conform_estimator.h"
+#include "estimator/estimator_registry.h"
+#include "parameters/input_error.h"
+#include "tests/estimator/conform/conform_examples.h"
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/family_problem.h"
+#include "tests/test_support/mutated.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+std::string ExampleText() { return ConformFileText(ExampleRule(), {"a promise"}); }
+
+TEST(ConformFile, GivesTheRuleBack) {
+  const ConformFile file = ParseConformFile(ExampleText(), "x.json");
+  EXPECT_EQ(ConformFileText(file.rule, {"a promise"}), ExampleText());
+  EXPECT_EQ(file.rule.factors[2], kInfinity);
+  EXPECT_EQ(file.rule.options.front().second, "50");
+  EXPECT_EQ(file.digest.size(), 16U);
+  ConformRule without = ExampleRule();
+  without.greatest_log_odds.reset();
+  without.familiar.clear();
+  without.familiar_features.clear();
+  const std::string text = ConformFileText(without, {});
+  EXPECT_EQ(ConformFileText(ParseConformFile(text, "x.json").rule, {}), text);
+  EXPECT_NE(ParseConformFile(text, "x.json").digest, file.digest);
+}
+
+std::string Replaced(const std::string& was, const std::string& now) {
+  std::string text = ExampleText();
+  const size_t at = text.find(was);
+  EXPECT_NE(at, std::string::npos) << was;
+  return text.replace(at, was.size(), now);
+}
+
+TEST(ConformFile, SaysWhatIsWrong) {
+  const auto expect = [](const std::string& text, const std::string& words) {
+    EXPECT_TRUE(ThrowsInputError([&] { ParseConformFile(text, "x.json"); }, {"x.json", words}));
+  };
+  expect("", "is no JSON");
+  expect("[1]", "the file is no object");
+  expect(std::string(kMaxConformBytes + 1, ' '), "is longer than");
+  expect(Replaced("rcme conform 1", "rcme conform 9"), "is of format 'rcme conform 9'");
+  expect(Replaced("\"level\"", "\"levels\""), "has no key 'level'");
+  expect(Replaced("\"level\": 0.95", "\"level\": \"a\""), "'level' is no number");
+  expect(Replaced("\"level\": 0.95", "\"level\": 7"), "level is not between");
+  expect(Replaced("\"all motions\"", "\"none\""), "factors holds something");
+  expect(Replaced("\"edges\": [", "\"edges\": [1e9,"), "edges");
+  expect(Replaced("\"feature\": \"direction_sd\"", "\"feature\": \"colour\""), "unknown feature");
+  expect(Replaced("\"groups\": 21", "\"groups\": -1"), "'groups' is no count");
+  expect(Replaced("\"new_groups\": false", "\"new_groups\": 0"), "'new_groups' is neither");
+  expect(Replaced("\"name\": \"standard\"", "\"name\": \"standard\", \"extra\": 1"), "unknown key 'extra'");
+  expect(Replaced("\"num_iterations\": \"50\"", "\"num_iterations\": 50"), "no text");
+}
+
+// Whatever becomes of a file's bytes: a rule or an error that names the file.
+TEST(ConformFile, SurvivesDamage) {
+  RandomStream rng({.seed = 1, .purpose = 99});
+  const std::string text = ExampleText();
+  int num_read = 0;
+  for (int i = 0; i < 2000; ++i) {
+    try {
+      ParseConformFile(Mutated(text, {"null", "1e999", "[]", "\"all motions\"", "-"}, rng), "x.json");
+      ++num_read;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("x.json"));
+    }
+  }
+  EXPECT_LT(num_read, 2000);
+}
+
+TEST(ConformFile, IsReadFromARegularFileAlone) {
+  const TempFolder folder;
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ReadConformFile(folder.Path("none.json")); }, {"none.json", "cannot be read"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ReadConformFile(folder.Path(".")); }, {"is not a file"}));
+  const std::string path = folder.Write("x.json", ExampleText());
+  EXPECT_EQ(ReadConformFile(path).digest, ParseConformFile(ExampleText(), "").digest);
+}
+
+class ConformEstimator : public testing::Test {
+ protected:
+  std::unique_ptr<MotionEstimator> Make(const Settings& options) {
+    const std::unique_ptr<EstimatorModel> model = ConformModel();
+    const std::vector<Parameter> parameters = model->Parameters();
+    for (const auto& [option, value] : options) FindParameter(parameters, option).SetFromText(value);
+    return model->Make();
+  }
+  TempFolder folder_;
+};
+
+TEST_F(ConformEstimator, IsTheOtherWithItsRule) {
+  const std::string path = folder_.Write("x.json", ExampleText());
+  const std::unique_ptr<MotionEstimator> conformed = Make({{"file", path}, {"accept_rule", "ignore"}});
+  const std::unique_ptr<MotionEstimator> own = MakeEstimator("standard", {{"num_iterations", "50"}});
+  const ConformJudge judge(ExampleRule());
+  const ProblemFamily family("uniform_volume", "sideways", 100, 0.2);
+  for (std::uint32_t trial = 0; trial < 5; ++trial) {
+    const MotionProblem problem = family.Make(trial);
+    RandomStream rng1({.seed = 1}), rng2({.seed = 1});
+    const MotionEstimate expected = judge.Apply(problem, own->Estimate(problem, rng1), false),
+                         found = conformed->Estimate(problem, rng2);
+    EXPECT_EQ(found.status, expected.status);
+    EXPECT_EQ(found.pose_cov, expected.pose_cov);
+    EXPECT_EQ(found.failure_probability, expected.failure_probability);
+  }
+}
+
+TEST_F(ConformEstimator, RefusesAFileThatHasChanged) {
+  const std::string path = folder_.Write("x.json", ExampleText());
+  Settings options = ConformOptions(path);
+  EXPECT_NO_THROW(Make(options));
+  folder_.Write("x.json", Replaced("\"level\": 0.95", "\"level\": 0.9"));
+  EXPECT_TRUE(ThrowsInputError([&] { Make(options); }, {"has changed since"}));
+}
+
+TEST_F(ConformEstimator, RefusesItsOwnKindAndUnknownOnes) {
+  const std::string of_itself = folder_.Write("a.json", Replaced("\"standard\"", "\"conform\"")),
+                    unknown = folder_.Write("b.json", Replaced("\"standard\"", "\"nobody\""));
+  EXPECT_TRUE(ThrowsInputError([&] { Make({{"file", of_itself}}); }, {"of `conform` itself"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Make({{"file", unknown}}); }, {"unknown estimator 'nobody'"}));
+}
+
+TEST_F(ConformEstimator, WithoutAFileAnswersNothing) {
+  RandomStream rng({.seed = 1});
+  const MotionEstimate none =
+      Make({})->Estimate(ProblemFamily("uniform_volume", "sideways", 50, 0.0).Make(0), rng);
+  EXPECT_EQ(none.status, MotionStatus::kNoAnswer);
+}
+
+}  // namespace
+}  // namespace rcme
