@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace rcme {
@@ -11,6 +12,16 @@ double ExcessPValue(const ErrorCount& count, double at_most) {
   if (count.n <= 0) return 1.0;
   const boost::math::binomial law(static_cast<double>(count.n), at_most);
   return cdf(law, static_cast<double>(count.errors));
+}
+
+double MeanLossPValue(double mean, std::int64_t n, double at_most) {
+  if (n == 0 || !(mean < at_most)) return 1.0;
+  const auto count = static_cast<double>(n);
+  const double divergence = (mean > 0.0 ? mean * std::log(mean / at_most) : 0.0) +
+                            (1.0 - mean) * std::log((1.0 - mean) / (1.0 - at_most));
+  const auto errors = static_cast<std::int64_t>(std::ceil(count * mean - 1e-9));
+  return std::min({1.0, std::exp(-count * divergence),
+                   std::numbers::e * ExcessPValue({std::max<std::int64_t>(errors, 0), n}, at_most)});
 }
 
 std::int64_t LargestCertifyingCount(std::int64_t n, double at_most, double delta) {

@@ -25,6 +25,12 @@ struct ErrorCount {
 // P(Binomial(n, at_most) <= errors): the p-value of "the rate is above at_most". 1 at n = 0.
 double ExcessPValue(const ErrorCount& count, double at_most);
 
+// The same of losses in [0, 1], independent and alike (the mean losses of groups), n of mean `mean`: the
+// lesser of two bounds, Hoeffding's (1963) exp(-n KL(min(mean, at_most) || at_most)) and Bentkus' (2004) e
+// P(Binomial(n, at_most) <= ceil(n mean)), as Bates et al. (2021) take them. Without a loss it is (1 -
+// at_most)^n. 1 at n = 0.
+double MeanLossPValue(double mean, std::int64_t n, double at_most);
+
 // The most errors of n trials that certify `at_most` at level delta; -1 if not even zero errors would.
 std::int64_t LargestCertifyingCount(std::int64_t n, double at_most, double delta);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "estimator/conform/conform_estimator.h"
 #include "experiments/commands/commands.h"
@@ -24,7 +25,7 @@ namespace {
 constexpr int kShiftIsNoticed = 1;  // exit code
 
 struct ConformArguments {
-  std::string study, estimator, out, check, format = "table";
+  std::string study, estimator, out, check, models, format = "table";
   std::string new_problem = "usual";
   bool is_needs = false;
   std::int64_t trials = -1;
@@ -83,14 +84,17 @@ ConformReport Calibrate(const ConformArguments& arguments, const StudyPlan& plan
   const EstimatorSpec& spec = plan.study.estimators.front();
   ConformReport report;
   report.label = spec.label;
-  report.rule = FitConformRule(answers.rows, arguments.promise);
+  std::optional<ConformRule> models;
+  if (!arguments.models.empty()) models = ReadConformFile(arguments.models).rule;
+  const ConformRule* trained = models ? &*models : nullptr;
+  report.rule = FitConformRule(answers.rows, arguments.promise, trained);
   report.rule.estimator = spec.name;
   report.rule.options = spec.options;
   report.rule.max_rotation_error_deg = plan.study.failure.max_rotation_error_deg;
   report.rule.max_direction_error_deg = plan.study.failure.max_direction_error_deg;
   report.rule.origin = {plan.study.name, std::ssize(answers.rows), answers.num_refusals,
                         CountGroups(answers.rows), new_problem == NewProblem::kCondition};
-  report.judged = CrossValidate(answers.rows, arguments.promise);
+  report.judged = CrossValidate(answers.rows, arguments.promise, trained);
   WriteFileWhole(arguments.out, ConformFileText(report.rule, DescribePromises(report.rule)));
   return report;
 }
@@ -174,6 +178,7 @@ Examples:
   rcme conform --needs --wrong-and-accepted 0.01
   rcme conform own_camera --estimator rcme_calibrated --out mine.conform.json
   rcme conform pairs.yaml --estimator opencv_magsac --level 0.9 --out mine.conform.json
+  rcme conform pairs.yaml --models simulated.conform.json --out mine.conform.json
   rcme conform new_pairs.yaml --check mine.conform.json
   rcme estimate matches.csv --conform mine.conform.json)");
   auto arguments = std::make_shared<ConformArguments>();
@@ -183,6 +188,12 @@ Examples:
   command->add_option("-o,--out", arguments->out,
                       "the file to be written; with --check the report, instead of standard output");
   command->add_option("--check", arguments->check, "a file of before, to be tested on the study's problems");
+  command
+      ->add_option(
+          "--models", arguments->models,
+          "a file of `rcme conform`, of simulated problems for example, whose models of difficulty and "
+          "failure are taken: then all answers set promises and none trains models")
+      ->excludes("--check");
   command->add_option("--level", arguments->promise.level, "probability that a region holds the truth")
       ->transform(NumberIn({0.51, 0.999}))
       ->capture_default_str();

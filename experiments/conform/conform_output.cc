@@ -263,7 +263,7 @@ std::vector<std::string> DescribePromises(const ConformRule& rule) {
                         rule.max_direction_error_deg, 100.0 * (1.0 - rule.risk))
           : fmt::format(
                 "Accept rule: none keeps wrong and accepted answers at {:.3g} % at confidence {:.3g} %; "
-                "nothing is accepted.",
+                "nothing is accepted. See rcme conform --needs.",
                 100.0 * rule.wrong_and_accepted, 100.0 * (1.0 - rule.risk)));
   promises.push_back(
       fmt::format("Both hold on average over calibrations such as this one ({}), and only for problems "
@@ -278,8 +278,7 @@ std::string DescribeNeeds(const ConformPromise& promise) {
     return static_cast<std::int64_t>(std::ceil(static_cast<double>(n) / (1.0 - kTrainedShare)));
   };
   const std::int64_t for_bound = FewestGroupsForBound(promise.level),
-                     for_rule = FewestCertifyingTrials(promise.wrong_and_accepted, promise.risk),
-                     groups_for_rule = FewestGroupsToCertify(promise);
+                     for_rule = FewestCertifyingTrials(promise.wrong_and_accepted, promise.risk);
   return FormatParagraph(
              fmt::format("Regions at {:.3g} %: {} answers, and {} for each stratum of difficulty.",
                          100.0 * promise.level, for_bound, with_training(3 * for_bound))) +
@@ -288,10 +287,10 @@ std::string DescribeNeeds(const ConformPromise& promise) {
                                      "models are trained (from {} answers on); more where some are.",
                                      100.0 * promise.wrong_and_accepted, 100.0 * promise.risk, for_rule,
                                      with_training(for_rule), kLeastAnswers)) +
-         FormatParagraph(fmt::format(
-             "Answers are counted where they are independent. For problems of new conditions or scenes these "
-             "are counted instead: {} and {} for the regions, {} and {} for the accept rule.",
-             for_bound, with_training(3 * for_bound), groups_for_rule, with_training(groups_for_rule)));
+         FormatParagraph(
+             "Counted are independent answers: trials, or, where the promise is for new conditions or "
+             "scenes, as "
+             "many of these.");
 }
 
 std::string ConformAsText(const ConformReport& report) {

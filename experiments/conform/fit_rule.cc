@@ -14,7 +14,6 @@
 #include "stats/distributions.h"
 #include "stats/logistic_regression.h"
 #include "stats/risk_control.h"
-#include "stats/score_mean.h"
 
 namespace rcme {
 namespace {
@@ -124,13 +123,29 @@ void UseNoModel(const Rows& rows, ConformRule* rule) {
   rule->failure = HasFeature(rows, kStatedOdds) ? OneFeature(kStatedOdds, 1.0) : OneFeature(kAgreeing, -1.0);
 }
 
-// Equally many of the training answers between two edges.
-std::vector<double> Edges(std::vector<double> difficulties, size_t num_strata) {
-  std::ranges::sort(difficulties);
-  std::vector<double> edges;
-  for (size_t k = 1; k < num_strata; ++k) edges.push_back(difficulties[k * difficulties.size() / num_strata]);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
+// Equally many of these answers between two edges; as many strata as leave each of them enough groups, of
+// which `share` will set its factor.
+std::vector<double> ChooseEdges(const FeatureModel& difficulty, const Rows& rows, double share,
+                                double level) {
+  const std::vector<double> difficulties = Difficulties(difficulty, rows);
+  std::vector<double> sorted = difficulties;
+  std::ranges::sort(sorted);
+  const std::int64_t fewest = FewestGroupsForBound(level);
+  const bool are_many = static_cast<double>(CountGroups(rows)) * share >= 3.0 * static_cast<double>(fewest);
+  const double needed = static_cast<double>(are_many ? 3 * fewest : fewest) / share;
+  for (size_t num_strata = kMostStrata; num_strata > 1; --num_strata) {
+    std::vector<double> edges;
+    for (size_t k = 1; k < num_strata; ++k) edges.push_back(sorted[k * sorted.size() / num_strata]);
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    std::vector<std::set<std::int64_t>> groups(edges.size() + 1);
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const auto k = std::ranges::upper_bound(edges, difficulties[i]) - edges.begin();
+      groups[static_cast<size_t>(k)].insert(rows[i].group);
+    }
+    if (std::ranges::all_of(groups, [&](const auto& g) { return static_cast<double>(g.size()) >= needed; }))
+      return edges;
+  }
+  return {};
 }
 
 // What makes the ellipsoid of the covariance at this level hold scores up to `bound`.
@@ -184,9 +199,9 @@ double AcceptPValue(const Rows& rows, const std::vector<double>& scores, double 
     losses += rows[i].is_wrong && scores[i] <= threshold;
     answers += 1.0;
   }
-  ScoreMean mean;
-  for (const auto& [group, sums] : groups) mean.Add(sums.first / sums.second);
-  return mean.PValueOfAtLeast(at_most);
+  double sum = 0.0;
+  for (const auto& [group, sums] : groups) sum += sums.first / sums.second;
+  return MeanLossPValue(sum / static_cast<double>(groups.size()), std::ssize(groups), at_most);
 }
 
 // From strict to lax, fixed beforehand, whatever the answers are.
@@ -255,35 +270,30 @@ Split SplitRows(const Rows& rows) {
 
 }  // namespace
 
-std::int64_t FewestGroupsToCertify(const ConformPromise& promise) {
-  for (std::int64_t n = FewestCertifyingTrials(promise.wrong_and_accepted, promise.risk);; n += 1 + n / 100) {
-    ScoreMean mean;
-    mean.Add(0.0, n);
-    if (mean.PValueOfAtLeast(promise.wrong_and_accepted) <= promise.risk) return n;
-  }
-}
-
 std::int64_t CountGroups(const Rows& rows) {
   std::set<std::int64_t> groups;
   for (const AnswerRow& row : rows) groups.insert(row.group);
   return std::ssize(groups);
 }
 
-ConformRule FitConformRule(const Rows& rows, const ConformPromise& promise) {
+ConformRule FitConformRule(const Rows& rows, const ConformPromise& promise, const ConformRule* models) {
   if (rows.empty()) throw InputError("conform: no answer has a truth to compare with");
-  const Split split = SplitRows(rows);
+  const Split split = models != nullptr ? Split{{}, rows} : SplitRows(rows);
   ConformRule rule;
   rule.level = promise.level;
   rule.wrong_and_accepted = promise.wrong_and_accepted;
   rule.risk = promise.risk;
-  if (split.trained.empty()) {
+  if (models != nullptr) {
+    rule.difficulty = models->difficulty;
+    rule.failure = models->failure;
+    rule.edges = ChooseEdges(rule.difficulty, rows, 1.0, rule.level);
+  } else if (split.trained.empty()) {
     UseNoModel(rows, &rule);
   } else {
     TrainModels(split.trained, &rule);
-    const std::int64_t per_stratum = 3 * FewestGroupsForBound(promise.level);
-    const auto most = static_cast<size_t>(CountGroups(split.calibrated) / per_stratum);
-    rule.edges =
-        Edges(Difficulties(rule.difficulty, split.trained), std::clamp<size_t>(most, 1, kMostStrata));
+    const auto num_trained = static_cast<double>(CountGroups(split.trained)),
+               num_calibrated = static_cast<double>(CountGroups(split.calibrated));
+    rule.edges = ChooseEdges(rule.difficulty, split.trained, num_calibrated / num_trained, rule.level);
   }
   SetFactors(split.calibrated, &rule);
   CorrectLogOdds(split.calibrated, &rule);
@@ -306,15 +316,16 @@ std::vector<JudgedAnswer> JudgeAnswers(const ConformRule& rule, const Rows& rows
   return judged;
 }
 
-std::vector<JudgedAnswer> CrossValidate(const Rows& rows, const ConformPromise& promise) {
+std::vector<JudgedAnswer> CrossValidate(const Rows& rows, const ConformPromise& promise,
+                                        const ConformRule* models) {
   const std::map<std::int64_t, size_t> places = ShuffleGroups(rows);
-  const size_t num_folds = std::min<size_t>(kMostFolds, places.size());
+  const size_t num_folds = places.size() <= kMostGroupsOneByOne ? places.size() : kNumFolds;
   std::vector<JudgedAnswer> judged;
   for (size_t fold = 0; num_folds > 1 && fold < num_folds; ++fold) {
     Rows others, held_out;
     for (const AnswerRow& row : rows)
       (places.at(row.group) % num_folds == fold ? held_out : others).push_back(row);
-    const ConformRule rule = FitConformRule(others, promise);
+    const ConformRule rule = FitConformRule(others, promise, models);
     const double one_factor = FactorFor(BoundOf(others, promise.level, &AnswerRow::nees), promise.level);
     const double ball_deg = BoundOf(others, promise.level, &AnswerRow::max_error_deg);
     const std::optional<double> by_count = CertifyThreshold(others, FewAgreeing(others), promise);

@@ -12,7 +12,7 @@
 //   log odds     their correction a + b x, by logistic regression with a prior at (0, 1)
 //   accept rule  thresholds of the odds, from strict to lax, certified one after the other until one is not
 //                (stats/risk_control.h): of P(wrong and accepted), the exact binomial test, or, where answers
-//                share groups, the betting test of the groups' mean losses (stats/score_mean.h)
+//                share groups, the bound for the groups' mean losses
 //
 // With fewer than 150 answers or 40 groups nothing is trained: one stratum, the stated odds or, where the
 // estimator states none, the fewer agreeing matches the worse.
@@ -34,9 +34,11 @@ struct ConformPromise {
   double risk = 0.05;                // probability that the accept rule breaks its promise
 };
 
-// Everything but what it was made for (estimator, options, origin, bounds). Throws InputError without
-// answers.
-ConformRule FitConformRule(const std::vector<AnswerRow>& rows, const ConformPromise& promise);
+// Everything but what it was made for (estimator, options, origin, bounds). With `models` nothing is trained:
+// difficulty and odds are those of that rule, of other answers, and all of these set promises. Throws
+// InputError without answers.
+ConformRule FitConformRule(const std::vector<AnswerRow>& rows, const ConformPromise& promise,
+                           const ConformRule* models = nullptr);
 
 // One answer, judged by a rule that has not seen it or any of its group.
 struct JudgedAnswer {
@@ -49,20 +51,18 @@ struct JudgedAnswer {
   bool is_accepted_by_count = false;  // by the accept rule on the number of agreeing matches alone
 };
 
-inline constexpr int kMostFolds = 10;
+inline constexpr size_t kNumFolds = 10, kMostGroupsOneByOne = 20;
 inline constexpr double kTrainedShare = 0.3;
 inline constexpr size_t kLeastAnswers = 150;  // to train a model
 inline constexpr std::int64_t kLeastGroups = 40;
 
-// Ten folds of whole groups, or as many as there are groups: each is judged by the rule of the others.
-std::vector<JudgedAnswer> CrossValidate(const std::vector<AnswerRow>& rows, const ConformPromise& promise);
+// Ten folds of whole groups; with at most twenty groups each is a fold. Each is judged by the rule of the
+// others.
+std::vector<JudgedAnswer> CrossValidate(const std::vector<AnswerRow>& rows, const ConformPromise& promise,
+                                        const ConformRule* models = nullptr);
 
 // New answers, judged by a rule that is there.
 std::vector<JudgedAnswer> JudgeAnswers(const ConformRule& rule, const std::vector<AnswerRow>& rows);
-
-// The fewest groups (conditions, scenes), to one per cent, whose answers can certify the accept rule: none of
-// them wrong and accepted. Where each answer is a group of its own FewestCertifyingTrials are enough.
-std::int64_t FewestGroupsToCertify(const ConformPromise& promise);
 
 std::int64_t CountGroups(const std::vector<AnswerRow>& rows);
 

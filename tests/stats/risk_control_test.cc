@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 
 #include "stats/intervals.h"
 #include "stats/random.h"
@@ -96,6 +97,37 @@ TEST(RiskControl, ATunedThresholdViolatesNoMoreOftenThanDelta) {
     const Interval rate = ExactBinomialInterval(num_violations, kRepetitions, 1.0 - 1e-5);
     EXPECT_LT(rate.lower, kDelta) << shift;
     EXPECT_GT(rate.upper, 0.6 * kDelta) << shift;
+  }
+}
+
+// KL(.01 || .05) = .01 log(.2) + .99 log(.99 / .95) = .024736; Bentkus' bound is e P(Binomial(100, .05) <=
+// 1).
+TEST(MeanLossPValue, KnownAnswers) {
+  EXPECT_EQ(MeanLossPValue(0.0, 0, 0.05), 1.0);
+  EXPECT_EQ(MeanLossPValue(0.06, 100, 0.05), 1.0);
+  EXPECT_NEAR(MeanLossPValue(0.0, 149, 0.02), std::pow(0.98, 149), 1e-12);
+  const double divergence = 0.01 * std::log(0.2) + 0.99 * std::log(0.99 / 0.95);
+  const double bentkus = std::exp(1.0) * (std::pow(0.95, 100) + 100 * 0.05 * std::pow(0.95, 99));
+  EXPECT_NEAR(MeanLossPValue(0.01, 100, 0.05), std::min(std::exp(-100 * divergence), bentkus), 1e-9);
+}
+
+// Losses of mean .05 that are far from binomial: rejected at level .05 in at most 5 % of 4,000 samples, and
+// losses of mean .02 nearly always.
+TEST(MeanLossPValue, KeepsItsLevel) {
+  RandomStream rng({.seed = 1, .purpose = 415});
+  for (const auto& [share, loss, is_at_most] :
+       {std::tuple{0.1, 0.5, true}, {0.05, 1.0, true}, {0.04, 0.5, false}}) {
+    int rejected = 0;
+    for (int repetition = 0; repetition < 4000; ++repetition) {
+      double sum = 0.0;
+      for (int i = 0; i < 400; ++i) sum += rng.Uniform() < share ? loss : 0.0;
+      rejected += MeanLossPValue(sum / 400, 400, 0.05) <= 0.05;
+    }
+    if (is_at_most) {
+      EXPECT_LE(ExactBinomialInterval(rejected, 4000, 0.999).lower, 0.05) << share;
+    } else {
+      EXPECT_GE(rejected, 3000) << share;
+    }
   }
 }
 
