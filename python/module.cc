@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "estimator/conform/conform_file.h"
 #include "estimator/estimator_registry.h"
 #include "experiments/audit/claims/audit_output.h"
 #include "experiments/audit/claims/audit_work.h"
@@ -28,7 +29,10 @@
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/study/command_permission.h"
+#include "experiments/conform/conform_output.h"
+#include "experiments/conform/conform_report.h"
 #include "experiments/study/estimator_file.h"
+#include "experiments/study/find_estimator.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/severity_columns.h"
@@ -309,6 +313,37 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   return Stoppable([&] { return AuditAsJson(AuditInMemory(StudyClaims(plan), options)); });
 }
 
+// The report of a calibration as JSON, and the file: empty for a check of the file `check`.
+py::dict Conform(const StudySource& source, const Functions& functions, const std::string& label,
+                 const ConformPromise& promise, const std::string& new_problem, const std::string& models,
+                 const std::string& check, int threads) {
+  const FunctionsOfRun of_run(FunctionsIn(functions));
+  Study study = StudyFrom(WithFunctions(source, functions));
+  RequireFixedOptions(study, "a calibration");
+  std::vector<EstimatorSpec> asked = {
+      check.empty() ? study.estimators.at(FindEstimator(study.estimators, label, source.Name()))
+                    : LoadConformedEstimator(check)};
+  if (source.allow_process) AllowCommands(&asked);
+  study.estimators = asked;
+  const StudyPlan plan = MakePlan(study, source.Name());
+  const NewProblem chosen = new_problem == "trial"       ? NewProblem::kTrial
+                            : new_problem == "condition" ? NewProblem::kCondition
+                                                         : UsualNewProblem(plan);
+  Runner runner = Runner::InMemory(PlanCalibration(plan), threads);
+  std::string file;
+  const ConformReport report = Stoppable([&] {
+    GetCalibration(plan, &runner);
+    const AnswerRows answers = ReadCalibration(plan, chosen, runner);
+    if (!check.empty()) return CheckConform(plan, ReadConformFile(check).rule, answers);
+    std::optional<ConformRule> trained;
+    if (!models.empty()) trained = ReadConformFile(models).rule;
+    ConformReport made = CalibrateConform(plan, chosen, promise, trained ? &*trained : nullptr, answers);
+    file = ConformFileText(made.rule, DescribePromises(made.rule));
+    return made;
+  });
+  return py::dict("json"_a = ConformAsJson(report), "file"_a = file);
+}
+
 // The tuning as JSON, and the tuned estimator's file: empty where none is certified, with the reason why.
 py::dict TuneStudy(const StudySource& source, int threads) {
   const Study study = StudyFrom(source);
@@ -396,6 +431,13 @@ PYBIND11_MODULE(_rcme, module) {
   module.def("reliability_json", &ReliabilityJson);
   module.def("audit_json", &AuditJson);
   module.def("tune", &TuneStudy);
+  module.def("conform",
+             [](const StudySource& source, const Functions& functions, const std::string& label, double level,
+                double wrong_and_accepted, double risk, const std::string& new_problem,
+                const std::string& models, const std::string& check, int threads) {
+               return Conform(source, functions, label, {level, wrong_and_accepted, risk}, new_problem, models,
+                              check, threads);
+             });
   module.def("write_file", &WriteFileWhole);
   module.def("estimators", &Estimators);
 }

@@ -32,7 +32,7 @@ void ExchangeabilityTest::Add(std::span<const double> features) {
   for (size_t j = 0; j < seen_.size(); ++j) {
     std::vector<double>& seen = seen_[j];
     const double x = Ordered(features[j]);
-    const auto [first, last] = std::ranges::equal_range(seen, x);
+    const auto [first, last] = std::equal_range(seen.begin(), seen.end(), x);
     const auto num_less = static_cast<double>(first - seen.begin());
     const auto num_equal = static_cast<double>(last - first) + 1.0;  // itself among them
     const auto total = static_cast<double>(seen.size()) + 1.0;

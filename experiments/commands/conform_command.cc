@@ -15,7 +15,7 @@
 #include "experiments/conform/conform_output.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
-#include "experiments/study/command_permission.h"
+#include "experiments/study/estimator_file.h"
 #include "experiments/study/study_plan.h"
 #include "parameters/input_error.h"
 
@@ -40,14 +40,9 @@ EstimatorSpec ChooseEstimator(const ConformArguments& arguments, const Study& st
     if (!arguments.estimator.empty())
       throw InputError(
           "conform: --check names a file that says which estimator it is of; leave --estimator out");
-    EstimatorSpec spec = DefaultEstimator(kConformEstimator);
-    SetOwnOptions(&spec, {{"file", arguments.check}});
-    std::vector<EstimatorSpec> chosen = {std::move(spec)};
+    std::vector<EstimatorSpec> chosen = {LoadConformedEstimator(arguments.check)};
     if (arguments.changes.allow_process) AllowAndSay(&chosen);
-    RequireAllowedCommands(chosen);
-    EstimatorSpec conformed = *FindConformed(chosen.front());
-    conformed.label = conformed.name;
-    return conformed;
+    return chosen.front();
   }
   if (arguments.estimator.empty() && study.estimators.size() != 1)
     throw InputError("conform: the study has several estimators; choose one with --estimator");
@@ -81,31 +76,11 @@ NewProblem ChosenNewProblem(const ConformArguments& arguments, const StudyPlan& 
 
 ConformReport Calibrate(const ConformArguments& arguments, const StudyPlan& plan, NewProblem new_problem,
                         const AnswerRows& answers) {
-  const EstimatorSpec& spec = plan.study.estimators.front();
-  ConformReport report;
-  report.label = spec.label;
   std::optional<ConformRule> models;
   if (!arguments.models.empty()) models = ReadConformFile(arguments.models).rule;
-  const ConformRule* trained = models ? &*models : nullptr;
-  report.rule = FitConformRule(answers.rows, arguments.promise, trained);
-  report.rule.estimator = spec.name;
-  report.rule.options = spec.options;
-  report.rule.max_rotation_error_deg = plan.study.failure.max_rotation_error_deg;
-  report.rule.max_direction_error_deg = plan.study.failure.max_direction_error_deg;
-  report.rule.origin = {plan.study.name, std::ssize(answers.rows), answers.num_refusals,
-                        CountGroups(answers.rows), new_problem == NewProblem::kCondition};
-  report.judged = CrossValidate(answers.rows, arguments.promise, trained);
+  ConformReport report =
+      CalibrateConform(plan, new_problem, arguments.promise, models ? &*models : nullptr, answers);
   WriteFileWhole(arguments.out, ConformFileText(report.rule, DescribePromises(report.rule)));
-  return report;
-}
-
-ConformReport Check(const ConformArguments& arguments, const StudyPlan& plan, const AnswerRows& answers) {
-  ConformReport report;
-  report.is_check = true;
-  report.label = plan.study.estimators.front().label;
-  report.rule = ReadConformFile(arguments.check).rule;
-  report.judged = JudgeAnswers(report.rule, answers.rows);
-  report.shift = LookForShift(report.rule, answers.rows);
   return report;
 }
 
@@ -137,10 +112,8 @@ void Conform(const ConformArguments& arguments) {
     PrintCosts(runner);
   }
   const AnswerRows answers = ReadCalibration(plan, new_problem, runner);
-  ConformReport report =
-      is_check ? Check(arguments, plan, answers) : Calibrate(arguments, plan, new_problem, answers);
-  report.num_refusals = answers.num_refusals;
-  report.num_unscored = answers.num_unscored;
+  ConformReport report = is_check ? CheckConform(plan, ReadConformFile(arguments.check).rule, answers)
+                                  : Calibrate(arguments, plan, new_problem, answers);
   const std::string text = arguments.format == "json" ? ConformAsJson(report) : ConformAsText(report);
   PrintOrWrite(is_check ? arguments.out : "", text);
   runner.RemoveCheckpoint();
@@ -180,7 +153,7 @@ Examples:
   rcme conform pairs.yaml --estimator opencv_magsac --level 0.9 --out mine.conform.json
   rcme conform pairs.yaml --models simulated.conform.json --out mine.conform.json
   rcme conform new_pairs.yaml --check mine.conform.json
-  rcme estimate matches.csv --conform mine.conform.json)");
+  rcme estimate matches.csv.gz --conform mine.conform.json)");
   auto arguments = std::make_shared<ConformArguments>();
   command->add_option("study", arguments->study, "study file (YAML) or its name");
   command->add_option("--estimator", arguments->estimator,

@@ -16,7 +16,6 @@
 #include "stats/conformal.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
-#include "stats/exchangeability.h"
 #include "stats/forecast.h"
 #include "stats/intervals.h"
 #include "stats/median_ratio.h"
@@ -190,6 +189,24 @@ Table MakeProbabilityTable(const ConformReport& report) {
   return MakeTable(columns, kinds);
 }
 
+// For files: the interval of each estimate in a column of its own.
+Table WithIntervalColumns(const Table& table) {
+  Table wide;
+  wide.rows.resize(table.rows.size());
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    wide.columns.push_back(table.columns[c]);
+    for (size_t r = 0; r < table.rows.size(); ++r) wide.rows[r].push_back(table.rows[r][c]);
+    if (table.columns[c].type != ColumnType::kEstimate) continue;
+    const std::string& name = table.columns[c].name;
+    wide.columns.push_back({.name = fmt::format("{0}_lower,{0}_upper", name),
+                            .type = ColumnType::kInterval,
+                            .json_name = name + "_interval"});
+    for (size_t r = 0; r < table.rows.size(); ++r)
+      wide.rows[r].push_back(std::get<Estimate>(table.rows[r][c]).interval);
+  }
+  return wide;
+}
+
 std::string DescribeGroups(const ConformOrigin& origin) {
   return origin.new_groups
              ? fmt::format("{} answers in {} conditions or scenes", origin.num_answers, origin.num_groups)
@@ -212,33 +229,6 @@ std::string DescribeShift(const ShiftFinding& shift, const ConformRule& rule) {
 }
 
 }  // namespace
-
-ShiftFinding LookForShift(const ConformRule& rule, const std::vector<AnswerRow>& rows) {
-  ShiftFinding finding;
-  if (rule.familiar_features.empty()) return finding;
-  const RandomStream rng({.seed = 1, .condition = 0, .trial = 0, .purpose = 2});
-  ExchangeabilityTest test(rule.familiar, rule.familiar_features.size(), rng);
-  const ConformJudge judge(rule);
-  std::set<std::int64_t> groups;
-  std::int64_t num_strange = 0, num_whole = 0;
-  for (const AnswerRow& row : rows) {
-    std::vector<double> features;
-    for (const size_t feature : rule.familiar_features) features.push_back(row.features[feature]);
-    if (std::ranges::any_of(features, [](double x) { return std::isnan(x); })) continue;
-    ++num_whole;
-    num_strange += judge.Judge(row.features).familiarity <= kStrangeLevel;
-    if (rule.origin.new_groups && !groups.insert(row.group).second) continue;
-    test.Add(features);
-    if (!finding.noticed_after && test.PValue() <= kShiftLevel)
-      finding.noticed_after = static_cast<std::int64_t>(test.n());
-  }
-  finding.num_looked_at = static_cast<std::int64_t>(test.n());
-  finding.p_value = test.PValue();
-  finding.feature = VisibleFeatureNames()[rule.familiar_features[test.StrongestFeature()]];
-  if (num_whole > 0)
-    finding.strange_share = static_cast<double>(num_strange) / static_cast<double>(num_whole);
-  return finding;
-}
 
 std::vector<std::string> DescribePromises(const ConformRule& rule) {
   const ConformOrigin& origin = rule.origin;
@@ -315,17 +305,18 @@ std::string ConformAsText(const ConformReport& report) {
 }
 
 std::string ConformAsJson(const ConformReport& report) {
-  nlohmann::ordered_json json = {{"estimator", report.label},
-                                 {"is_check", report.is_check},
-                                 {"answers", report.judged.size()},
-                                 {"refusals", report.num_refusals},
-                                 {"without_truth", report.num_unscored},
-                                 {"level", report.rule.level},
-                                 {"strata", report.rule.factors.size()},
-                                 {"promises", DescribePromises(report.rule)},
-                                 {"regions", RenderJson(MakeRegionTable(report))},
-                                 {"accept", RenderJson(MakeAcceptTable(report))},
-                                 {"probabilities", RenderJson(MakeProbabilityTable(report))}};
+  nlohmann::ordered_json json = {
+      {"estimator", report.label},
+      {"is_check", report.is_check},
+      {"answers", report.judged.size()},
+      {"refusals", report.num_refusals},
+      {"without_truth", report.num_unscored},
+      {"level", report.rule.level},
+      {"strata", report.rule.factors.size()},
+      {"promises", DescribePromises(report.rule)},
+      {"regions", RenderJson(WithIntervalColumns(MakeRegionTable(report)))},
+      {"accept", RenderJson(WithIntervalColumns(MakeAcceptTable(report)))},
+      {"probabilities", RenderJson(WithIntervalColumns(MakeProbabilityTable(report)))}};
   if (report.shift) {
     const ShiftFinding& shift = *report.shift;
     json["shift"] = {{"answers", shift.num_looked_at},

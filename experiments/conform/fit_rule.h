@@ -1,18 +1,18 @@
 // From answers with truth to a rule (estimator/conform/conform_rule.h), and how well such rules do on answers
 // that they have not seen.
 //
-// Of n groups (answers that depend on each other are of one), three tenths train what may be chosen
-// freely: the difficulty, a logistic model of "the normalised error is among the greatest fifth", and the
-// odds of a wrong motion, a logistic model of "the motion is wrong"; both of what can be seen of an answer.
-// On the others, which the models have not seen, everything that is promised is set:
+// Of n groups (answers that depend on each other are of one), three tenths train what may be chosen freely:
+// the difficulty, a logistic model of "the normalised error is among the greatest fifth", and the odds of a
+// wrong motion, a logistic model of "the motion is wrong"; both of what can be seen of an answer. On the
+// others, which the models have not seen, everything that is promised is set:
 //
 //   factors      in each stratum of difficulty the conformal bound of the normalised errors
-//   (stats/conformal.h);
-//                as many strata as three times the groups that a bound needs allow
+//                (stats/conformal.h); as many strata, at most ten, as have three times the groups each that a
+//                bound needs
 //   log odds     their correction a + b x, by logistic regression with a prior at (0, 1)
-//   accept rule  thresholds of the odds, from strict to lax, certified one after the other until one is not
-//                (stats/risk_control.h): of P(wrong and accepted), the exact binomial test, or, where answers
-//                share groups, the bound for the groups' mean losses
+//   accept rule  thresholds of the odds, from strict to lax and fixed beforehand, certified one by one until
+//                one is not (stats/risk_control.h): of P(wrong and accepted), the exact binomial test, or,
+//                where answers share groups, the bound for the groups' mean losses
 //
 // With fewer than 150 answers or 40 groups nothing is trained: one stratum, the stated odds or, where the
 // estimator states none, the fewer agreeing matches the worse.

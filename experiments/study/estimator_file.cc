@@ -1,6 +1,8 @@
 #include "experiments/study/estimator_file.h"
 
+#include "estimator/conform/conform_file.h"
 #include "experiments/core/files/shared_files.h"
+#include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
 
 namespace rcme {
@@ -24,6 +26,13 @@ EstimatorSpec LoadEstimatorFile(const std::string& name) {
 
 EstimatorSpec ParseEstimatorFile(const std::string& yaml, const std::string& path) {
   return ReadEstimatorEntry(Place(path), ParseYaml(yaml, path, EstimatorFileKind()), "estimator");
+}
+
+EstimatorSpec LoadConformedEstimator(const std::string& path) {
+  const ConformRule rule = ReadConformFile(path).rule;
+  EstimatorSpec spec{rule.estimator, rule.estimator, rule.options, {}};
+  NoteCommandPlace(path, &spec);
+  return spec;
 }
 
 std::string EstimatorFileText(const EstimatorSpec& spec, const Provenance& provenance) {

@@ -24,6 +24,10 @@ EstimatorSpec LoadEstimatorFile(const std::string& name);
 // The same from text; `path` is what the messages call it.
 EstimatorSpec ParseEstimatorFile(const std::string& yaml, const std::string& path);
 
+// The estimator of a file of `rcme conform`, before it is conformed. Its command, if it has one, is the file's.
+// Throws InputError as ReadConformFile.
+EstimatorSpec LoadConformedEstimator(const std::string& path);
+
 // A file with every option written out, defaults included: ParseEstimatorFile gives the same estimator back.
 std::string EstimatorFileText(const EstimatorSpec& spec, const Provenance& provenance);
 

@@ -24,10 +24,10 @@ import pathlib
 from rcme import _rcme, plot
 from rcme._estimate import Pose, estimate_relative_pose, estimators
 from rcme._rcme import __version__
-from rcme._study import conditions, run, simulate, tune
+from rcme._study import conditions, conform, run, simulate, tune
 from rcme._tables import audit, compare, reliability, summarize
 
-__all__ = ["Pose", "audit", "compare", "conditions", "estimate_relative_pose", "estimators", "plot", "reliability", "run",
+__all__ = ["Pose", "audit", "compare", "conditions", "conform", "estimate_relative_pose", "estimators", "plot", "reliability", "run",
            "simulate", "summarize", "tune", "__version__"]
 
 # The studies and estimator files that come with the package, by name.

@@ -131,6 +131,39 @@ def tune(study: Study, *, out: Optional[str] = None, threads: int = 0, seed: Opt
     return {**json.loads(answer["json"]), "why": answer["why"] or None}
 
 
+def conform(study: Study, *, estimator: Optional[str] = None, out: Optional[str] = None, check: Optional[str] = None,
+            estimators: Optional[Mapping[str, Estimator]] = None, level: float = 0.95, wrong_and_accepted: float = 0.02,
+            risk: float = 0.05, new: str = "usual", models: Optional[str] = None, trials: Optional[int] = None, threads: int = 0,
+            seed: Optional[int] = None, overrides: Optional[Mapping[str, Any]] = None, allow_process: bool = False) -> dict[str, Any]:
+    """Makes an estimator keep its word by the problems of a study, as `rcme conform` does (docs/conform.md).
+
+    `estimator`: a label of the study or of `estimators`, which are those of `run`, functions too. `out`: the file to write; it is the
+    estimator `conform` with the option `file`, for `estimate_relative_pose` and `run`. `check`: a file of before, to be tested on the study's
+    problems instead. `level`, `wrong_and_accepted`, `risk`, `new` ("usual", "trial", "condition") and `models` as the command's options.
+    Returns its report as a dict: `regions`, `accept`, `probabilities`, `promises`, of a check `shift`. Other arguments and errors as
+    for `run`.
+    """
+    if (out is None) == (check is None):
+        raise ValueError("out, check: expected one of them, the file to write or the file to test")
+    if (estimator is None) == (check is None):
+        raise ValueError("estimator: expected with `out`, and not with `check`, whose file names it")
+    if new not in ("usual", "trial", "condition"):
+        raise ValueError(f"new: {_check.words(new)} is not allowed; expected 'usual', 'trial' or 'condition'")
+    source = source_of(study, overrides, seed=seed, trials=trials, allow_process=allow_process)
+    functions = add_estimators(source, estimators)
+    numbers = (_check.number("level", level, 0.51, 0.999), _check.number("wrong_and_accepted", wrong_and_accepted, 1e-4, 0.5),
+               _check.number("risk", risk, 1e-4, 0.5))
+    path = None if out is None else _check.path("out", out, "a file to write")
+    files = ["" if file is None else _check.existing(name, file, "a file of rcme.conform") for name, file in (("models", models), ("check", check))]
+    label = "" if estimator is None else _check.plain("estimator", estimator)
+    num_threads = _check.whole("threads", threads, 0, 1024)
+    with alone("conform"):
+        answer = _rcme.conform(source, functions, label, *numbers, new, *files, num_threads)
+    if path is not None:
+        _rcme.write_file(path, answer["file"])
+    return json.loads(answer["json"])
+
+
 def source_of(study: Optional[Study], overrides: Optional[Mapping[str, Any]] = None, *, seed: Optional[int] = None,
               trials: Optional[int] = None, allow_process: bool = False) -> _rcme.StudySource:
     """The study as the C++ half takes it; without a study, of `audit`, an empty one."""

@@ -83,6 +83,15 @@ WRONG = {
         ("trials", dict(study=STUDY, trials=0)), ("out", dict(study=STUDY, out=7)),
         ("/nowhere", dict(study=STUDY, out="/nowhere/run.sqlite"))],
     "tune": NO_STUDIES + NO_SEEDS + NO_THREADS + [("tune", dict(study=STUDY)), ("out", dict(study=STUDY, out=""))],
+    "conform": [(name, {"estimator": "standard", "out": "conform.json", **wrong}) for name, wrong in
+                NO_STUDIES + NO_SEEDS + NO_THREADS + NO_ESTIMATORS] + [
+        ("out", dict(study=STUDY)), ("estimator", dict(study=STUDY, out="x.json")),
+        ("estimator", dict(study=STUDY, check=__file__, estimator="standard")), ("check", dict(study=STUDY, check=3)),
+        ("wrong_inputs_test", dict(study=STUDY, check=__file__)), ("nobody", dict(study=STUDY, out="x.json", estimator="nobody")),
+        ("level", dict(study=STUDY, out="x.json", estimator="standard", level=1)),
+        ("risk", dict(study=STUDY, out="x.json", estimator="standard", risk="x")),
+        ("new", dict(study=STUDY, out="x.json", estimator="standard", new="car")),
+        ("models", dict(study=STUDY, out="x.json", estimator="standard", models="/nowhere.json"))],
     "audit": NO_STUDIES + NO_SEEDS + NO_THREADS + NO_ESTIMATORS + [
         ("study", dict(estimators={"a": max})), ("budget", dict(study=STUDY, budget="large")),
         ("only", dict(study=STUDY, only=3)), ("nothing", dict(study=STUDY, only="nothing"))],

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/conform/conform_output.h"
+#include "experiments/conform/conform_report.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
