@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "estimator/conform/conform_file.h"
+#include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
 #include "experiments/audit/claims/audit_output.h"
 #include "experiments/audit/claims/audit_work.h"
@@ -17,6 +17,8 @@
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/audit/claims/study_claims.h"
+#include "experiments/conform/conform_output.h"
+#include "experiments/conform/conform_report.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/shared_files.h"
 #include "experiments/core/text/program_name.h"
@@ -29,8 +31,6 @@
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/study/command_permission.h"
-#include "experiments/conform/conform_output.h"
-#include "experiments/conform/conform_report.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/find_estimator.h"
 #include "experiments/study/study_file.h"
@@ -389,9 +389,11 @@ void AddStudySource(py::module_& module) {
            [](StudySource& source, const std::string& label, const std::string& name,
               const Settings& options) {
              EstimatorSpec spec = DefaultEstimator(name);
-             SetOptions(&spec, options);
+             SetOwnOptions(&spec, options);
              if (!label.empty()) spec.label = label;
-             Make(spec);  // throws where two options contradict each other
+             // Throws where two options contradict each other. What one conforms may be a function, or a
+             // command that nobody has allowed yet: the plan makes it.
+             if (spec.name != kConformEstimator) Make(spec);
              source.added.push_back(spec);
            })
       .def("add_estimator_file", [](StudySource& source, const std::string& label, const std::string& path) {
@@ -435,8 +437,8 @@ PYBIND11_MODULE(_rcme, module) {
              [](const StudySource& source, const Functions& functions, const std::string& label, double level,
                 double wrong_and_accepted, double risk, const std::string& new_problem,
                 const std::string& models, const std::string& check, int threads) {
-               return Conform(source, functions, label, {level, wrong_and_accepted, risk}, new_problem, models,
-                              check, threads);
+               return Conform(source, functions, label, {level, wrong_and_accepted, risk}, new_problem,
+                              models, check, threads);
              });
   module.def("write_file", &WriteFileWhole);
   module.def("estimators", &Estimators);

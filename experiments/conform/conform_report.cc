@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "stats/exchangeability.h"
 
@@ -16,7 +17,10 @@ ShiftFinding LookForShift(const ConformRule& rule, const std::vector<AnswerRow>&
   const ConformJudge judge(rule);
   std::set<std::int64_t> groups;
   std::int64_t num_strange = 0, num_whole = 0;
-  for (const AnswerRow& row : rows) {
+  std::vector<AnswerRow> mixed = rows;  // conditions one after the other would be a shift of their own
+  RandomStream order({.seed = 1, .condition = 0, .trial = 0, .purpose = 3});
+  order.Shuffle(std::span(mixed));
+  for (const AnswerRow& row : mixed) {
     std::vector<double> features;
     for (const size_t feature : rule.familiar_features) features.push_back(row.features[feature]);
     if (std::ranges::any_of(features, [](double x) { return std::isnan(x); })) continue;

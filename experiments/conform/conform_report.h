@@ -12,8 +12,8 @@ namespace rcme {
 
 // What new answers say about whether their problems are like those of the calibration.
 struct ShiftFinding {
-  std::int64_t num_looked_at = 0;             // answers; one of each group where groups are what is new
-  double p_value = 1.0;                       // valid at every look
+  std::int64_t num_looked_at = 0;  // answers, in random order; one of each group where groups are new
+  double p_value = 1.0;            // valid at every look
   std::optional<std::int64_t> noticed_after;  // answers, at level kShiftLevel
   std::string feature;                        // that differs most
   double strange_share = 0.0;  // of all answers: those called strange, kStrangeLevel if none differ

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "experiments/conform/conform_output.h"
@@ -182,6 +183,20 @@ TEST(LookForShift, NoticesFewerMatchesAndSeldomAnythingElse) {
   }
   EXPECT_LE(ExactBinomialInterval(num_alarms, 100, 0.99).lower, 0.05) << num_alarms;
   EXPECT_GE(num_noticed, 95);
+}
+
+// Conditions come one after the other: hard ones first are no shift.
+TEST(LookForShift, DoesNotMindTheOrderOfConditions) {
+  int num_alarms = 0;
+  for (std::uint32_t repetition = 0; repetition < 100; ++repetition) {
+    RandomStream rng({.seed = 1, .trial = repetition, .purpose = 426});
+    const AnswerLaw law;
+    const ConformRule rule = FitConformRule(law.DrawGroups(300, 1, rng), {});
+    std::vector<AnswerRow> rows = law.DrawGroups(200, 1, rng);
+    std::ranges::sort(rows, {}, [](const AnswerRow& row) { return row.features[kAgreeing]; });
+    num_alarms += LookForShift(rule, rows).noticed_after.has_value();
+  }
+  EXPECT_LE(ExactBinomialInterval(num_alarms, 100, 0.99).lower, 0.05) << num_alarms;
 }
 
 TEST(DescribeNeeds, NamesTheNumbers) {
