@@ -325,18 +325,23 @@ py::dict Conform(const StudySource& source, const Functions& functions, const st
                     : LoadConformedEstimator(check)};
   if (source.allow_process) AllowCommands(&asked);
   study.estimators = asked;
+  bool has_new_groups = new_problem == "condition";
+  if (!check.empty()) {
+    const ConformRule rule = ReadConformFile(check).rule;
+    study.failure = {rule.max_rotation_error_deg, rule.max_direction_error_deg};
+    has_new_groups = has_new_groups || rule.origin.new_groups;
+  }
   const StudyPlan plan = MakePlan(study, source.Name());
-  const NewProblem chosen = new_problem == "trial"       ? NewProblem::kTrial
-                            : new_problem == "condition" ? NewProblem::kCondition
-                                                         : UsualNewProblem(plan);
+  const NewProblem chosen = has_new_groups           ? NewProblem::kCondition
+                            : new_problem == "trial" ? NewProblem::kTrial
+                                                     : UsualNewProblem(plan);
   Runner runner = Runner::InMemory(PlanCalibration(plan), threads);
   std::string file;
   const ConformReport report = Stoppable([&] {
     GetCalibration(plan, &runner);
     const AnswerRows answers = ReadCalibration(plan, chosen, runner);
-    if (!check.empty()) return CheckConform(plan, ReadConformFile(check).rule, answers);
-    std::optional<ConformRule> trained;
-    if (!models.empty()) trained = ReadConformFile(models).rule;
+    if (!check.empty()) return CheckConform(plan, LoadToCheck(plan, check), answers);
+    const std::optional<ConformRule> trained = LoadModels(plan, models);
     ConformReport made = CalibrateConform(plan, chosen, promise, trained ? &*trained : nullptr, answers);
     file = ConformFileText(made.rule, DescribePromises(made.rule));
     return made;

@@ -89,7 +89,7 @@ TwoViewMotion MotionFrom(const MotionProblem& problem, const MotionEstimate& est
   motion.verdict = TwoViewVerdict::kRefused;
   if (estimate.status != MotionStatus::kOk) return motion;
   const RelativePose& pose = estimate.cam2_from_cam1;
-  const bool is_promised = !is_conformed || estimate.probability_domain == ProbabilityDomain::kVerified;
+  const bool is_promised = !is_conformed || estimate.probability_domain != ProbabilityDomain::kExtrapolated;
   motion.verdict = is_promised && estimate.failure_probability <= greatest_probability
                        ? TwoViewVerdict::kGood
                        : TwoViewVerdict::kDoubtful;

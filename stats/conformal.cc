@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -11,24 +11,25 @@
 
 namespace rcme {
 
-double ConformalBound(std::span<const double> scores, std::span<const std::int64_t> groups, double level) {
-  if (scores.size() != groups.size() || !(level > 0.0 && level < 1.0))
-    throw std::invalid_argument("a conformal bound needs a group for each score and a level in (0, 1)");
-  std::map<std::int64_t, std::int64_t> sizes;
-  for (const std::int64_t group : groups) ++sizes[group];
-  std::vector<std::pair<double, double>> weighted;  // score, weight in groups
-  for (size_t i = 0; i < scores.size(); ++i)
-    weighted.emplace_back(scores[i], 1.0 / static_cast<double>(sizes[groups[i]]));
-  std::ranges::sort(weighted);
-  const double wanted = level * static_cast<double>(sizes.size() + 1);
-  // Sums of weights that are whole groups must not be missed by rounding.
-  constexpr double kRounding = 1e-9;
-  double sum = 0.0;
-  for (const auto& [score, weight] : weighted) {
-    sum += weight;
-    if (sum >= wanted - kRounding) return score;
+double ConformalBound(std::span<const double> scores, std::span<const double> shares, double level) {
+  if (scores.size() != shares.size() || !(level > 0.0 && level < 1.0) ||
+      !std::ranges::all_of(shares, [](double share) { return share > 0.0 && share <= 1.0; }))
+    throw std::invalid_argument("a conformal bound needs a share for each score and a level in (0, 1)");
+  std::vector<std::pair<double, double>> falling;  // score, share
+  double total = 0.0;
+  for (size_t i = 0; i < scores.size(); ++i) {
+    falling.emplace_back(scores[i], shares[i]);
+    total += shares[i];
   }
-  return kInfinity;
+  std::ranges::sort(falling, std::greater<>());
+  // Sums that are whole numbers must not be missed by rounding.
+  constexpr double kRounding = 1e-9;
+  const double may_exceed = (1.0 - level) * total - level + kRounding;
+  if (may_exceed < 0.0) return kInfinity;
+  double beyond = 0.0;  // shares of the scores that a lower bound would leave out; never all of them
+  size_t i = 0;
+  while (beyond + falling[i].second <= may_exceed) beyond += falling[i++].second;
+  return falling[i].first;
 }
 
 std::int64_t FewestGroupsForBound(double level) {

@@ -129,8 +129,9 @@ void ReadEstimator(const Json& json, ConformRule* rule) {
 
 ConformOrigin OriginFrom(const Json& json) {
   ObjectReader reader(json, "calibration");
-  ConformOrigin origin{reader.Text("study"), reader.Count("answers"), reader.Count("refusals"),
-                       reader.Count("groups"), reader.Flag("new_groups")};
+  ConformOrigin origin{reader.Text("study"),     reader.Text("identity"), reader.Count("answers"),
+                       reader.Count("refusals"), reader.Count("groups"),  reader.Count("refused_groups"),
+                       reader.Flag("new_groups")};
   reader.RequireNoOther();
   return origin;
 }
@@ -169,7 +170,8 @@ void ReadFamiliar(const Json& json, ConformRule* rule) {
   for (const Json& answer : reader.List("answers")) {
     if (!answer.is_array() || answer.size() != rule->familiar_features.size())
       reader.Fail("holds an answer that has not a number for each feature");
-    for (const Json& number : answer) rule->familiar.push_back(NumberIn(number, "familiar"));
+    for (const Json& number : answer)
+      rule->familiar.push_back(number.is_null() ? kNaN : NumberIn(number, "familiar"));
   }
   reader.RequireNoOther();
 }
@@ -196,8 +198,12 @@ Json FamiliarAsJson(const ConformRule& rule) {
   Json names = Json::array(), answers = Json::array();
   for (const size_t feature : rule.familiar_features) names.push_back(VisibleFeatureNames()[feature]);
   for (size_t i = 0; width > 0 && i < rule.familiar.size(); i += width) {
-    const auto first = rule.familiar.begin() + static_cast<std::ptrdiff_t>(i);
-    answers.push_back(std::vector<double>(first, first + static_cast<std::ptrdiff_t>(width)));
+    Json answer = Json::array();
+    for (size_t j = 0; j < width; ++j) {
+      const double x = rule.familiar[i + j];
+      answer.push_back(std::isnan(x) ? Json() : Json(x));
+    }
+    answers.push_back(std::move(answer));
   }
   return {{"features", std::move(names)}, {"answers", std::move(answers)}};
 }
@@ -246,9 +252,11 @@ std::string ConformFileText(const ConformRule& rule, const std::vector<std::stri
       {"estimator", {{"name", rule.estimator}, {"options", std::move(options)}}},
       {"calibration",
        {{"study", origin.study},
+        {"identity", origin.identity},
         {"answers", origin.num_answers},
         {"refusals", origin.num_refusals},
         {"groups", origin.num_groups},
+        {"refused_groups", origin.num_refused_groups},
         {"new_groups", origin.new_groups}}},
       {"region",
        {{"level", rule.level},

@@ -43,7 +43,7 @@ void RequireRule(const ConformRule& rule) {
           "an unknown feature");
   Require(width == 0 ? rule.familiar.empty() : rule.familiar.size() % width == 0 && !rule.familiar.empty(),
           "familiar answers are not whole");
-  Require(std::ranges::all_of(rule.familiar, [](double x) { return std::isfinite(x); }),
+  Require(std::ranges::all_of(rule.familiar, [](double x) { return !std::isinf(x); }),
           "a familiar feature is not finite");
 }
 
@@ -71,11 +71,14 @@ ConformJudge::ConformJudge(ConformRule rule) : rule_(std::move(rule)) {
   const size_t n = rule_.familiar.size() / width;
   for (size_t j = 0; j < width; ++j) {
     std::vector<double> values, distances;
-    for (size_t i = 0; i < n; ++i) values.push_back(rule_.familiar[i * width + j]);
-    const double median = MedianOf(values);
+    for (size_t i = 0; i < n; ++i) {
+      const double x = rule_.familiar[i * width + j];
+      if (!std::isnan(x)) values.push_back(x);
+    }
+    const double median = values.empty() ? 0.0 : MedianOf(values);
     for (const double x : values) distances.push_back(std::abs(x - median));
     constexpr double kLeastScale = 1e-6;  // all alike
-    usual_.push_back({median, std::max(MedianOf(std::move(distances)), kLeastScale)});
+    usual_.push_back({median, std::fmax(MedianOf(std::move(distances)), kLeastScale)});
   }
   for (size_t i = 0; i < n; ++i) {
     VisibleFeatures features;
@@ -125,30 +128,36 @@ Matrix5d CovarianceOfAllMotions() {
 MotionEstimate ConformJudge::Apply(const MotionProblem& problem, MotionEstimate estimate,
                                    bool refuses) const {
   if (estimate.status != MotionStatus::kOk) return estimate;
-  const ConformVerdict verdict = Judge(MeasureVisibleFeatures(problem, estimate));
-  if (refuses && !verdict.is_accepted) {
+  const VisibleFeatures features = MeasureVisibleFeatures(problem, estimate);
+  const ConformVerdict verdict = Judge(features);
+  const bool is_strange = verdict.familiarity <= kStrangeLevel;
+  const bool is_valid = !std::isnan(features[static_cast<size_t>(VisibleFeature::kAgreeing)]);
+  if (refuses && (!verdict.is_accepted || is_strange || !is_valid)) {
     MotionEstimate refusal;
     refusal.status = MotionStatus::kTooUncertain;
-    refusal.message = fmt::format(
-        "the accept rule refuses it: wrong with a probability of {:.2g}, and of more than {} wrong answers "
-        "in "
-        "100 could be among those accepted",
-        verdict.failure_probability, 100.0 * rule_.wrong_and_accepted);
+    refusal.message =
+        is_strange ? fmt::format("unlike the problems of the calibration ({}), so that nothing is promised",
+                                 VisibleFeatureNames()[verdict.strangest_feature])
+                   : fmt::format(
+                         "the accept rule refuses it (wrong with a probability of {:.2g}), so that at "
+                         "most {:.3g} % of all problems are answered wrongly",
+                         verdict.failure_probability, 100.0 * rule_.wrong_and_accepted);
     refusal.counts = estimate.counts;
     refusal.seconds_elsewhere = estimate.seconds_elsewhere;
     return refusal;
   }
-  if (std::isfinite(verdict.factor)) {
-    estimate.pose_cov *= verdict.factor;
-  } else {
-    estimate.pose_cov = CovarianceOfAllMotions();
-  }
+  const bool has_region = std::isfinite(verdict.factor);
+  estimate.pose_cov = has_region ? verdict.factor * estimate.pose_cov : CovarianceOfAllMotions();
+  for (MotionMode& mode : estimate.other_modes)
+    mode.pose_cov = has_region ? verdict.factor * mode.pose_cov : CovarianceOfAllMotions();
   estimate.failure_probability = verdict.failure_probability;
-  const bool is_strange = verdict.familiarity <= kStrangeLevel;
-  estimate.probability_domain = is_strange ? ProbabilityDomain::kExtrapolated : ProbabilityDomain::kVerified;
+  estimate.probability_domain = is_strange       ? ProbabilityDomain::kExtrapolated
+                                : KnowsStrange() ? ProbabilityDomain::kVerified
+                                                 : ProbabilityDomain::kNotStated;
   if (!estimate.message.empty()) estimate.message += "; ";
   estimate.message += fmt::format(
-      "conformed: covariance times {:.3g}, wrong with a probability of {:.2g}{}", verdict.factor,
+      "conformed: {}, wrong with a probability of {:.2g}{}",
+      has_region ? fmt::format("covariance times {:.3g}", verdict.factor) : "no region keeps the promise",
       verdict.failure_probability,
       is_strange ? fmt::format("; unlike the problems of the calibration ({}), so that neither is promised",
                                VisibleFeatureNames()[verdict.strangest_feature])

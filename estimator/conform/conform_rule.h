@@ -4,7 +4,8 @@
 //                 the truth with probability at least `level` (stats/conformal.h), in each stratum. Where no
 //                 factor can promise that the region is all motions.
 //   probability   that the motion is wrong, from what can be seen of the answer
-//   accept rule   answers of a greater probability are refused: P(wrong and accepted) <= `wrong_and_accepted`
+//   accept rule   answers of a greater probability are refused: P(a problem is answered wrongly, and
+//                 accepted) <= `wrong_and_accepted`
 //   familiarity   whether the problem is like those
 //
 // All of it holds for problems exchangeable with those of the calibration: of the same conditions, camera and
@@ -39,7 +40,9 @@ double ScoreOfFeature(const FeatureModel::Term& term, double feature);  // z; 0 
 // How a calibration was taken; the guarantees are for such problems.
 struct ConformOrigin {
   std::string study;
+  std::string identity;  // equal for the same problems
   std::int64_t num_answers = 0, num_refusals = 0, num_groups = 0;
+  std::int64_t num_refused_groups = 0;  // groups whose first problem was refused
   bool new_groups = false;  // for problems of a new condition or scene; otherwise for others of the same
 };
 
@@ -61,7 +64,7 @@ struct ConformRule {
   std::optional<double> greatest_log_odds;
   double wrong_and_accepted = 0.02, risk = 0.05;  // the promise, and the probability that it does not hold
 
-  // Features of some answers of the calibration, those of which none is NaN: one after the other.
+  // Features of some answers of the calibration, one after the other; NaN: an answer does not have it.
   std::vector<size_t> familiar_features;
   std::vector<double> familiar;
 };
@@ -86,9 +89,12 @@ class ConformJudge {
   const ConformRule& rule() const { return rule_; }
 
   ConformVerdict Judge(const VisibleFeatures& features) const;
+  // Whether there are answers enough to call one strange.
+  bool KnowsStrange() const { return static_cast<double>(strangeness_.size() + 1) * kStrangeLevel >= 1.0; }
 
-  // The answer as the rule has it: covariance, probability, domain and message; refused (too_uncertain) where
-  // the rule does not accept it and `refuses`. What is no motion stays as it is.
+  // The answer as the rule has it: covariance (of other modes too), probability, domain and message; refused
+  // (too_uncertain) where `refuses` and the rule does not accept it, or it is strange. Its domain is not
+  // stated where the calibration is too small to call anything strange. What is no motion stays as it is.
   MotionEstimate Apply(const MotionProblem& problem, MotionEstimate estimate, bool refuses) const;
 
  private:

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -58,6 +59,10 @@ StudyPlan MakeCalibrationPlan(const ConformArguments& arguments) {
   if (study.estimators.front().name == kConformEstimator)
     throw InputError("conform: the estimator is conformed already; to test its file give --check FILE");
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
+  if (!arguments.check.empty()) {  // wrong is what the file calls wrong
+    const ConformRule rule = ReadConformFile(arguments.check).rule;
+    study.failure = {rule.max_rotation_error_deg, rule.max_direction_error_deg};
+  }
   StudyPlan plan = MakePlan(study, arguments.study);
   for (const Condition& condition : plan.conditions) {
     if (condition.source->ChosenParts().empty()) continue;
@@ -76,12 +81,43 @@ NewProblem ChosenNewProblem(const ConformArguments& arguments, const StudyPlan& 
 
 ConformReport Calibrate(const ConformArguments& arguments, const StudyPlan& plan, NewProblem new_problem,
                         const AnswerRows& answers) {
-  std::optional<ConformRule> models;
-  if (!arguments.models.empty()) models = ReadConformFile(arguments.models).rule;
+  const std::optional<ConformRule> models = LoadModels(plan, arguments.models);
   ConformReport report =
       CalibrateConform(plan, new_problem, arguments.promise, models ? &*models : nullptr, answers);
   WriteFileWhole(arguments.out, ConformFileText(report.rule, DescribePromises(report.rule)));
   return report;
+}
+
+bool IsSameFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return !a.empty() && !b.empty() && std::filesystem::equivalent(a, b, ignored);
+}
+
+void RequireArguments(const ConformArguments& arguments) {
+  if (arguments.study.empty()) throw InputError("conform: a study is missing, or --needs");
+  if (arguments.check.empty() && arguments.out.empty())
+    throw InputError("conform: --out is missing; give the file to be written");
+  for (const std::string& input : {arguments.study, arguments.check, arguments.models}) {
+    if (IsSameFile(input, arguments.out))
+      throw InputError(fmt::format("conform: --out {} would replace a file that is read", arguments.out));
+  }
+}
+
+// Nothing: the part of a shard is done.
+std::optional<AnswerRows> GetAnswers(const ConformArguments& arguments, const StudyPlan& plan,
+                                     NewProblem new_problem, Runner* runner) {
+  if (runner->ReadsParts()) {
+    const size_t num_groups = runner->plan().groups.size();
+    RequireNoneMissing(runner->plan(), FindMissingIn(runner->plan(), runner->results(), 0, num_groups),
+                       runner->results().num_shards);
+    PrintCosts(*runner);
+  } else {
+    CheckProcessEstimators(plan.study.estimators);
+    GetCalibration(plan, runner);
+  }
+  if (arguments.shards.shard.empty()) return ReadCalibration(plan, new_problem, *runner);
+  PrintPartIsDone(runner->shard(), arguments.out);
+  return std::nullopt;
 }
 
 void Conform(const ConformArguments& arguments) {
@@ -89,33 +125,25 @@ void Conform(const ConformArguments& arguments) {
     fmt::print("{}", DescribeNeeds(arguments.promise));
     return;
   }
-  if (arguments.study.empty()) throw InputError("conform: a study is missing, or --needs");
-  const bool is_check = !arguments.check.empty();
-  if (!is_check && arguments.out.empty())
-    throw InputError("conform: --out is missing; give the file to be written");
+  RequireArguments(arguments);
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
   const StudyPlan plan = MakeCalibrationPlan(arguments);
-  const NewProblem new_problem = is_check && ReadConformFile(arguments.check).rule.origin.new_groups
-                                     ? NewProblem::kCondition
-                                     : ChosenNewProblem(arguments, plan);
-  if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
-  const std::string checkpoint = arguments.out.empty() ? "" : FindCheckpointBeside(arguments.out);
+  const bool is_check = !arguments.check.empty();
+  std::optional<ConformRule> checked;
+  if (is_check) checked = LoadToCheck(plan, arguments.check);
+  const NewProblem new_problem =
+      checked && checked->origin.new_groups ? NewProblem::kCondition : ChosenNewProblem(arguments, plan);
+  LoadModels(plan, arguments.models);  // refuses before any trial
   Runner runner =
-      MakeRunner(PlanCalibration(plan), arguments.shards, arguments.out, checkpoint, arguments.threads);
-  if (!runner.ReadsParts()) GetCalibration(plan, &runner);
-  if (!arguments.shards.shard.empty()) return PrintPartIsDone(runner.shard(), arguments.out);
-  if (runner.ReadsParts()) {
-    RequireNoneMissing(runner.plan(),
-                       FindMissingIn(runner.plan(), runner.results(), 0, runner.plan().groups.size()),
-                       runner.results().num_shards);
-    PrintCosts(runner);
-  }
-  const AnswerRows answers = ReadCalibration(plan, new_problem, runner);
-  ConformReport report = is_check ? CheckConform(plan, ReadConformFile(arguments.check).rule, answers)
-                                  : Calibrate(arguments, plan, new_problem, answers);
-  const std::string text = arguments.format == "json" ? ConformAsJson(report) : ConformAsText(report);
-  PrintOrWrite(is_check ? arguments.out : "", text);
+      MakeRunner(PlanCalibration(plan), arguments.shards, arguments.out,
+                 arguments.out.empty() ? "" : FindCheckpointBeside(arguments.out), arguments.threads);
+  const std::optional<AnswerRows> answers = GetAnswers(arguments, plan, new_problem, &runner);
+  if (!answers) return;
+  const ConformReport report =
+      checked ? CheckConform(plan, *checked, *answers) : Calibrate(arguments, plan, new_problem, *answers);
+  PrintOrWrite(is_check ? arguments.out : "",
+               arguments.format == "json" ? ConformAsJson(report) : ConformAsText(report));
   runner.RemoveCheckpoint();
   if (report.shift && report.shift->noticed_after) throw EndWith{kShiftIsNoticed};
 }

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
-#include "experiments/core/text/program_name.h"
+#include "experiments/study/population.h"
 #include "experiments/trial/covariance_score.h"
 #include "experiments/trial/trial.h"
 #include "experiments/trial/trial_range.h"
+#include "parameters/input_error.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -61,19 +65,20 @@ Json RowAsJson(std::uint32_t trial, const AnswerRow& row) {
   return NumbersAsJson(numbers);
 }
 
+// [[refused trials], number without truth, [rows]]
 std::string ComputeAnswers(const StudyPlan& plan, const ItemPlace& place) {
   const Condition& condition = plan.conditions[place.group];
   const TrialRange trials = FindTrials(plan, place);
-  std::int64_t num_refusals = 0, num_unscored = 0;
-  Json rows = Json::array();
+  std::int64_t num_unscored = 0;
+  Json refused = Json::array(), rows = Json::array();
   for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
     AnswerRow row;
     const Outcome outcome = MakeRow(plan.study.failure, RunTrialOfDraw(plan, condition, trial), &row);
-    num_refusals += outcome == Outcome::kRefusal;
     num_unscored += outcome == Outcome::kUnscored;
+    if (outcome == Outcome::kRefusal) refused.push_back(trial);
     if (outcome == Outcome::kAnswer) rows.push_back(RowAsJson(trial, row));
   }
-  return Json{num_refusals, num_unscored, std::move(rows)}.dump();
+  return Json{std::move(refused), num_unscored, std::move(rows)}.dump();
 }
 
 void Require(bool holds) {
@@ -92,16 +97,81 @@ AnswerRow RowFrom(const std::vector<double>& numbers) {
   return row;
 }
 
+// The group of a trial: answers of different groups are independent.
+class Grouping {
+ public:
+  Grouping(const StudyPlan& plan, NewProblem new_problem) : plan_(plan), new_problem_(new_problem) {
+    if (new_problem == NewProblem::kCondition && plan.study.common_scenes)
+      throw InputError(
+          "conform: the conditions share their scenes (common_scenes), so none is new; give --new trial");
+    for (const Condition& condition : plan.conditions) {
+      const std::optional<std::string> scene = condition.source->SharedScene();
+      if (scene) scenes_.emplace(*scene, static_cast<std::int64_t>(scenes_.size()));
+    }
+  }
+
+  std::int64_t Of(const Condition& condition, std::uint32_t trial) const {
+    const bool is_new_condition = new_problem_ == NewProblem::kCondition;
+    if (const std::optional<std::string> scene = condition.source->SharedScene()) {
+      const auto pairs = static_cast<std::uint32_t>(condition.source->NumTrials(1));
+      return Pair(scenes_.at(*scene), is_new_condition ? 0 : trial % pairs);
+    }
+    if (is_new_condition) return Pair(Draw(condition), 0);
+    const auto repeats = static_cast<std::uint32_t>(plan_.study.repeats_per_scene);
+    return Pair(plan_.study.common_scenes ? 0 : condition.index, trial / repeats);
+  }
+
+  std::int64_t NumScenes() const { return std::ssize(scenes_); }
+
+ private:
+  static std::int64_t Pair(std::int64_t high, std::uint32_t low) { return (high << 32) + low; }
+
+  // Conditions of one draw differ in the factors alone.
+  std::int64_t Draw(const Condition& condition) const {
+    const auto factor = std::ranges::find(plan_.factor_names, kDrawFactor);
+    if (factor == plan_.factor_names.end()) return condition.index;
+    return std::stoll(condition.levels.at(static_cast<size_t>(factor - plan_.factor_names.begin())));
+  }
+
+  const StudyPlan& plan_;
+  NewProblem new_problem_;
+  std::map<std::string, std::int64_t> scenes_;
+};
+
+void ReadPiece(const StudyPlan& plan, const Grouping& grouping, const ItemPlace& place,
+               const std::string& json, AnswerRows* all) {
+  const Condition& condition = plan.conditions[place.group];
+  const TrialRange trials = FindTrials(plan, place);
+  const std::int64_t most = trials.end - trials.first;
+  const Json piece = ParsePiece(json);
+  RequireSize(piece, 3);
+  Require(piece[0].is_array() && piece[2].is_array() &&
+          static_cast<std::int64_t>(piece[0].size() + piece[2].size()) <= most);
+  const auto group_of = [&](double trial) {
+    Require(trial >= trials.first && trial < trials.end);
+    return grouping.Of(condition, static_cast<std::uint32_t>(trial));
+  };
+  for (const Json& trial : piece[0])
+    all->problems.push_back({group_of(static_cast<double>(CountFrom(trial, trials.end))), true});
+  all->num_unscored += CountFrom(piece[1], most);
+  for (const Json& entry : piece[2]) {
+    RequireSize(entry, kNumbersOfRow);
+    const std::vector<double> numbers = NumbersFrom(entry);
+    AnswerRow& row = all->rows.emplace_back(RowFrom(numbers));
+    row.group = group_of(numbers[0]);
+    all->problems.push_back({row.group, false});
+  }
+}
+
 }  // namespace
 
 NewProblem UsualNewProblem(const StudyPlan& plan) {
   const bool is_drawn = plan.study.population.has_value();
-  const bool is_real =
-      plan.conditions.size() > 1 && std::ranges::all_of(plan.conditions, [](const Condition& condition) {
-        return condition.source->SharedScene().has_value();
-      });
-  return is_drawn || is_real ? NewProblem::kCondition : NewProblem::kTrial;
+  return is_drawn || Grouping(plan, NewProblem::kTrial).NumScenes() > 1 ? NewProblem::kCondition
+                                                                        : NewProblem::kTrial;
 }
+
+bool HasRealScenes(const StudyPlan& plan) { return Grouping(plan, NewProblem::kTrial).NumScenes() > 0; }
 
 WorkPlan PlanCalibration(const StudyPlan& plan) {
   WorkPlan work{"conform", "block", plan.identity, {}};
@@ -124,27 +194,12 @@ void GetCalibration(const StudyPlan& plan, Runner* runner) {
 }
 
 AnswerRows ReadCalibration(const StudyPlan& plan, NewProblem new_problem, const Runner& runner) {
+  const Grouping grouping(plan, new_problem);
   AnswerRows all;
-  ReadResults(runner.plan(), runner.results(), 0, runner.plan().groups.size(),
-              [&](const ItemPlace& place, const std::string& json) {
-                const TrialRange trials = FindTrials(plan, place);
-                const std::int64_t most = trials.end - trials.first;
-                const Json piece = ParsePiece(json);
-                RequireSize(piece, 3);
-                all.num_refusals += CountFrom(piece[0], most);
-                all.num_unscored += CountFrom(piece[1], most);
-                Require(piece[2].is_array() && static_cast<std::int64_t>(piece[2].size()) <= most);
-                for (const Json& entry : piece[2]) {
-                  RequireSize(entry, kNumbersOfRow);
-                  const std::vector<double> numbers = NumbersFrom(entry);
-                  Require(numbers[0] >= trials.first && numbers[0] < trials.end);
-                  AnswerRow& row = all.rows.emplace_back(RowFrom(numbers));
-                  const auto scene = static_cast<std::int64_t>(numbers[0]) / plan.study.repeats_per_scene;
-                  row.group = new_problem == NewProblem::kCondition
-                                  ? static_cast<std::int64_t>(place.group)
-                                  : (static_cast<std::int64_t>(place.group) << 32) + scene;
-                }
-              });
+  ReadResults(
+      runner.plan(), runner.results(), 0, runner.plan().groups.size(),
+      [&](const ItemPlace& place, const std::string& json) { ReadPiece(plan, grouping, place, json, &all); });
+  all.SetShares();
   return all;
 }
 

@@ -9,18 +9,23 @@ namespace rcme {
 
 // What a new problem is, and so what is independent.
 enum class NewProblem {
-  kTrial,      // another trial of these conditions
+  kTrial,      // another trial of these conditions, or another pair of these real scenes
   kCondition,  // a trial of another condition: drawn as these were, or of another real scene
 };
 
-// Of a population of conditions, and of real scenes: another one; otherwise another trial.
+// Of a population of conditions, and of several real scenes: another one; otherwise another trial.
 NewProblem UsualNewProblem(const StudyPlan& plan);
+
+// Whether pairs are of real scenes, whose images they share.
+bool HasRealScenes(const StudyPlan& plan);
 
 // `plan` has one estimator.
 WorkPlan PlanCalibration(const StudyPlan& plan);
 void GetCalibration(const StudyPlan& plan, Runner* runner);
-// In the order of conditions and trials. Trials of one scene are of one group at least. The trials of a given
-// truth that has its own error are judged by that truth as it is.
+// In the order of conditions and trials. Of one group are at least the trials of one scene, of one real pair
+// (it comes again in each pass over a folder), and, where conditions are new, of one draw or real scene. A
+// truth that has an error of its own is taken as it is. Throws InputError where conditions share their scenes
+// and are to be new.
 AnswerRows ReadCalibration(const StudyPlan& plan, NewProblem new_problem, const Runner& runner);
 
 }  // namespace rcme

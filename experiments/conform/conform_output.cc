@@ -59,25 +59,23 @@ std::vector<RegionKind> RegionKinds(bool is_check) {
   return kinds;
 }
 
-Estimate MeasureShare(const Judged& judged, const std::function<bool(const JudgedAnswer&)>& holds) {
-  std::vector<double> numbers;
-  std::vector<std::int64_t> groups;
-  std::set<std::int64_t> different;
-  std::int64_t count = 0;
+// The share of the answers, with its interval by groups; `more`: groups of problems for which it does not
+// hold.
+Estimate MeasureShare(const Judged& judged, const std::function<bool(const JudgedAnswer&)>& holds,
+                      const std::vector<std::int64_t>& more = {}) {
+  std::vector<double> numbers(more.size(), 0.0);
+  std::vector<std::int64_t> groups = more;
   for (const JudgedAnswer& answer : judged) {
-    const bool is_one = holds(answer);
-    count += is_one;
-    numbers.push_back(is_one ? 1.0 : 0.0);
+    numbers.push_back(holds(answer) ? 1.0 : 0.0);
     groups.push_back(answer.row.group);
-    different.insert(answer.row.group);
   }
-  const std::int64_t n = std::ssize(judged);
-  if (n == 0) return {};
-  const double share = static_cast<double>(count) / static_cast<double>(n);
+  if (numbers.empty()) return {};
+  const std::set<std::int64_t> different(groups.begin(), groups.end());
+  const std::int64_t n = std::ssize(numbers), count = std::ranges::count(numbers, 1.0);
   const Interval interval = std::ssize(different) == n
                                 ? ExactBinomialInterval(count, n)
                                 : MeasureBoundedClusteredMean(numbers, 1.0, groups).interval;
-  return {.value = share, .interval = interval};
+  return {.value = static_cast<double>(count) / static_cast<double>(n), .interval = interval};
 }
 
 double MedianSize(const Judged& judged, const RegionKind& kind) {
@@ -90,7 +88,8 @@ double MedianSize(const Judged& judged, const RegionKind& kind) {
 // number of agreeing matches.
 Judged HardestQuarter(Judged judged) {
   const auto hardness = [](const JudgedAnswer& a) {
-    return std::pair(a.difficulty, -a.row.features[static_cast<size_t>(VisibleFeature::kAgreeing)]);
+    const double agreeing = a.row.features[static_cast<size_t>(VisibleFeature::kAgreeing)];
+    return std::pair(a.difficulty, std::isnan(agreeing) ? kInfinity : -agreeing);
   };
   std::ranges::stable_sort(
       judged, [&](const JudgedAnswer& a, const JudgedAnswer& b) { return hardness(a) > hardness(b); });
@@ -126,6 +125,9 @@ Table MakeAcceptTable(const ConformReport& report) {
   if (!report.is_check)
     kinds.push_back({"by matches", [](const JudgedAnswer& a) { return a.is_accepted_by_count; }});
   kinds.push_back({"by the rule", [](const JudgedAnswer& a) { return a.verdict.is_accepted; }});
+  std::vector<std::int64_t> refused;
+  for (const AskedProblem& problem : report.problems)
+    if (problem.is_refused) refused.push_back(problem.group);
   const auto among = [&](const std::function<bool(const JudgedAnswer&)>& holds) {
     Judged some;
     std::ranges::copy_if(report.judged, std::back_inserter(some), holds);
@@ -207,21 +209,27 @@ Table WithIntervalColumns(const Table& table) {
   return wide;
 }
 
+std::string Counted(std::int64_t n, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
 std::string DescribeGroups(const ConformOrigin& origin) {
-  return origin.new_groups
-             ? fmt::format("{} answers in {} conditions or scenes", origin.num_answers, origin.num_groups)
-             : fmt::format("{} answers, {} of them independent", origin.num_answers, origin.num_groups);
+  return fmt::format("{}, {}", Counted(origin.num_answers, "answer", "answers"),
+                     origin.new_groups
+                         ? Counted(origin.num_groups, "condition or scene", "conditions or scenes")
+                         : Counted(origin.num_groups, "independent problem", "independent problems"));
 }
 
 std::string DescribeShift(const ShiftFinding& shift, const ConformRule& rule) {
+  const std::string looked = Counted(shift.num_looked_at, "answer", "answers");
   std::string text =
-      shift.noticed_after
-          ? fmt::format(
-                "Shift: these problems are not like those of the calibration (p = {:.2g}, noticed after {} "
-                "of {} "
-                "answers; {} differs most). None of the promises above is for them.",
-                shift.p_value, *shift.noticed_after, shift.num_looked_at, shift.feature)
-          : fmt::format("No shift is seen in {} answers (p = {:.2g}).", shift.num_looked_at, shift.p_value);
+      shift.noticed_after ? fmt::format(
+                                "Shift: these problems are not like those of the calibration (p = {:.2g}, "
+                                "noticed after {} of {}; "
+                                "what differs most: {}). None of the promises above is for them.",
+                                shift.p_value, *shift.noticed_after, looked, shift.feature)
+      : !shift.could_notice ? fmt::format("Whether there is a shift cannot be told: {} are too few.", looked)
+                            : fmt::format("No shift is seen in {} (p = {:.2g}).", looked, shift.p_value);
   text += fmt::format(" Called strange are {:.1f} %, {:.0f} % if nothing differs.",
                       100.0 * shift.strange_share, 100.0 * kStrangeLevel);
   if (rule.origin.new_groups) text += " One answer of each condition or scene is looked at.";
@@ -232,33 +240,40 @@ std::string DescribeShift(const ShiftFinding& shift, const ConformRule& rule) {
 
 std::vector<std::string> DescribePromises(const ConformRule& rule) {
   const ConformOrigin& origin = rule.origin;
-  const std::string population =
-      origin.new_groups ? "a problem of a new condition or scene, drawn as those of the calibration were"
-                        : "another problem of the conditions of the calibration, in their shares";
-  std::vector<std::string> promises = {
-      fmt::format("Region: the ellipsoid of the conformed covariance at {:.3g} % (chi-square, 5 degrees of "
-                  "freedom) holds the truth "
-                  "with probability at least {:.3g} %, in each of {} strata of visible difficulty, for {}.",
-                  100.0 * rule.level, 100.0 * rule.level, rule.factors.size(), population)};
+  const std::string population = origin.new_groups
+                                     ? "of a new condition or scene, drawn as those of the calibration were"
+                                     : "of the conditions of the calibration, in their shares";
+  const std::string strata =
+      rule.factors.size() == 1
+          ? ""
+          : fmt::format(", also in each of {} strata of visible difficulty", rule.factors.size());
+  std::vector<std::string> promises = {fmt::format(
+      "Region: for another problem {}, the ellipsoid of the conformed covariance at {:.3g} % (chi-square, 5 "
+      "degrees "
+      "of freedom) holds the truth with probability at least {:.3g} %{}. It is an average over calibrations.",
+      population, 100.0 * rule.level, 100.0 * rule.level, strata)};
   const auto num_all = std::ranges::count_if(rule.factors, [](double x) { return !std::isfinite(x); });
   if (num_all > 0)
     promises.push_back(
-        fmt::format("In {} of the strata no factor keeps that: the region is all motions.", num_all));
+        rule.factors.size() == 1
+            ? "No factor keeps that: the region is all motions."
+            : fmt::format("In {} of the strata no factor keeps that: the region is all motions.", num_all));
   promises.push_back(
       rule.greatest_log_odds
-          ? fmt::format("Accept rule: wrong and accepted are at most {:.3g} % of the answers (more than "
-                        "{:.3g} deg of "
-                        "rotation or {:.3g} deg of direction), with confidence {:.3g} % over calibrations.",
-                        100.0 * rule.wrong_and_accepted, rule.max_rotation_error_deg,
-                        rule.max_direction_error_deg, 100.0 * (1.0 - rule.risk))
-          : fmt::format(
-                "Accept rule: none keeps wrong and accepted answers at {:.3g} % at confidence {:.3g} %; "
-                "nothing is accepted. See rcme conform --needs.",
-                100.0 * rule.wrong_and_accepted, 100.0 * (1.0 - rule.risk)));
+          ? fmt::format(
+                "Accept rule: at most {:.3g} % of such problems are answered wrongly (more than {:.3g} deg "
+                "of "
+                "rotation or {:.3g} deg of direction) and accepted. It holds for {:.3g} % of calibrations.",
+                100.0 * rule.wrong_and_accepted, rule.max_rotation_error_deg, rule.max_direction_error_deg,
+                100.0 * (1.0 - rule.risk))
+          : fmt::format("Accept rule: none keeps wrong and accepted answers at {:.3g} % of the problems for "
+                        "{:.3g} % of "
+                        "calibrations; nothing is accepted. See rcme conform --needs.",
+                        100.0 * rule.wrong_and_accepted, 100.0 * (1.0 - rule.risk)));
   promises.push_back(
-      fmt::format("Both hold on average over calibrations such as this one ({}), and only for problems "
-                  "exchangeable with it; "
-                  "`rcme conform --check` tests whether new ones are.",
+      fmt::format("The calibration: {}. Only for problems exchangeable with these; `rcme conform --check` "
+                  "tests whether new "
+                  "ones are.",
                   DescribeGroups(origin)));
   return promises;
 }
@@ -268,28 +283,40 @@ std::string DescribeNeeds(const ConformPromise& promise) {
     return static_cast<std::int64_t>(std::ceil(static_cast<double>(n) / (1.0 - kTrainedShare)));
   };
   const std::int64_t for_bound = FewestGroupsForBound(promise.level),
-                     for_rule = FewestCertifyingTrials(promise.wrong_and_accepted, promise.risk);
-  return FormatParagraph(
-             fmt::format("Regions at {:.3g} %: {} answers, and {} for each stratum of difficulty.",
-                         100.0 * promise.level, for_bound, with_training(3 * for_bound))) +
-         FormatParagraph(fmt::format("Accept rule at {:.3g} %, risk {:.3g} %: {} answers of which none is "
-                                     "wrong and accepted, {} once "
-                                     "models are trained (from {} answers on); more where some are.",
-                                     100.0 * promise.wrong_and_accepted, 100.0 * promise.risk, for_rule,
-                                     with_training(for_rule), kLeastAnswers)) +
+                     for_rule = FewestCertifyingTrials(promise.wrong_and_accepted, promise.risk),
+                     mostly = TrialsToCertify(0.25 * promise.wrong_and_accepted, promise.wrong_and_accepted,
+                                              promise.risk, 0.9);
+  return FormatParagraph(fmt::format("Regions at {:.3g} %: {} answers, and {} for each stratum of difficulty "
+                                     "once models are trained.",
+                                     100.0 * promise.level, for_bound, with_training(3 * for_bound))) +
          FormatParagraph(
-             "Counted are independent answers: trials, or, where the promise is for new conditions or "
+             fmt::format("Accept rule at {:.3g} %, risk {:.3g} %: {} problems if none is answered wrongly "
+                         "and accepted; {} for "
+                         "success in nine of ten calibrations if a quarter of what is allowed is.",
+                         100.0 * promise.wrong_and_accepted, 100.0 * promise.risk, for_rule, mostly)) +
+         FormatParagraph(fmt::format("Models are trained on three tenths of the problems, from {} answers "
+                                     "on, and where the accept rule is "
+                                     "within reach from {} on.",
+                                     kLeastAnswers, with_training(for_rule))) +
+         FormatParagraph(
+             "Counted are independent problems: trials, or, where the promise is for new conditions or "
              "scenes, as "
              "many of these.");
 }
 
 std::string ConformAsText(const ConformReport& report) {
   const ConformRule& rule = report.rule;
+  const std::int64_t num_refusals = std::ranges::count(report.problems, true, &AskedProblem::is_refused);
   std::string text = FormatParagraph(fmt::format(
-      "{}: {} answers, {} refusals{}. {}", report.label, report.judged.size(), report.num_refusals,
-      report.num_unscored > 0 ? fmt::format(", {} trials without a known truth", report.num_unscored) : "",
+      "{}: {}, {}{}. {}", report.label, Counted(std::ssize(report.judged), "answer", "answers"),
+      Counted(num_refusals, "refusal", "refusals"),
+      report.num_unscored > 0
+          ? fmt::format(", {} without a known truth", Counted(report.num_unscored, "trial", "trials"))
+          : "",
       report.is_check ? "New answers, judged by the file:"
                       : "Cross-validated, each answer judged by a rule of other groups:"));
+  if (report.judged.empty())
+    return text + (report.shift ? FormatParagraph(DescribeShift(*report.shift, rule)) : "");
   for (const Table& table : {MakeRegionTable(report), MakeAcceptTable(report), MakeProbabilityTable(report)})
     text += "\n" + RenderText(table);
   text +=
@@ -300,6 +327,10 @@ std::string ConformAsText(const ConformReport& report) {
                                   (report.judged.size() + 3) / 4)) +
       "\n";
   for (const std::string& promise : DescribePromises(rule)) text += FormatParagraph(promise);
+  if (report.shares_images)
+    text += FormatParagraph(
+        "Pairs of one scene share images and are counted as if they were independent: the promises say too "
+        "much.");
   if (report.shift) text += FormatParagraph(DescribeShift(*report.shift, rule));
   return text;
 }
@@ -309,7 +340,7 @@ std::string ConformAsJson(const ConformReport& report) {
       {"estimator", report.label},
       {"is_check", report.is_check},
       {"answers", report.judged.size()},
-      {"refusals", report.num_refusals},
+      {"refusals", std::ranges::count(report.problems, true, &AskedProblem::is_refused)},
       {"without_truth", report.num_unscored},
       {"level", report.rule.level},
       {"strata", report.rule.factors.size()},
@@ -320,6 +351,7 @@ std::string ConformAsJson(const ConformReport& report) {
   if (report.shift) {
     const ShiftFinding& shift = *report.shift;
     json["shift"] = {{"answers", shift.num_looked_at},
+                     {"could_notice", shift.could_notice},
                      {"p_value", shift.p_value},
                      {"noticed_after", shift.noticed_after ? nlohmann::ordered_json(*shift.noticed_after)
                                                            : nlohmann::ordered_json()},

@@ -1,42 +1,130 @@
 #include "experiments/conform/conform_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <span>
 
+#include "estimator/conform/conform_file.h"
+#include "parameters/input_error.h"
 #include "stats/exchangeability.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
+namespace {
 
-ShiftFinding LookForShift(const ConformRule& rule, const std::vector<AnswerRow>& rows) {
-  ShiftFinding finding;
-  if (rule.familiar_features.empty()) return finding;
-  const RandomStream rng({.seed = 1, .condition = 0, .trial = 0, .purpose = 2});
-  ExchangeabilityTest test(rule.familiar, rule.familiar_features.size(), rng);
-  const ConformJudge judge(rule);
-  std::set<std::int64_t> groups;
-  std::int64_t num_strange = 0, num_whole = 0;
-  std::vector<AnswerRow> mixed = rows;  // conditions one after the other would be a shift of their own
+constexpr size_t kMostRefusals = 2000;  // of the reference, thinned beyond
+
+// In an order of their own: conditions one after the other would be a shift.
+template <typename T>
+std::vector<T> Mixed(std::vector<T> items) {
   RandomStream order({.seed = 1, .condition = 0, .trial = 0, .purpose = 3});
-  order.Shuffle(std::span(mixed));
-  for (const AnswerRow& row : mixed) {
+  order.Shuffle(std::span(items));
+  return items;
+}
+
+// The first of each group.
+template <typename T>
+std::vector<T> FirstOfGroups(const std::vector<T>& items) {
+  std::vector<T> first;
+  std::set<std::int64_t> groups;
+  for (const T& item : items)
+    if (groups.insert(item.group).second) first.push_back(item);
+  return first;
+}
+
+void LookForStrangeAnswers(const ConformRule& rule, const std::vector<AnswerRow>& rows,
+                           ShiftFinding* finding) {
+  const size_t width = rule.familiar_features.size();
+  if (width == 0) return;
+  ExchangeabilityTest test(rule.familiar, width,
+                           RandomStream({.seed = 1, .condition = 0, .trial = 0, .purpose = 2}));
+  for (const AnswerRow& row : Mixed(FirstOfGroups(rows))) {
     std::vector<double> features;
     for (const size_t feature : rule.familiar_features) features.push_back(row.features[feature]);
-    if (std::ranges::any_of(features, [](double x) { return std::isnan(x); })) continue;
-    ++num_whole;
-    num_strange += judge.Judge(row.features).familiarity <= kStrangeLevel;
-    if (rule.origin.new_groups && !groups.insert(row.group).second) continue;
     test.Add(features);
-    if (!finding.noticed_after && test.PValue() <= kShiftLevel)
-      finding.noticed_after = static_cast<std::int64_t>(test.n());
+    if (!finding->noticed_after && test.PValue() <= kShiftLevel / 2.0)
+      finding->noticed_after = static_cast<std::int64_t>(test.n());
   }
-  finding.num_looked_at = static_cast<std::int64_t>(test.n());
-  finding.p_value = test.PValue();
-  finding.feature = VisibleFeatureNames()[rule.familiar_features[test.StrongestFeature()]];
-  if (num_whole > 0)
-    finding.strange_share = static_cast<double>(num_strange) / static_cast<double>(num_whole);
+  finding->num_looked_at = static_cast<std::int64_t>(test.n());
+  finding->p_value = std::min(1.0, 2.0 * test.PValue());
+  finding->feature = VisibleFeatureNames()[rule.familiar_features[test.StrongestFeature()]];
+  // Each answer multiplies the capital of a gambler by at most half the root of how many it is compared with.
+  const double num_familiar = static_cast<double>(rule.familiar.size() / width);
+  const double greatest = std::pow(0.5 * std::sqrt(num_familiar + 1.0), finding->num_looked_at);
+  finding->could_notice = greatest >= 2.0 / kShiftLevel;
+}
+
+void LookForRefusals(const ConformRule& rule, const std::vector<AskedProblem>& problems,
+                     ShiftFinding* finding) {
+  const auto num_groups = static_cast<size_t>(rule.origin.num_groups);
+  const size_t step = std::max<size_t>(1, num_groups / kMostRefusals);
+  std::vector<double> reference;
+  for (size_t i = 0; i < num_groups; i += step)
+    reference.push_back(i < static_cast<size_t>(rule.origin.num_refused_groups) ? 1.0 : 0.0);
+  ExchangeabilityTest test(reference, 1, RandomStream({.seed = 1, .condition = 0, .trial = 0, .purpose = 4}));
+  std::optional<std::int64_t> noticed_after;
+  for (const AskedProblem& problem : Mixed(FirstOfGroups(problems))) {
+    const double refused = problem.is_refused ? 1.0 : 0.0;
+    test.Add({&refused, 1});
+    if (!noticed_after && test.PValue() <= kShiftLevel / 2.0)
+      noticed_after = static_cast<std::int64_t>(test.n());
+  }
+  const double p_value = std::min(1.0, 2.0 * test.PValue());
+  if (p_value >= finding->p_value) return;
+  finding->p_value = p_value;
+  finding->feature = "refusals";
+  if (noticed_after) finding->noticed_after = noticed_after;
+}
+
+// What the problems of a plan depend on, whatever is asked of them: its seed and conditions.
+std::string ProblemsOf(const StudyPlan& plan) {
+  std::string text = fmt::format("seed {}\n", plan.study.seed);
+  for (const Condition& condition : plan.conditions)
+    text += fmt::format("{} {}\n", condition.stream_key, condition.source->Identity());
+  return text;
+}
+
+std::string HashOf(const std::string& text) {
+  Fnv1a hash;
+  hash.Add(text);
+  return fmt::format("{:016x}", hash.value());
+}
+
+}  // namespace
+
+ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers) {
+  ShiftFinding finding;
+  LookForStrangeAnswers(rule, answers.rows, &finding);
+  LookForRefusals(rule, answers.problems, &finding);
+  const ConformJudge judge(rule);
+  const auto num_strange = std::ranges::count_if(answers.rows, [&](const AnswerRow& row) {
+    return judge.Judge(row.features).familiarity <= kStrangeLevel;
+  });
+  if (!answers.rows.empty())
+    finding.strange_share = static_cast<double>(num_strange) / static_cast<double>(answers.rows.size());
   return finding;
+}
+
+ConformRule LoadToCheck(const StudyPlan& plan, const std::string& path) {
+  ConformRule rule = ReadConformFile(path).rule;
+  if (rule.origin.identity == HashOf(ProblemsOf(plan)))
+    throw InputError(fmt::format(
+        "conform: {} is of these very problems, so that they are not new; give another --seed or study",
+        path));
+  return rule;
+}
+
+std::optional<ConformRule> LoadModels(const StudyPlan& plan, const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  ConformRule rule = LoadToCheck(plan, path);
+  if (rule.estimator != plan.study.estimators.front().name)
+    throw InputError(fmt::format("conform: {} is of estimator {}, not {}", path, rule.estimator,
+                                 plan.study.estimators.front().name));
+  return rule;
 }
 
 ConformReport CalibrateConform(const StudyPlan& plan, NewProblem new_problem, const ConformPromise& promise,
@@ -44,16 +132,23 @@ ConformReport CalibrateConform(const StudyPlan& plan, NewProblem new_problem, co
   const EstimatorSpec& spec = plan.study.estimators.front();
   ConformReport report;
   report.label = spec.label;
-  report.rule = FitConformRule(answers.rows, promise, models);
+  report.rule = FitConformRule(answers, promise, models);
   report.rule.estimator = spec.name;
   report.rule.options = spec.options;
   report.rule.max_rotation_error_deg = plan.study.failure.max_rotation_error_deg;
   report.rule.max_direction_error_deg = plan.study.failure.max_direction_error_deg;
-  report.rule.origin = {plan.study.name, std::ssize(answers.rows), answers.num_refusals,
-                        CountGroups(answers.rows), new_problem == NewProblem::kCondition};
-  report.judged = CrossValidate(answers.rows, promise, models);
-  report.num_refusals = answers.num_refusals;
+  const std::vector<AskedProblem> first = FirstOfGroups(answers.problems);
+  report.rule.origin = {plan.study.name,
+                        HashOf(ProblemsOf(plan)),
+                        std::ssize(answers.rows),
+                        answers.CountRefusals(),
+                        std::ssize(first),
+                        std::ranges::count(first, true, &AskedProblem::is_refused),
+                        new_problem == NewProblem::kCondition};
+  report.judged = CrossValidate(answers, promise, models);
+  report.problems = answers.problems;
   report.num_unscored = answers.num_unscored;
+  report.shares_images = new_problem == NewProblem::kTrial && HasRealScenes(plan);
   return report;
 }
 
@@ -63,8 +158,8 @@ ConformReport CheckConform(const StudyPlan& plan, const ConformRule& rule, const
   report.label = plan.study.estimators.front().label;
   report.rule = rule;
   report.judged = JudgeAnswers(rule, answers.rows);
-  report.shift = LookForShift(rule, answers.rows);
-  report.num_refusals = answers.num_refusals;
+  report.shift = LookForShift(rule, answers);
+  report.problems = answers.problems;
   report.num_unscored = answers.num_unscored;
   return report;
 }

@@ -29,9 +29,9 @@ constexpr size_t kStatedOdds = static_cast<size_t>(VisibleFeature::kStatedOdds),
 constexpr double kEverything = 1e9;  // log odds that every answer keeps
 
 // A number for each group, in an order that says nothing of them: the same for the same groups.
-std::map<std::int64_t, size_t> ShuffleGroups(const Rows& rows) {
+std::map<std::int64_t, size_t> ShuffleGroups(const AnswerRows& answers) {
   std::set<std::int64_t> names;
-  for (const AnswerRow& row : rows) names.insert(row.group);
+  for (const AskedProblem& problem : answers.problems) names.insert(problem.group);
   std::vector<std::int64_t> order(names.begin(), names.end());
   RandomStream rng({.seed = 1, .condition = 0, .trial = 0, .purpose = 1});
   rng.Shuffle(std::span(order));
@@ -123,27 +123,27 @@ void UseNoModel(const Rows& rows, ConformRule* rule) {
   rule->failure = HasFeature(rows, kStatedOdds) ? OneFeature(kStatedOdds, 1.0) : OneFeature(kAgreeing, -1.0);
 }
 
-// Equally many of these answers between two edges; as many strata as leave each of them enough groups, of
-// which `share` will set its factor.
-std::vector<double> ChooseEdges(const FeatureModel& difficulty, const Rows& rows, double share,
+// Equally many of these answers between two edges; as many strata as leave each of them groups enough,
+// counted by the shares of its answers, once `factor` times as many answers set its factor.
+std::vector<double> ChooseEdges(const FeatureModel& difficulty, const Rows& rows, double factor,
                                 double level) {
   const std::vector<double> difficulties = Difficulties(difficulty, rows);
   std::vector<double> sorted = difficulties;
   std::ranges::sort(sorted);
-  const std::int64_t fewest = FewestGroupsForBound(level);
-  const bool are_many = static_cast<double>(CountGroups(rows)) * share >= 3.0 * static_cast<double>(fewest);
-  const double needed = static_cast<double>(are_many ? 3 * fewest : fewest) / share;
+  const double needed = 3.0 * static_cast<double>(FewestGroupsForBound(level)) / factor;
   for (size_t num_strata = kMostStrata; num_strata > 1; --num_strata) {
     std::vector<double> edges;
-    for (size_t k = 1; k < num_strata; ++k) edges.push_back(sorted[k * sorted.size() / num_strata]);
+    for (size_t k = 1; k < num_strata; ++k) {
+      const size_t i = k * sorted.size() / num_strata;
+      if (i > 0) edges.push_back(0.5 * (sorted[i - 1] + sorted[i]));
+    }
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    std::vector<std::set<std::int64_t>> groups(edges.size() + 1);
+    std::vector<double> groups(edges.size() + 1, 0.0);
     for (size_t i = 0; i < rows.size(); ++i) {
       const auto k = std::ranges::upper_bound(edges, difficulties[i]) - edges.begin();
-      groups[static_cast<size_t>(k)].insert(rows[i].group);
+      groups[static_cast<size_t>(k)] += rows[i].share;
     }
-    if (std::ranges::all_of(groups, [&](const auto& g) { return static_cast<double>(g.size()) >= needed; }))
-      return edges;
+    if (std::ranges::all_of(groups, [&](double count) { return count >= needed; })) return edges;
   }
   return {};
 }
@@ -152,13 +152,12 @@ std::vector<double> ChooseEdges(const FeatureModel& difficulty, const Rows& rows
 double FactorFor(double bound, double level) { return bound / ChiSquareQuantile(5, level); }
 
 double BoundOf(const Rows& rows, double level, double AnswerRow::*score) {
-  std::vector<double> scores;
-  std::vector<std::int64_t> groups;
+  std::vector<double> scores, shares;
   for (const AnswerRow& row : rows) {
     scores.push_back(row.*score);
-    groups.push_back(row.group);
+    shares.push_back(row.share);
   }
-  return ConformalBound(scores, groups, level);
+  return ConformalBound(scores, shares, level);
 }
 
 void SetFactors(const Rows& rows, ConformRule* rule) {
@@ -181,27 +180,27 @@ void CorrectLogOdds(const Rows& rows, ConformRule* rule) {
   }
   const double one = 1.0;
   const LogisticFit fit = FitLogistic(log_odds, is_wrong, {&one, 1}, kSlopePenalty);
-  rule->log_odds_intercept = fit.intercept;
   rule->log_odds_slope = std::max(fit.weights.front(), 0.0);
+  rule->log_odds_intercept =
+      fit.weights.front() > 0.0
+          ? fit.intercept
+          : FitLogistic({}, is_wrong, {}, kSlopePenalty).intercept;  // the odds say nothing
 }
 
-// p-value of "P(wrong and at most `threshold`) exceeds `at_most`".
-double AcceptPValue(const Rows& rows, const std::vector<double>& scores, double threshold, double at_most,
-                    bool shares_groups) {
-  if (!shares_groups) {
-    ErrorCount count{0, std::ssize(rows)};
-    for (size_t i = 0; i < rows.size(); ++i) count.errors += rows[i].is_wrong && scores[i] <= threshold;
+// p-value of "P(a problem is answered wrongly, at most `threshold`) exceeds `at_most`".
+double AcceptPValue(const AnswerRows& answers, const std::vector<double>& scores, double threshold,
+                    double at_most) {
+  if (!answers.HasSharedGroups()) {
+    ErrorCount count{0, std::ssize(answers.problems)};
+    for (size_t i = 0; i < scores.size(); ++i)
+      count.errors += answers.rows[i].is_wrong && scores[i] <= threshold;
     return ExcessPValue(count, at_most);
   }
-  std::map<std::int64_t, std::pair<double, double>> groups;  // losses, answers
-  for (size_t i = 0; i < rows.size(); ++i) {
-    auto& [losses, answers] = groups[rows[i].group];
-    losses += rows[i].is_wrong && scores[i] <= threshold;
-    answers += 1.0;
-  }
-  double sum = 0.0;
-  for (const auto& [group, sums] : groups) sum += sums.first / sums.second;
-  return MeanLossPValue(sum / static_cast<double>(groups.size()), std::ssize(groups), at_most);
+  double losses = 0.0;
+  for (size_t i = 0; i < scores.size(); ++i)
+    if (answers.rows[i].is_wrong && scores[i] <= threshold) losses += answers.rows[i].share;
+  const std::int64_t num_groups = answers.CountGroups();
+  return MeanLossPValue(losses / static_cast<double>(num_groups), num_groups, at_most);
 }
 
 // From strict to lax, fixed beforehand, whatever the answers are.
@@ -213,13 +212,12 @@ std::vector<double> Thresholds() {
 }
 
 // The laxest certified threshold of `scores`, the greater the worse; nothing: none is.
-std::optional<double> CertifyThreshold(const Rows& rows, const std::vector<double>& scores,
+std::optional<double> CertifyThreshold(const AnswerRows& answers, const std::vector<double>& scores,
                                        const ConformPromise& promise) {
-  const bool shares_groups = CountGroups(rows) < std::ssize(rows);
   const std::vector<double> thresholds = Thresholds();
   std::vector<double> p_values;
   for (const double threshold : thresholds) {
-    p_values.push_back(AcceptPValue(rows, scores, threshold, promise.wrong_and_accepted, shares_groups));
+    p_values.push_back(AcceptPValue(answers, scores, threshold, promise.wrong_and_accepted));
     if (p_values.back() > promise.risk) break;
   }
   const size_t num_certified = CountCertified(p_values, promise.risk);
@@ -236,49 +234,42 @@ std::vector<double> FewAgreeing(const Rows& rows) {
   return scores;
 }
 
-// One answer of each group where groups are what is new, spread evenly over all.
+// One answer of each group, spread evenly over all.
 void SetFamiliar(const Rows& rows, ConformRule* rule) {
   for (size_t feature = 0; feature < kNumVisibleFeatures; ++feature)
     if (HasFeature(rows, feature)) rule->familiar_features.push_back(feature);
-  Rows whole;
+  Rows first;
   std::set<std::int64_t> groups;
-  for (const AnswerRow& row : rows) {
-    const bool is_whole = std::ranges::none_of(
-        rule->familiar_features, [&](size_t feature) { return std::isnan(row.features[feature]); });
-    if (is_whole && groups.insert(row.group).second) whole.push_back(row);
-  }
-  const size_t step = std::max<size_t>(1, (whole.size() + kMostFamiliar - 1) / kMostFamiliar);
-  for (size_t i = 0; i < whole.size(); i += step)
-    for (const size_t feature : rule->familiar_features) rule->familiar.push_back(whole[i].features[feature]);
-  if (rule->familiar.empty()) rule->familiar_features.clear();
+  for (const AnswerRow& row : rows)
+    if (groups.insert(row.group).second) first.push_back(row);
+  const size_t step = std::max<size_t>(1, (first.size() + kMostFamiliar - 1) / kMostFamiliar);
+  for (size_t i = 0; i < first.size(); i += step)
+    for (const size_t feature : rule->familiar_features) rule->familiar.push_back(first[i].features[feature]);
 }
 
 struct Split {
-  Rows trained, calibrated;
+  AnswerRows trained, calibrated;
 };
-Split SplitRows(const Rows& rows) {
-  const std::map<std::int64_t, size_t> places = ShuffleGroups(rows);
-  const auto num_groups = static_cast<double>(places.size());
-  const bool trains = rows.size() >= kLeastAnswers && std::ssize(places) >= kLeastGroups;
-  Split split;
-  for (const AnswerRow& row : rows) {
-    const bool is_trained = trains && static_cast<double>(places.at(row.group)) < kTrainedShare * num_groups;
-    (is_trained ? split.trained : split.calibrated).push_back(row);
-  }
-  return split;
+Split SplitAnswers(const AnswerRows& answers, const ConformPromise& promise) {
+  const std::map<std::int64_t, size_t> places = ShuffleGroups(answers);
+  const auto num_groups = std::ssize(places);
+  const auto num_trained = static_cast<std::int64_t>(kTrainedShare * static_cast<double>(num_groups));
+  const std::int64_t for_rule = FewestCertifyingTrials(promise.wrong_and_accepted, promise.risk);
+  const bool costs_the_rule = num_groups >= for_rule && num_groups - num_trained < for_rule;
+  const bool trains = answers.rows.size() >= kLeastAnswers && num_groups >= kLeastGroups && !costs_the_rule;
+  const auto is_trained = [&](std::int64_t group) {
+    return trains && static_cast<std::int64_t>(places.at(group)) < num_trained;
+  };
+  return {answers.Part(is_trained), answers.Part([&](std::int64_t group) { return !is_trained(group); })};
 }
 
 }  // namespace
 
-std::int64_t CountGroups(const Rows& rows) {
-  std::set<std::int64_t> groups;
-  for (const AnswerRow& row : rows) groups.insert(row.group);
-  return std::ssize(groups);
-}
-
-ConformRule FitConformRule(const Rows& rows, const ConformPromise& promise, const ConformRule* models) {
-  if (rows.empty()) throw InputError("conform: no answer has a truth to compare with");
-  const Split split = models != nullptr ? Split{{}, rows} : SplitRows(rows);
+ConformRule FitConformRule(const AnswerRows& answers, const ConformPromise& promise,
+                           const ConformRule* models) {
+  if (answers.rows.empty()) throw InputError("conform: no answer has a truth to compare with");
+  const Split split = models != nullptr ? Split{{}, answers} : SplitAnswers(answers, promise);
+  const Rows &trained = split.trained.rows, &calibrated = split.calibrated.rows;
   ConformRule rule;
   rule.level = promise.level;
   rule.wrong_and_accepted = promise.wrong_and_accepted;
@@ -286,20 +277,20 @@ ConformRule FitConformRule(const Rows& rows, const ConformPromise& promise, cons
   if (models != nullptr) {
     rule.difficulty = models->difficulty;
     rule.failure = models->failure;
-    rule.edges = ChooseEdges(rule.difficulty, rows, 1.0, rule.level);
-  } else if (split.trained.empty()) {
-    UseNoModel(rows, &rule);
+    rule.edges = ChooseEdges(rule.difficulty, calibrated, 1.0, rule.level);
+  } else if (trained.empty()) {
+    UseNoModel(calibrated, &rule);
   } else {
-    TrainModels(split.trained, &rule);
-    const auto num_trained = static_cast<double>(CountGroups(split.trained)),
-               num_calibrated = static_cast<double>(CountGroups(split.calibrated));
-    rule.edges = ChooseEdges(rule.difficulty, split.trained, num_calibrated / num_trained, rule.level);
+    TrainModels(trained, &rule);
+    const auto factor = static_cast<double>(split.calibrated.CountGroups()) /
+                        static_cast<double>(split.trained.CountGroups());
+    rule.edges = ChooseEdges(rule.difficulty, trained, factor, rule.level);
   }
-  SetFactors(split.calibrated, &rule);
-  CorrectLogOdds(split.calibrated, &rule);
+  SetFactors(calibrated, &rule);
+  CorrectLogOdds(calibrated, &rule);
   rule.greatest_log_odds =
-      CertifyThreshold(split.calibrated, Difficulties(rule.failure, split.calibrated), promise);
-  SetFamiliar(rows, &rule);
+      CertifyThreshold(split.calibrated, Difficulties(rule.failure, calibrated), promise);
+  SetFamiliar(answers.rows, &rule);
   return rule;
 }
 
@@ -316,20 +307,21 @@ std::vector<JudgedAnswer> JudgeAnswers(const ConformRule& rule, const Rows& rows
   return judged;
 }
 
-std::vector<JudgedAnswer> CrossValidate(const Rows& rows, const ConformPromise& promise,
+std::vector<JudgedAnswer> CrossValidate(const AnswerRows& answers, const ConformPromise& promise,
                                         const ConformRule* models) {
-  const std::map<std::int64_t, size_t> places = ShuffleGroups(rows);
+  const std::map<std::int64_t, size_t> places = ShuffleGroups(answers);
   const size_t num_folds = places.size() <= kMostGroupsOneByOne ? places.size() : kNumFolds;
   std::vector<JudgedAnswer> judged;
   for (size_t fold = 0; num_folds > 1 && fold < num_folds; ++fold) {
-    Rows others, held_out;
-    for (const AnswerRow& row : rows)
-      (places.at(row.group) % num_folds == fold ? held_out : others).push_back(row);
+    const auto is_held_out = [&](std::int64_t group) { return places.at(group) % num_folds == fold; };
+    const AnswerRows held_out = answers.Part(is_held_out),
+                     others = answers.Part([&](std::int64_t group) { return !is_held_out(group); });
+    if (others.rows.empty()) continue;
     const ConformRule rule = FitConformRule(others, promise, models);
-    const double one_factor = FactorFor(BoundOf(others, promise.level, &AnswerRow::nees), promise.level);
-    const double ball_deg = BoundOf(others, promise.level, &AnswerRow::max_error_deg);
-    const std::optional<double> by_count = CertifyThreshold(others, FewAgreeing(others), promise);
-    for (JudgedAnswer& answer : JudgeAnswers(rule, held_out)) {
+    const double one_factor = FactorFor(BoundOf(others.rows, promise.level, &AnswerRow::nees), promise.level);
+    const double ball_deg = BoundOf(others.rows, promise.level, &AnswerRow::max_error_deg);
+    const std::optional<double> by_count = CertifyThreshold(others, FewAgreeing(others.rows), promise);
+    for (JudgedAnswer& answer : JudgeAnswers(rule, held_out.rows)) {
       answer.one_factor = one_factor;
       answer.ball_deg = ball_deg;
       answer.is_accepted_by_count = by_count && FewAgreeing({answer.row}).front() <= *by_count;

@@ -11,11 +11,12 @@
 //                bound needs
 //   log odds     their correction a + b x, by logistic regression with a prior at (0, 1)
 //   accept rule  thresholds of the odds, from strict to lax and fixed beforehand, certified one by one until
-//                one is not (stats/risk_control.h): of P(wrong and accepted), the exact binomial test, or,
-//                where answers share groups, the bound for the groups' mean losses
+//                one is not (stats/risk_control.h): of P(a problem is answered wrongly and accepted), the
+//                exact binomial test, or, where problems share groups, the bound for the groups' mean losses
 //
-// With fewer than 150 answers or 40 groups nothing is trained: one stratum, the stated odds or, where the
-// estimator states none, the fewer agreeing matches the worse.
+// Nothing is trained with fewer than 150 answers or 40 groups, nor where the groups would be enough for the
+// accept rule but seven tenths of them are not: one stratum, the stated odds or, where the estimator states
+// none, the fewer agreeing matches the worse.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +31,14 @@ namespace rcme {
 
 struct ConformPromise {
   double level = 0.95;               // of the regions
-  double wrong_and_accepted = 0.02;  // at most
+  double wrong_and_accepted = 0.02;  // at most, of the problems
   double risk = 0.05;                // probability that the accept rule breaks its promise
 };
 
 // Everything but what it was made for (estimator, options, origin, bounds). With `models` nothing is trained:
 // difficulty and odds are those of that rule, of other answers, and all of these set promises. Throws
 // InputError without answers.
-ConformRule FitConformRule(const std::vector<AnswerRow>& rows, const ConformPromise& promise,
+ConformRule FitConformRule(const AnswerRows& answers, const ConformPromise& promise,
                            const ConformRule* models = nullptr);
 
 // One answer, judged by a rule that has not seen it or any of its group.
@@ -58,12 +59,10 @@ inline constexpr std::int64_t kLeastGroups = 40;
 
 // Ten folds of whole groups; with at most twenty groups each is a fold. Each is judged by the rule of the
 // others.
-std::vector<JudgedAnswer> CrossValidate(const std::vector<AnswerRow>& rows, const ConformPromise& promise,
+std::vector<JudgedAnswer> CrossValidate(const AnswerRows& answers, const ConformPromise& promise,
                                         const ConformRule* models = nullptr);
 
 // New answers, judged by a rule that is there.
 std::vector<JudgedAnswer> JudgeAnswers(const ConformRule& rule, const std::vector<AnswerRow>& rows);
-
-std::int64_t CountGroups(const std::vector<AnswerRow>& rows);
 
 }  // namespace rcme

@@ -13,7 +13,8 @@ namespace rcme {
 namespace {
 
 // As peers/outside_estimators.cc calls them.
-constexpr const char *kProcess = "process", *kCommand = "command", *kNoCommand = "none";
+constexpr const char *kProcess = "process", *kCommand = "command", *kNoCommand = "none",
+                     *kConformFile = "file";
 
 // The whole command, with escapes in place of what a terminal would not show as it is.
 std::string ShownCommand(const std::string& command) {
@@ -30,7 +31,8 @@ std::string FindCommand(const EstimatorSpec& spec) {
 }
 
 bool IsCommand(const EstimatorSpec& spec, const std::string& option) {
-  return spec.name == kProcess && option == kCommand;
+  return (spec.name == kProcess && option == kCommand) ||
+         (spec.name == kConformEstimator && option == kConformFile);
 }
 
 void NoteCommandPlace(const std::string& place, EstimatorSpec* spec) {
@@ -47,7 +49,9 @@ void SetOwnOptions(EstimatorSpec* spec, const Settings& options) {
   SetOptions(spec, options);
   for (const auto& [option, value] : options) {
     if (IsCommand(*spec, option)) spec->command_place.clear();
-    if (spec->name == kConformEstimator && option == "file") NoteCommandPlace(value, spec);  // not his own
+    if (spec->name != kConformEstimator || option != kConformFile) continue;
+    SetOptions(spec, ConformOptions(value));  // with the digest: another file is not what was looked at
+    NoteCommandPlace(value, spec);            // a command in it is not his own
   }
 }
 

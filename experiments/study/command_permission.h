@@ -16,7 +16,7 @@ inline constexpr size_t kMaxCommandBytes = 2000;  // so that a message shows all
 // The command that the estimator, or the one that it conforms, runs; empty: none.
 std::string FindCommand(const EstimatorSpec& spec);
 
-// Whether this option of the estimator is such a command.
+// Whether this option of the estimator is such a command, or a file that may bring one.
 bool IsCommand(const EstimatorSpec& spec, const std::string& option);
 
 // Notes that the estimator was read from a file, at `place` ("study.yaml:7"). Throws InputError for a command

@@ -23,7 +23,7 @@ void SettleOption(const Place& place, const YAML::Node& line, const Study& study
     labels.push_back(spec.label);
     if (spec.label != label) continue;
     if (IsCommand(spec, option))
-      place.Fail(line, fmt::format("factors: {}: a command cannot vary; leave it out", factor->key));
+      place.Fail(line, fmt::format("factors: {}: a command, or a file that may bring one, cannot vary; leave it out", factor->key));
     for (std::string& level : factor->levels) {
       EstimatorSpec varied = spec;
       place.At(line, [&] {

@@ -97,7 +97,7 @@ TunedOption ReadOption(const Place& place, const YAML::Node& node, const std::st
   const std::unique_ptr<EstimatorModel> model = Configure(spec);
   const std::vector<Parameter> parameters = model->Parameters();
   place.At(node, [&] { FindOption(spec.name, parameters, option); });
-  if (IsCommand(spec, option)) place.Fail(node, name + ": a command cannot be tuned; leave it out");
+  if (IsCommand(spec, option)) place.Fail(node, name + ": a command, or a file that may bring one, cannot be tuned; leave it out");
   const Parameter& parameter = FindOption(spec.name, parameters, option);
   std::set<std::string> seen;
   for (const auto& [text, line] : GivenLevels(place, node, name)) {

@@ -99,10 +99,15 @@ TEST_F(Conform, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(
       IsRefused(RunConform({"--check", file_, "--estimator", "standard"}), {"leave --estimator out"}));
   EXPECT_TRUE(IsRefused(RunConform({"--check", study_}), {"is no JSON"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--check", file_}), {"these very problems"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--check", file_, "--seed", "9", "--out", file_}), {"would replace"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--estimator", "ours", "--seed", "9", "--models", file_, "--out", out_}),
+                        {"is of estimator standard"}));
   EXPECT_TRUE(
       IsRefused(RunConform({"--level", "1", "--estimator", "standard", "--out", file_}), {"--level"}));
-  EXPECT_TRUE(IsRefused(RunRcme({"estimate", folder_.Write("m.csv", MatchHeader() + MatchRows(60)), "--conform", study_}),
-                        {"is no JSON"}));
+  EXPECT_TRUE(IsRefused(
+      RunRcme({"estimate", folder_.Write("m.csv", MatchHeader() + MatchRows(60)), "--conform", study_}),
+      {"is no JSON"}));
 }
 
 // A file of somebody else may name a command.
@@ -124,8 +129,25 @@ TEST_F(Conform, RunsNoCommandThatNobodyAllowed) {
                                  folder_.Write("s.yaml",
                                                "name: s\ntrials: 2\ndata: {scene: uniform_volume}\n"
                                                "estimators:\n  - {conform: theirs.json}\n"),
-                                 "--out", out_}}) {
-    EXPECT_TRUE(IsRefused(RunRcme(arguments), {"touch", "--allow-process"})) << arguments[0];
+                                 "--out", out_},
+        // As a level of a factor, and as one that is tuned.
+        std::vector<std::string>{"run",
+                                 folder_.Write("f.yaml",
+                                               "name: f\ntrials: 2\ndata: {scene: uniform_volume}\n"
+                                               "factors: {conform.file: [theirs.json, none]}\n"
+                                               "estimators:\n  - {name: conform}\n"),
+                                 "--out", out_},
+        std::vector<std::string>{
+            "tune",
+            folder_.Write("t.yaml",
+                          "name: t\ntrials: 2\ndata: {scene: uniform_volume}\n"
+                          "estimators:\n  - {name: conform}\n"
+                          "tune: {estimator: conform, target: failure, at_most: .5, options: "
+                          "{file: [theirs.json, none]}}\n"),
+            "--out", folder_.Path("tuned.yaml")}}) {
+    const ProgramResult result = RunRcme(arguments);
+    EXPECT_TRUE(IsRefused(result, {"touch", "--allow-process"}) || IsRefused(result, {"may bring one"}))
+        << arguments[0] << result.err;
     EXPECT_FALSE(std::filesystem::exists(marker)) << arguments[0];
   }
 }

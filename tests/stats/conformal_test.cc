@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -13,11 +14,7 @@
 namespace rcme {
 namespace {
 
-std::vector<std::int64_t> OneEach(size_t n) {
-  std::vector<std::int64_t> groups(n);
-  std::iota(groups.begin(), groups.end(), 0);
-  return groups;
-}
+std::vector<double> OneEach(size_t n) { return std::vector<double>(n, 1.0); }
 
 // k = ceil((n + 1) level) by hand.
 TEST(ConformalBound, IsAnOrderStatistic) {
@@ -31,14 +28,23 @@ TEST(ConformalBound, IsAnOrderStatistic) {
   EXPECT_EQ(ConformalBound({}, {}, 0.95), kInfinity);
 }
 
-// Two groups of weight 1/3 each: {1, 2, 3, 4} in quarters of it, {10} whole.
-TEST(ConformalBound, WeighsGroupsAlike) {
-  const std::vector<double> scores = {4, 10, 1, 3, 2};
-  const std::vector<std::int64_t> groups = {7, 9, 7, 7, 7};
-  EXPECT_EQ(ConformalBound(scores, groups, 1.0 / 6.0), 2.0);
-  EXPECT_EQ(ConformalBound(scores, groups, 1.0 / 3.0), 4.0);
-  EXPECT_EQ(ConformalBound(scores, groups, 0.34), 10.0);
-  EXPECT_EQ(ConformalBound(scores, groups, 0.67), kInfinity);
+// Two groups, {1, 2, 3, 4} and {10}, and level 1/3: at most 2/3 * 2 - 1/3 = 1 of a group may lie beyond, the
+// whole second one; at level 1/2, 1/2.
+TEST(ConformalBound, CountsGroups) {
+  const std::vector<double> scores = {4, 10, 1, 3, 2}, shares = {0.25, 1.0, 0.25, 0.25, 0.25};
+  EXPECT_EQ(ConformalBound(scores, shares, 1.0 / 3.0), 4.0);
+  EXPECT_EQ(ConformalBound(scores, shares, 0.25), 3.0);  // 1.25 beyond
+  EXPECT_EQ(ConformalBound(scores, shares, 0.5), 10.0);
+  EXPECT_EQ(ConformalBound(scores, shares, 0.67), kInfinity);
+}
+
+// The scores of one stratum, half a group's problems each: A = 3 of six groups, and level .5 lets 1 lie
+// beyond.
+TEST(ConformalBound, OfAPartOfEachGroup) {
+  const std::vector<double> scores = {1, 2, 3, 4, 5, 6}, shares(6, 0.5);
+  EXPECT_EQ(ConformalBound(scores, shares, 0.5), 4.0);
+  EXPECT_EQ(ConformalBound(scores, shares, 0.75), 6.0);  // none
+  EXPECT_EQ(ConformalBound(scores, shares, 0.8), kInfinity);
 }
 
 TEST(ConformalBound, NeedsSoManyGroups) {
@@ -55,6 +61,8 @@ TEST(ConformalBound, NeedsSoManyGroups) {
 TEST(ConformalBound, RefusesWhatIsNone) {
   const std::vector<double> scores = {1.0};
   EXPECT_THROW(ConformalBound(scores, {}, 0.9), std::invalid_argument);
+  EXPECT_THROW(ConformalBound(scores, std::vector<double>{0.0}, 0.9), std::invalid_argument);
+  EXPECT_THROW(ConformalBound(scores, std::vector<double>{1.5}, 0.9), std::invalid_argument);
   EXPECT_THROW(ConformalBound(scores, OneEach(1), 1.0), std::invalid_argument);
   EXPECT_THROW(FewestGroupsForBound(0.0), std::invalid_argument);
 }
@@ -74,28 +82,39 @@ TEST(ConformalBound, CoversTheNextScore) {
   EXPECT_TRUE(rate.Contains(49.0 / 51.0)) << rate.lower << " " << rate.upper;
 }
 
-// Groups whose level differs: a random score of a new group is covered as promised by the bound for groups;
-// that for independent scores misses the promise, so that the test has power.
-TEST(ConformalBound, CoversAScoreOfANewGroup) {
+// Groups whose level differs, and that give more or fewer scores (the others are refused) the higher it is:
+// of the scores of a new group at most the promised share lies beyond, on average, as the bound for
+// independent scores does not have it.
+TEST(ConformalBound, HoldsForANewGroup) {
   RandomStream rng({.seed = 1, .purpose = 411});
   const int num_groups = 12, per_group = 20, repetitions = 4000;
-  std::int64_t covered = 0, covered_as_if_independent = 0;
+  double given = 0.0, beyond = 0.0, beyond_as_if_independent = 0.0;
+  const auto draw = [&] {
+    std::vector<double> scores;
+    const double level = rng.Normal();
+    for (int i = 0; i < per_group; ++i) {
+      const double score = level + 0.1 * rng.Normal();
+      if (rng.Uniform() < (level > 0.5 ? 1.0 : 0.5)) scores.push_back(score);
+    }
+    return scores;
+  };
   for (int repetition = 0; repetition < repetitions; ++repetition) {
     std::vector<double> scores;
-    std::vector<std::int64_t> groups;
     for (int group = 0; group < num_groups; ++group) {
-      const double level = rng.Normal();
-      for (int i = 0; i < per_group; ++i) {
-        scores.push_back(level + 0.1 * rng.Normal());
-        groups.push_back(group);
-      }
+      const std::vector<double> more = draw();
+      scores.insert(scores.end(), more.begin(), more.end());
     }
-    const double next = rng.Normal() + 0.1 * rng.Normal();
-    covered += next <= ConformalBound(scores, groups, 0.9);
-    covered_as_if_independent += next <= ConformalBound(scores, OneEach(scores.size()), 0.9);
+    const double bound = ConformalBound(scores, std::vector<double>(scores.size(), 1.0 / per_group), 0.8);
+    const double independent = ConformalBound(scores, OneEach(scores.size()), 0.8);
+    for (const double score : draw()) {
+      given += 1.0;
+      beyond += score > bound;
+      beyond_as_if_independent += score > independent;
+    }
   }
-  EXPECT_GE(ExactBinomialInterval(covered, repetitions, 0.999).upper, 0.9);
-  EXPECT_LT(ExactBinomialInterval(covered_as_if_independent, repetitions, 0.999).upper, 0.9);
+  // 4,000 groups: the standard error of the share is at most .4 / sqrt(4000) = .006.
+  EXPECT_LE(beyond / given, 0.2 + 0.018);
+  EXPECT_GE(beyond_as_if_independent / given, 0.2 + 0.018);
 }
 
 TEST(ConformalPValue, CountsWhatIsAsGreat) {

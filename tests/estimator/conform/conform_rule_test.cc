@@ -81,7 +81,7 @@ TEST(ConformJudge, RefusesWhatIsNoRule) {
       [](ConformRule* r) { r->log_odds_slope = kInfinity; },
       [](ConformRule* r) { r->greatest_log_odds = kNaN; },
       [](ConformRule* r) { r->familiar.pop_back(); },
-      [](ConformRule* r) { r->familiar[3] = kNaN; },
+      [](ConformRule* r) { r->familiar[3] = kInfinity; },
       [](ConformRule* r) { r->familiar_features[1] = kNumVisibleFeatures; },
       [](ConformRule* r) { r->familiar.clear(); }};
   for (size_t i = 0; i < faults.size(); ++i) {
@@ -126,7 +126,6 @@ TEST_F(Apply, WidensTheCovarianceAndStatesTheProbability) {
   EXPECT_EQ(after.inliers, before.inliers);
   EXPECT_TRUE(after.pose_cov.isApprox(4.0 * before.pose_cov, 1e-12));
   EXPECT_NEAR(after.failure_probability, 1.0 / (1.0 + std::exp(3.25)), 1e-9);
-  EXPECT_EQ(after.probability_domain, ProbabilityDomain::kVerified);
 }
 
 TEST_F(Apply, RefusesWhatIsNotAccepted) {
@@ -139,16 +138,24 @@ TEST_F(Apply, RefusesWhatIsNotAccepted) {
   EXPECT_EQ(stated.pose_cov, CovarianceOfAllMotions());
 }
 
-// Of 21 calibration answers nothing can be strange at 1 %: 1 / 22. With 210, 1 / 211.
-TEST_F(Apply, SaysThatItIsStrange) {
+// Of 21 calibration answers nothing can be strange at 1 %: 1 / 22, so that the domain is not stated. With
+// 210, 1 / 211.
+TEST_F(Apply, SaysThatItIsStrangeAndRefusesIt) {
   ConformRule rule = ExampleRule();
   const std::vector<double> once = rule.familiar;
   EXPECT_EQ(ConformJudge(rule).Apply(problem_, Answer(-20.0), true).probability_domain,
-            ProbabilityDomain::kVerified);
+            ProbabilityDomain::kNotStated);
   for (int i = 0; i < 9; ++i) rule.familiar.insert(rule.familiar.end(), once.begin(), once.end());
-  const MotionEstimate strange = ConformJudge(rule).Apply(problem_, Answer(-20.0), true);
+  const MotionEstimate strange = ConformJudge(rule).Apply(problem_, Answer(-20.0), false);
   EXPECT_EQ(strange.probability_domain, ProbabilityDomain::kExtrapolated);
   EXPECT_THAT(strange.message, testing::HasSubstr("(direction_sd)"));
+  const MotionEstimate refused = ConformJudge(rule).Apply(problem_, Answer(-20.0), true);
+  EXPECT_EQ(refused.status, MotionStatus::kTooUncertain);
+  EXPECT_THAT(refused.message, testing::HasSubstr("unlike the problems"));
+  MotionEstimate usual = Answer(-6.5);
+  usual.inliers.resize(usual.inliers.size());
+  EXPECT_EQ(ConformJudge(rule).Apply(problem_, usual, false).probability_domain,
+            ProbabilityDomain::kVerified);
 }
 
 TEST_F(Apply, LeavesRefusalsAsTheyAre) {
