@@ -187,22 +187,6 @@ void CorrectLogOdds(const Rows& rows, ConformRule* rule) {
           : FitLogistic({}, is_wrong, {}, kSlopePenalty).intercept;  // the odds say nothing
 }
 
-// p-value of "P(a problem is answered wrongly, at most `threshold`) exceeds `at_most`".
-double AcceptPValue(const AnswerRows& answers, const std::vector<double>& scores, double threshold,
-                    double at_most) {
-  if (!answers.HasSharedGroups()) {
-    ErrorCount count{0, std::ssize(answers.problems)};
-    for (size_t i = 0; i < scores.size(); ++i)
-      count.errors += answers.rows[i].is_wrong && scores[i] <= threshold;
-    return ExcessPValue(count, at_most);
-  }
-  double losses = 0.0;
-  for (size_t i = 0; i < scores.size(); ++i)
-    if (answers.rows[i].is_wrong && scores[i] <= threshold) losses += answers.rows[i].share;
-  const std::int64_t num_groups = answers.CountGroups();
-  return MeanLossPValue(losses / static_cast<double>(num_groups), num_groups, at_most);
-}
-
 // From strict to lax, fixed beforehand, whatever the answers are.
 std::vector<double> Thresholds() {
   std::vector<double> thresholds;
@@ -211,13 +195,26 @@ std::vector<double> Thresholds() {
   return thresholds;
 }
 
-// The laxest certified threshold of `scores`, the greater the worse; nothing: none is.
+// The laxest certified threshold of `scores`, the greater the worse; nothing: none is. What is tested at each
+// is "P(a problem is answered wrongly, at most the threshold) exceeds what is promised".
 std::optional<double> CertifyThreshold(const AnswerRows& answers, const std::vector<double>& scores,
                                        const ConformPromise& promise) {
+  const bool shares_groups = answers.HasSharedGroups();
+  const std::int64_t n = answers.CountGroups();
+  std::vector<std::pair<double, double>> losses;  // score and loss of the wrong answers, rising
+  for (size_t i = 0; i < scores.size(); ++i)
+    if (answers.rows[i].is_wrong) losses.emplace_back(scores[i], answers.rows[i].share);
+  std::ranges::sort(losses);
   const std::vector<double> thresholds = Thresholds();
   std::vector<double> p_values;
+  double loss = 0.0;
+  size_t num_wrong = 0;
   for (const double threshold : thresholds) {
-    p_values.push_back(AcceptPValue(answers, scores, threshold, promise.wrong_and_accepted));
+    while (num_wrong < losses.size() && losses[num_wrong].first <= threshold)
+      loss += losses[num_wrong++].second;
+    p_values.push_back(
+        shares_groups ? MeanLossPValue(loss / static_cast<double>(n), n, promise.wrong_and_accepted)
+                      : ExcessPValue({static_cast<std::int64_t>(num_wrong), n}, promise.wrong_and_accepted));
     if (p_values.back() > promise.risk) break;
   }
   const size_t num_certified = CountCertified(p_values, promise.risk);
