@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-constexpr double kLeastRisk = 1e-12, kRounding = 1e-9;  // of the greatest element of a covariance
+constexpr double kLeastRisk = 1e-12, kRounding = 2e-6;  // of the greatest element of a covariance
 
 void RequireCovariance(const Matrix5d& covariance) {
   const double scale = covariance.cwiseAbs().maxCoeff();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <exception>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "estimator/geometry/triangulation.h"
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
+#include "estimator/protection_level.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -72,9 +74,29 @@ std::unique_ptr<MotionEstimator> MakeChosen(const TwoViewOptions& options) {
   return model->Make();
 }
 
+template <int kRows, int kColumns>
+Eigen::Matrix<double, kRows, kColumns> FromCv(const cv::Mat& matrix) {
+  const cv::Mat_<double> numbers = matrix;
+  Eigen::Matrix<double, kRows, kColumns> copy;
+  for (int r = 0; r < kRows; ++r) {
+    for (int c = 0; c < kColumns; ++c) copy(r, c) = numbers(r, c);
+  }
+  return copy;
+}
+
+// d [position, rotation about camera 1's axes] / d [w, b], 6x5. From R <- Exp(w) R, t <- t + B b: R' turns
+// into R' Exp(-w) = Exp(-R'w) R', and -R't into -R'(I - [w]x)(t + B b) = -R't - R'[t]x w - R' B b.
+Eigen::Matrix<double, 6, 5> RosJacobian(const RelativePose& pose) {
+  Eigen::Matrix<double, 6, 5> J = Eigen::Matrix<double, 6, 5>::Zero();
+  J.topLeftCorner<3, 3>() = -pose.R.transpose() * CrossMatrix(pose.t);
+  J.topRightCorner<3, 2>() = -pose.R.transpose() * DirectionBasis(pose.t);
+  J.bottomLeftCorner<3, 3>() = -pose.R.transpose();
+  return J;
+}
+
 // `is_conformed`: the answer's domain is that of the file.
 TwoViewMotion MotionFrom(const MotionProblem& problem, const MotionEstimate& estimate,
-                         double greatest_probability, bool is_conformed) {
+                         double greatest_probability, double integrity_risk, bool is_conformed) {
   TwoViewMotion motion;
   const size_t n = problem.matches.size();
   motion.status = StatusName(estimate.status);
@@ -97,6 +119,9 @@ TwoViewMotion MotionFrom(const MotionProblem& problem, const MotionEstimate& est
   motion.t = ToCv(pose.t);
   motion.covariance = ToCv(estimate.pose_cov);
   motion.direction_basis = ToCv(DirectionBasis(pose.t));
+  const ProtectionLevels levels = ComputeProtectionLevels(estimate, integrity_risk);
+  motion.rotation_protection_level = levels.rotation_rad;
+  motion.direction_protection_level = levels.direction_rad;
   for (const int i : estimate.inliers) motion.is_inlier[static_cast<size_t>(i)] = true;
   Triangulate(problem, pose, &motion);
   return motion;
@@ -106,7 +131,7 @@ TwoViewMotion MotionFrom(const MotionProblem& problem, const MotionEstimate& est
 
 struct TwoViewInitializer::Setup {
   Camera camera1, camera2;
-  double sigma_px, greatest_failure_probability;
+  double sigma_px, greatest_failure_probability, integrity_risk;
   std::uint64_t seed;
   std::unique_ptr<MotionEstimator> estimator;
   bool is_conformed;
@@ -126,10 +151,27 @@ const char* Name(TwoViewVerdict verdict) {
   return "bad input";
 }
 
+RosPose ComputeRosPose(const TwoViewMotion& motion) {
+  if (motion.R.empty() || motion.t.empty() || motion.covariance.empty())
+    throw std::runtime_error(fmt::format("the answer has no motion, its status is {}", motion.status));
+  const RelativePose pose{FromCv<3, 3>(motion.R), FromCv<3, 1>(motion.t)};
+  const Eigen::Vector3d position = -pose.R.transpose() * pose.t;
+  Eigen::Quaterniond orientation(Eigen::Matrix3d(pose.R.transpose()));
+  if (orientation.w() < 0.0) orientation.coeffs() = -orientation.coeffs();
+  const Eigen::Matrix<double, 6, 5> J = RosJacobian(pose);
+  const Eigen::Matrix<double, 6, 6> covariance = J * FromCv<5, 5>(motion.covariance) * J.transpose();
+  RosPose ros;
+  for (size_t i = 0; i < 3; ++i) ros.position[i] = position(static_cast<Eigen::Index>(i));
+  for (size_t i = 0; i < 4; ++i) ros.orientation[i] = orientation.coeffs()(static_cast<Eigen::Index>(i));
+  for (size_t i = 0; i < 36; ++i)
+    ros.covariance[i] = covariance(static_cast<Eigen::Index>(i / 6), static_cast<Eigen::Index>(i % 6));
+  return ros;
+}
+
 TwoViewInitializer::TwoViewInitializer(const TwoViewOptions& options)
     : setup_(new Setup{CameraFrom(options.K1, options.size1, 1), CameraFrom(options.K2, options.size2, 2),
-                       options.sigma_px, options.greatest_failure_probability, options.seed,
-                       MakeChosen(options), !options.conform.empty()}) {
+                       options.sigma_px, options.greatest_failure_probability, options.integrity_risk,
+                       options.seed, MakeChosen(options), !options.conform.empty()}) {
   if (!(options.sigma_px > 0.0) || !std::isfinite(options.sigma_px))
     throw std::runtime_error(
         fmt::format("sigma_px: {} is not allowed; give a number above 0", options.sigma_px));
@@ -137,6 +179,9 @@ TwoViewInitializer::TwoViewInitializer(const TwoViewOptions& options)
     throw std::runtime_error(
         fmt::format("greatest_failure_probability: {} is not allowed; give a number in [0, 1]",
                     options.greatest_failure_probability));
+  if (!(options.integrity_risk >= 1e-12) || options.integrity_risk >= 1.0)
+    throw std::runtime_error(fmt::format("integrity_risk: {} is not allowed; give a number in [1e-12, 1)",
+                                         options.integrity_risk));
 }
 
 TwoViewInitializer::~TwoViewInitializer() = default;
@@ -155,7 +200,7 @@ TwoViewMotion TwoViewInitializer::Estimate(const std::vector<cv::Point2f>& point
     problem.noise_scale = NoiseScaleOf(sigmas);
     RandomStream rng({.seed = setup_->seed});
     return MotionFrom(problem, setup_->estimator->Estimate(problem, rng),
-                      setup_->greatest_failure_probability, setup_->is_conformed);
+                      setup_->greatest_failure_probability, setup_->integrity_risk, setup_->is_conformed);
   } catch (const std::exception& error) {  // memory, or a fault of ours: a robot goes on without this pair
     return BadInput(fmt::format("internal error: {}", error.what()));
   }

@@ -10,6 +10,7 @@
 // the top-left pixel.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -34,7 +35,8 @@ struct TwoViewOptions {
   // A file of `rcme conform`, in place of estimator and options, which it names: covariance and probability
   // are then those that it promises, and what its accept rule does not accept is refused. Empty: none.
   std::string conform;
-  std::uint64_t seed = 1;  // of the samples: equal input, equal answer
+  std::uint64_t seed = 1;        // of the samples: equal input, equal answer
+  double integrity_risk = 1e-3;  // of the protection levels, in [1e-12, 1)
 };
 
 enum class TwoViewVerdict {
@@ -64,6 +66,11 @@ struct TwoViewMotion {
   // Whether that holds for matches such as these: "verified", "extrapolated" or "not_stated".
   std::string probability_domain = "not_stated";
   double sigma_px = std::numeric_limits<double>::quiet_NaN();  // as estimated from the residuals
+  // The angles, rad, that the error of the rotation and that of the direction exceed with a probability of at
+  // most integrity_risk each, by the covariance and the failure probability; pi: that is as probable for
+  // every angle (estimator/protection_level.h).
+  double rotation_protection_level = std::numeric_limits<double>::quiet_NaN();
+  double direction_protection_level = std::numeric_limits<double>::quiet_NaN();
 
   // One per match given: whether it agrees with the motion; its point in camera 1's frame, baselines, and
   // whether there is one (it agrees, and lies in front of both cameras).
@@ -71,6 +78,24 @@ struct TwoViewMotion {
   std::vector<cv::Point3f> points;
   std::vector<bool> is_triangulated;
 };
+
+// What ROS' geometry_msgs/PoseWithCovariance holds: the pose of camera 2 in the frame of camera 1. Both
+// frames are optical frames (x right, y down, z forward; REP 103), so that header.frame_id is that of camera
+// 1's image. A point X2 in camera 2's frame is orientation * X2 + position in camera 1's.
+struct RosPose {
+  std::array<double, 3> position{};     // x, y, z: -R't, of unit length, as the scale cannot be seen
+  std::array<double, 4> orientation{};  // quaternion x, y, z, w of R', w >= 0
+  // 6x6, row-major, of [x, y, z, rotation about X, about Y, about Z]: dp in units of the length of the
+  // translation, d in rad. The true pose is position + dp and Exp(d) * orientation: the rotation is about the
+  // fixed axes of camera 1, as ROS has it, and follows the estimated one. That of t and R of the motion is
+  // about the axes of camera 2. To first order; rank 5, with nothing along the position. For a translation of
+  // the length s multiply position by s, the first three rows and then the first three columns by s, and add
+  // the variance of s times position * position'.
+  std::array<double, 36> covariance{};
+};
+
+// Throws std::runtime_error for a motion without one: kRefused and kBadInput.
+RosPose ComputeRosPose(const TwoViewMotion& motion);
 
 // Const, and may be called from several threads at once.
 class TwoViewInitializer {
