@@ -94,6 +94,7 @@ A first session:
   AddSummarizeCommand(app);
   AddCompareCommand(app);
   AddGateCommand(app);
+  AddIntegrityCommand(app);
   AddConformCommand(app);
   AddReliabilityCommand(app);
   AddMarginalsCommand(app);

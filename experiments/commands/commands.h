@@ -18,6 +18,7 @@ void AddSummarizeCommand(CLI::App& app);
 void AddCompareCommand(CLI::App& app);
 void AddConformCommand(CLI::App& app);
 void AddGateCommand(CLI::App& app);
+void AddIntegrityCommand(CLI::App& app);
 void AddReliabilityCommand(CLI::App& app);
 void AddMarginalsCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);

@@ -45,11 +45,7 @@ EstimatorSpec ChooseEstimator(const ConformArguments& arguments, const Study& st
     if (arguments.changes.allow_process) AllowAndSay(&chosen);
     return chosen.front();
   }
-  if (arguments.estimator.empty() && study.estimators.size() != 1)
-    throw InputError("conform: the study has several estimators; choose one with --estimator");
-  return arguments.estimator.empty()
-             ? study.estimators.front()
-             : FindStudyEstimator(study, arguments.estimator, arguments.changes.allow_process);
+  return FindOnlyEstimator(study, "conform", arguments.estimator, arguments.changes.allow_process);
 }
 
 StudyPlan MakeCalibrationPlan(const ConformArguments& arguments) {
@@ -64,12 +60,7 @@ StudyPlan MakeCalibrationPlan(const ConformArguments& arguments) {
     study.failure = {rule.max_rotation_error_deg, rule.max_direction_error_deg};
   }
   StudyPlan plan = MakePlan(study, arguments.study);
-  for (const Condition& condition : plan.conditions) {
-    if (condition.source->ChosenParts().empty()) continue;
-    for (const auto& [key, value] : SettingsOf(study, condition.levels))
-      if (key == "tilted_to" && value != "none")
-        throw InputError("conform: the trials of this study are weighted (tilted_to); leave that out");
-  }
+  RequireUnweighted(plan, "conform");
   return plan;
 }
 
@@ -106,15 +97,11 @@ void RequireArguments(const ConformArguments& arguments) {
 // Nothing: the part of a shard is done.
 std::optional<AnswerRows> GetAnswers(const ConformArguments& arguments, const StudyPlan& plan,
                                      NewProblem new_problem, Runner* runner) {
-  if (runner->ReadsParts()) {
-    const size_t num_groups = runner->plan().groups.size();
-    RequireNoneMissing(runner->plan(), FindMissingIn(runner->plan(), runner->results(), 0, num_groups),
-                       runner->results().num_shards);
-    PrintCosts(*runner);
-  } else {
+  if (!runner->ReadsParts()) {
     CheckProcessEstimators(plan.study.estimators);
     GetCalibration(plan, runner);
   }
+  RequireWhole(*runner);
   if (arguments.shards.shard.empty()) return ReadCalibration(plan, new_problem, *runner);
   PrintPartIsDone(runner->shard(), arguments.out);
   return std::nullopt;

@@ -71,4 +71,12 @@ EstimatorSpec FindStudyEstimator(const Study& study, const std::string& name, bo
   return ChosenEstimator(choice);
 }
 
+EstimatorSpec FindOnlyEstimator(const Study& study, const std::string& command, const std::string& name,
+                                bool allow_process) {
+  if (!name.empty()) return FindStudyEstimator(study, name, allow_process);
+  if (study.estimators.size() != 1)
+    throw InputError(command + ": the study has several estimators; choose one with --estimator");
+  return study.estimators.front();
+}
+
 }  // namespace rcme

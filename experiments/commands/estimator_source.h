@@ -28,4 +28,9 @@ EstimatorSpec ChosenEstimator(const EstimatorChoice& choice);
 // ChosenEstimator.
 EstimatorSpec FindStudyEstimator(const Study& study, const std::string& name, bool allow_process);
 
+// The same, or without a name the study's only one. Throws InputError that begins with `command` if it has
+// several.
+EstimatorSpec FindOnlyEstimator(const Study& study, const std::string& command, const std::string& name,
+                                bool allow_process);
+
 }  // namespace rcme

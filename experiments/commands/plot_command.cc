@@ -25,6 +25,7 @@ const std::vector<Kind>& Kinds() {
        "success over the time of a call, from `rcme summarize --pooled --times`"},
       {"reliability", "RELIABILITY.json",
        "stated probabilities of failure and what happened, from `rcme reliability`"},
+      {"stanford", "INTEGRITY.json", "protection levels against errors, from `rcme integrity`"},
       {"tune", "TUNE.json", "the figures of `rcme tune --figures`"},
       {"transfer", "TRANSFER.json", "the figures of `rcme transfer`"},
       {"crossings", "CROSSINGS.json", "where a rate crosses a value, over a factor, from `rcme solve --out`"},

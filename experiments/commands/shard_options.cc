@@ -56,6 +56,13 @@ void PrintCosts(const Runner& runner) {
   if (runner.ReadsParts()) PrintMessage("{}\n", DescribeCosts(runner.plan(), runner.results()));
 }
 
+void RequireWhole(const Runner& runner) {
+  const WorkPlan& plan = runner.plan();
+  RequireNoneMissing(plan, FindMissingIn(plan, runner.results(), 0, plan.groups.size()),
+                     runner.results().num_shards);
+  PrintCosts(runner);
+}
+
 void PrintPartIsDone(const Shard& shard, const std::string& path) {
   PrintMessage(
       "done: shard {} of {} in {}; next, when all shards are done: the same command with --merge PARTS\n",

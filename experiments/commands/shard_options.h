@@ -37,6 +37,9 @@ Runner MakeRunner(const WorkPlan& plan, const std::string& checkpoint, int num_t
 // Once nothing is missing of parts: what the items took, on standard error.
 void PrintCosts(const Runner& runner);
 
+// Of the parts of a whole plan: throws ItemsAreMissing if some are; then PrintCosts.
+void RequireWhole(const Runner& runner);
+
 // The last word of a command that has done its part.
 void PrintPartIsDone(const Shard& shard, const std::string& path);
 

@@ -4,17 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
-#include "experiments/study/population.h"
 #include "experiments/trial/covariance_score.h"
 #include "experiments/trial/trial.h"
-#include "experiments/trial/trial_range.h"
-#include "parameters/input_error.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -24,12 +19,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kTrialsOfItem = 50;
 constexpr size_t kNumbersOfRow = 5 + kNumVisibleFeatures;
-
-TrialRange FindTrials(const StudyPlan& plan, const ItemPlace& place) {
-  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
-  const auto end = static_cast<std::uint32_t>(plan.conditions[place.group].num_trials);
-  return {first, std::min(first + kTrialsOfItem, end)};
-}
 
 double LogDeterminant(const Matrix5d& covariance) {
   const Eigen::LDLT<Matrix5d> ldlt(covariance);
@@ -66,9 +55,7 @@ Json RowAsJson(std::uint32_t trial, const AnswerRow& row) {
 }
 
 // [[refused trials], number without truth, [rows]]
-std::string ComputeAnswers(const StudyPlan& plan, const ItemPlace& place) {
-  const Condition& condition = plan.conditions[place.group];
-  const TrialRange trials = FindTrials(plan, place);
+std::string ComputeAnswers(const StudyPlan& plan, const Condition& condition, const TrialRange& trials) {
   std::int64_t num_unscored = 0;
   Json refused = Json::array(), rows = Json::array();
   for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
@@ -97,51 +84,10 @@ AnswerRow RowFrom(const std::vector<double>& numbers) {
   return row;
 }
 
-// The group of a trial: answers of different groups are independent.
-class Grouping {
- public:
-  Grouping(const StudyPlan& plan, NewProblem new_problem) : plan_(plan), new_problem_(new_problem) {
-    if (new_problem == NewProblem::kCondition && plan.study.common_scenes)
-      throw InputError(
-          "conform: the conditions share their scenes (common_scenes), so none is new; give --new trial");
-    for (const Condition& condition : plan.conditions) {
-      const std::optional<std::string> scene = condition.source->SharedScene();
-      if (scene) scenes_.emplace(*scene, static_cast<std::int64_t>(scenes_.size()));
-    }
-  }
-
-  std::int64_t Of(const Condition& condition, std::uint32_t trial) const {
-    const bool is_new_condition = new_problem_ == NewProblem::kCondition;
-    if (const std::optional<std::string> scene = condition.source->SharedScene()) {
-      const auto pairs = static_cast<std::uint32_t>(condition.source->NumTrials(1));
-      return Pair(scenes_.at(*scene), is_new_condition ? 0 : trial % pairs);
-    }
-    if (is_new_condition) return Pair(Draw(condition), 0);
-    const auto repeats = static_cast<std::uint32_t>(plan_.study.repeats_per_scene);
-    return Pair(plan_.study.common_scenes ? 0 : condition.index, trial / repeats);
-  }
-
-  std::int64_t NumScenes() const { return std::ssize(scenes_); }
-
- private:
-  static std::int64_t Pair(std::int64_t high, std::uint32_t low) { return (high << 32) + low; }
-
-  // Conditions of one draw differ in the factors alone.
-  std::int64_t Draw(const Condition& condition) const {
-    const auto factor = std::ranges::find(plan_.factor_names, kDrawFactor);
-    if (factor == plan_.factor_names.end()) return condition.index;
-    return std::stoll(condition.levels.at(static_cast<size_t>(factor - plan_.factor_names.begin())));
-  }
-
-  const StudyPlan& plan_;
-  NewProblem new_problem_;
-  std::map<std::string, std::int64_t> scenes_;
-};
-
-void ReadPiece(const StudyPlan& plan, const Grouping& grouping, const ItemPlace& place,
+void ReadPiece(const StudyPlan& plan, const TrialGrouping& grouping, const ItemPlace& place,
                const std::string& json, AnswerRows* all) {
   const Condition& condition = plan.conditions[place.group];
-  const TrialRange trials = FindTrials(plan, place);
+  const TrialRange trials = FindTrialsOfItem(plan, place, kTrialsOfItem);
   const std::int64_t most = trials.end - trials.first;
   const Json piece = ParsePiece(json);
   RequireSize(piece, 3);
@@ -149,7 +95,7 @@ void ReadPiece(const StudyPlan& plan, const Grouping& grouping, const ItemPlace&
           static_cast<std::int64_t>(piece[0].size() + piece[2].size()) <= most);
   const auto group_of = [&](double trial) {
     Require(trial >= trials.first && trial < trials.end);
-    return grouping.Of(condition, static_cast<std::uint32_t>(trial));
+    return grouping.GroupOf(condition, static_cast<std::uint32_t>(trial));
   };
   for (const Json& trial : piece[0])
     all->problems.push_back({group_of(static_cast<double>(CountFrom(trial, trials.end))), true});
@@ -165,36 +111,19 @@ void ReadPiece(const StudyPlan& plan, const Grouping& grouping, const ItemPlace&
 
 }  // namespace
 
-NewProblem UsualNewProblem(const StudyPlan& plan) {
-  const bool is_drawn = plan.study.population.has_value();
-  return is_drawn || Grouping(plan, NewProblem::kTrial).NumScenes() > 1 ? NewProblem::kCondition
-                                                                        : NewProblem::kTrial;
-}
-
-bool HasRealScenes(const StudyPlan& plan) { return Grouping(plan, NewProblem::kTrial).NumScenes() > 0; }
-
-WorkPlan PlanCalibration(const StudyPlan& plan) {
-  WorkPlan work{"conform", "block", plan.identity, {}};
-  for (const Condition& condition : plan.conditions) {
-    const auto num_trials = static_cast<size_t>(condition.num_trials);
-    work.groups.push_back(
-        {fmt::format("condition {}", condition.index), (num_trials + kTrialsOfItem - 1) / kTrialsOfItem});
-  }
-  return work;
-}
+WorkPlan PlanCalibration(const StudyPlan& plan) { return PlanTrialItems(plan, "conform", kTrialsOfItem); }
 
 void GetCalibration(const StudyPlan& plan, Runner* runner) {
-  const ProgressUnit unit{"trials", [&](const ItemPlace& place) -> std::int64_t {
-                            const TrialRange trials = FindTrials(plan, place);
-                            return trials.end - trials.first;
-                          }};
-  runner->Get(
-      ListItems(runner->plan(), runner->shard()),
-      [&](const ItemPlace& place) { return ComputeAnswers(plan, place); }, unit);
+  GetTrialItems(
+      plan, kTrialsOfItem,
+      [&](const Condition& condition, const TrialRange& trials) {
+        return ComputeAnswers(plan, condition, trials);
+      },
+      runner);
 }
 
 AnswerRows ReadCalibration(const StudyPlan& plan, NewProblem new_problem, const Runner& runner) {
-  const Grouping grouping(plan, new_problem);
+  const TrialGrouping grouping(plan, new_problem);
   AnswerRows all;
   ReadResults(
       runner.plan(), runner.results(), 0, runner.plan().groups.size(),

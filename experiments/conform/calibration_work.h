@@ -4,20 +4,10 @@
 #include "experiments/conform/answer_row.h"
 #include "experiments/core/work/runner.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/trial/trial_grouping.h"
+#include "experiments/trial/trial_items.h"
 
 namespace rcme {
-
-// What a new problem is, and so what is independent.
-enum class NewProblem {
-  kTrial,      // another trial of these conditions, or another pair of these real scenes
-  kCondition,  // a trial of another condition: drawn as these were, or of another real scene
-};
-
-// Of a population of conditions, and of several real scenes: another one; otherwise another trial.
-NewProblem UsualNewProblem(const StudyPlan& plan);
-
-// Whether pairs are of real scenes, whose images they share.
-bool HasRealScenes(const StudyPlan& plan);
 
 // `plan` has one estimator.
 WorkPlan PlanCalibration(const StudyPlan& plan);

@@ -23,6 +23,7 @@ from plot_test_case import PLOTS, PlotTestCase
 
 import crossings_test
 import fake_audit
+import fake_integrity
 import fake_reliability
 import fake_tune
 import validation_test
@@ -78,6 +79,7 @@ def cases(folder):
                                "--where", "clustered_share=0.5", "--event", "failure,failure_or_refusal"], False),
         ("time_against_success", [str(peers / f"peers_{name}_1ms.csv") for name in ("uniform", "forward")], False),
         ("reliability", [written("reliability.json", probabilities)], False),
+        ("stanford", [written("integrity.json", fake_integrity.content())], False),
         ("validation", [written("validation.json", validation_test.fake())], False),
         ("audit_power", [written("power.csv", POWER)], False),
         ("benchmarks", [written("benchmarks.json", benchmarks())], False),

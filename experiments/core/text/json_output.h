@@ -15,6 +15,7 @@ inline constexpr const char* kConformReportFormat = "rcme conform report 1";
 inline constexpr const char* kCrossingsFormat = "rcme crossings 1";
 inline constexpr const char* kEstimateFormat = "rcme estimate 2";
 inline constexpr const char* kGateFormat = "rcme gate 1";
+inline constexpr const char* kIntegrityFormat = "rcme integrity 1";
 inline constexpr const char* kMarginalsFormat = "rcme marginals 1";
 inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
 inline constexpr const char* kPaperTableFormat = "rcme paper table 1";

@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_source.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/commands/process_option.h"
+#include "experiments/commands/shard_options.h"
+#include "experiments/commands/study_source.h"
+#include "experiments/commands/time_limit.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/integrity/integrity_output.h"
+#include "experiments/study/study_plan.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kRiskIsExceeded = 1;  // exit code
+
+struct IntegrityArguments {
+  std::string study, estimator, out;
+  std::int64_t trials = -1;
+  IntegrityTerms terms;
+  int threads = 0;
+  StudyChanges changes;
+  ShardArguments shards;
+};
+
+StudyPlan MakeIntegrityPlan(const IntegrityArguments& arguments) {
+  Study study = LoadChangedStudy(arguments.study, arguments.changes);
+  RequireFixedOptions(study, "integrity");
+  study.estimators = {
+      FindOnlyEstimator(study, "integrity", arguments.estimator, arguments.changes.allow_process)};
+  if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
+  StudyPlan plan = MakePlan(study, arguments.study);
+  RequireUnweighted(plan, "integrity");
+  return plan;
+}
+
+void WriteReport(const IntegrityReport& report, const std::string& out) {
+  const std::string text = IntegrityAsText(report);
+  fmt::print("{}", text);
+  if (out.empty()) return;
+  MakeResultFolder(out);
+  const std::filesystem::path folder(out);
+  WriteFileWhole((folder / "integrity.txt").string(), text);
+  WriteFileWhole((folder / "integrity.json").string(), IntegrityAsJson(report));
+}
+
+void RunIntegrity(const IntegrityArguments& arguments) {
+  const StopOnSignals stop;
+  StartTimeLimit(arguments.shards.max_time);
+  const StudyPlan plan = MakeIntegrityPlan(arguments);
+  if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
+  const bool is_part = !arguments.shards.shard.empty();
+  if (is_part && arguments.out.empty())
+    throw InputError("integrity: --out is missing; give the file of the part");
+  if (!is_part && !arguments.out.empty()) MakeResultFolder(arguments.out);
+  Runner runner =
+      MakeRunner(PlanIntegrity(plan, arguments.terms), arguments.shards, arguments.out,
+                 arguments.out.empty() ? "" : FindCheckpointInFolder(arguments.out), arguments.threads);
+  if (!runner.ReadsParts()) GetIntegrity(plan, arguments.terms, &runner);
+  if (is_part) return PrintPartIsDone(runner.shard(), arguments.out);
+  RequireWhole(runner);
+  IntegrityReport report{plan.study.name,   plan.study.estimators.front().label,
+                         arguments.terms,   UsualNewProblem(plan),
+                         plan.factor_names, ReadIntegrity(plan, runner)};
+  WriteReport(report, arguments.out);
+  runner.RemoveCheckpoint();
+  if (IsRiskExceeded(report)) throw EndWith{kRiskIsExceeded};
+}
+
+}  // namespace
+
+void AddIntegrityCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "integrity", "Count errors beyond their protection level, and how often a level is of use");
+  command->footer(R"(Runs one estimator on the problems of a study. Each answer has two protection levels: the
+angles that its errors of rotation and of direction exceed with a probability of at most
+--risk, by the covariance and the probability of failure that the answer states. An
+answer is available if its level is within the alert limit.
+
+  misleading   the error is beyond the level: of the answers at most the risk should be
+  hazardous    the error is beyond the alert limit, and the level is not
+
+Prints their rates with exact intervals, over all trials and for each condition. With --out
+DIR they are in DIR/integrity.txt too, and in DIR/integrity.json with the counts of the
+Stanford diagram. Only counts are kept, so that millions of trials need no room. If the
+command is stopped, run it again: it goes on.
+
+Exit code: 1 if misleading answers are more than the risk allows, else 0. If the risk is
+kept, the exit code is 1 with probability at most 5 %. 2: wrong input.
+
+Examples:
+  rcme integrity own_camera --estimator rcme_calibrated --out integrity
+  rcme integrity own_camera --estimator opencv_magsac --risk 0.01 --rotation-limit 2
+  rcme plot stanford integrity/integrity.json --out stanford
+  rcme integrity STUDY --shard 3/64 --out parts/3.json          the share of one machine
+  rcme integrity STUDY --merge parts/*.json --out integrity     the bytes of a single run)");
+  auto arguments = std::make_shared<IntegrityArguments>();
+  command->add_option("study", arguments->study, "study file (YAML) or its name")->required();
+  command->add_option("--estimator", arguments->estimator,
+                      "label of the study, estimator or estimator file; default: the study's only one");
+  command
+      ->add_option("--risk", arguments->terms.risk,
+                   "probability that an error exceeds its protection level, of rotation and of direction")
+      ->transform(NumberIn({1e-9, 0.5}))
+      ->capture_default_str();
+  command
+      ->add_option("--rotation-limit", arguments->terms.rotation_limit_deg,
+                   "alert limit of the rotation, deg")
+      ->transform(NumberIn({1e-4, 180.0}))
+      ->capture_default_str();
+  command
+      ->add_option("--direction-limit", arguments->terms.direction_limit_deg,
+                   "alert limit of the direction of translation, deg")
+      ->transform(NumberIn({1e-4, 180.0}))
+      ->capture_default_str();
+  command->add_option("-o,--out", arguments->out,
+                      "folder for the results; it is made. With --shard the file of the part");
+  command->add_option("--trials", arguments->trials, "trials per condition, instead of the study's number")
+      ->transform(WholeNumberIn(1, 100'000'000));
+  AddStudyOptions(command, &arguments->changes);
+  AddShardOptions(command, "trials", &arguments->shards);
+  AddProcessOption(command, &arguments->changes.allow_process);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The result does not depend on it")
+      ->transform(WholeNumberIn(0, 1024));
+  command->callback([arguments] { RunIntegrity(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,274 @@
+#include "experiments/integrity/integrity_output.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/json_output.h"
+#include "stats/clustered_estimate.h"
+#include "stats/intervals.h"
+
+namespace rcme {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kMostConditionsInText = 40;
+const NumberFormat kRate{100.0, "%", ".3g", ".2g"};
+
+using CountOfTally = std::function<std::int64_t(const IntegrityTally&)>;
+
+Interval FindClusteredInterval(const std::vector<IntegrityTally>& clusters, const CountOfTally& happened,
+                               const CountOfTally& among) {
+  std::vector<double> numbers;
+  std::vector<std::int64_t> places;
+  for (size_t c = 0; c < clusters.size(); ++c) {
+    const std::int64_t k = happened(clusters[c]), n = among(clusters[c]);
+    for (std::int64_t i = 0; i < n; ++i) {
+      numbers.push_back(i < k ? 1.0 : 0.0);
+      places.push_back(static_cast<std::int64_t>(c));
+    }
+  }
+  return MeasureBoundedClusteredMean(numbers, 1.0, places).interval;
+}
+
+Estimate MeasureTallies(const std::vector<IntegrityTally>& clusters, bool by_trial,
+                        const CountOfTally& happened, const CountOfTally& among) {
+  std::int64_t k = 0, n = 0;
+  for (const IntegrityTally& cluster : clusters) {
+    k += happened(cluster);
+    n += among(cluster);
+  }
+  if (n == 0) return {};
+  return {
+      .value = static_cast<double>(k) / static_cast<double>(n),
+      .interval = by_trial ? ExactBinomialInterval(k, n) : FindClusteredInterval(clusters, happened, among)};
+}
+
+// The clusters of a condition alone, or of all.
+struct TallyClusters {
+  std::vector<IntegrityTally> tallies;
+  bool by_trial = true;
+};
+
+TallyClusters ClustersOf(const ConditionIntegrity& condition) {
+  if (condition.scenes.empty()) return {{condition.counts.tally}, true};
+  return {condition.scenes, false};
+}
+
+TallyClusters ClustersOf(const IntegrityReport& report) {
+  TallyClusters all;
+  all.by_trial = report.new_problem == NewProblem::kTrial;
+  for (const ConditionIntegrity& condition : report.conditions) {
+    if (report.new_problem == NewProblem::kCondition) {
+      all.tallies.push_back(condition.counts.tally);
+      continue;
+    }
+    const TallyClusters of = ClustersOf(condition);
+    all.by_trial = all.by_trial && of.by_trial;
+    all.tallies.insert(all.tallies.end(), of.tallies.begin(), of.tallies.end());
+  }
+  return all;
+}
+
+struct IntegrityRow {
+  std::vector<std::string> levels;
+  size_t quantity = 0;
+  std::int64_t num_trials = 0, num_answers = 0;
+  IntegrityRates rates;
+};
+
+IntegrityRow MakeRow(const IntegrityReport& report, const ConditionIntegrity& condition, size_t quantity) {
+  const TallyClusters clusters = ClustersOf(condition);
+  return {condition.levels, quantity, condition.counts.tally.NumTrials(quantity),
+          condition.counts.tally.NumAnswers(quantity),
+          MeasureIntegrity(clusters.tallies, clusters.by_trial, quantity, report.terms.risk)};
+}
+
+IntegrityCounts CountAll(const IntegrityReport& report) {
+  IntegrityCounts all;
+  for (const ConditionIntegrity& condition : report.conditions) all.Add(condition.counts);
+  return all;
+}
+
+enum class TableFor { kPeople, kFile };  // JSON has a rate and its interval in keys of their own
+
+void AddRate(const std::string& name, Estimate IntegrityRates::*rate, TableFor table_for,
+             std::vector<ColumnOf<IntegrityRow>>* columns) {
+  using R = const IntegrityRow&;
+  if (table_for == TableFor::kPeople) {
+    columns->push_back({Column::Estimated(name, kRate), [rate](R row) { return row.rates.*rate; }});
+    return;
+  }
+  columns->push_back({Column::Number(name), [rate](R row) { return (row.rates.*rate).value; }});
+  columns->push_back({{.name = "", .type = ColumnType::kInterval, .json_name = name + "_interval"},
+                      [rate](R row) { return (row.rates.*rate).interval; }});
+}
+
+Table MakeIntegrityTable(std::vector<ColumnOf<IntegrityRow>> columns, TableFor table_for,
+                         const std::vector<IntegrityRow>& rows) {
+  using R = const IntegrityRow&;
+  columns.push_back({Column::Count("trials"), [](R row) { return row.num_trials; }});
+  columns.push_back({Column::Count("answers"), [](R row) { return row.num_answers; }});
+  AddRate("available", &IntegrityRates::available, table_for, &columns);
+  AddRate("misleading", &IntegrityRates::misleading, table_for, &columns);
+  AddRate("hazardous", &IntegrityRates::hazardous, table_for, &columns);
+  columns.push_back({Column::Text("risk"), [](R row) { return Name(row.rates.verdict); }});
+  return MakeTable(columns, rows);
+}
+
+const ColumnOf<IntegrityRow> kQuantityColumn = {
+    Column::Key("error"), [](const IntegrityRow& row) { return IntegrityQuantityName(row.quantity); }};
+
+Table MakeTableOfAll(const IntegrityReport& report, TableFor table_for) {
+  const IntegrityCounts all = CountAll(report);
+  std::vector<IntegrityRow> rows;
+  for (size_t q = 0; q < kNumIntegrityQuantities; ++q)
+    rows.push_back({{}, q, all.tally.NumTrials(q), all.tally.NumAnswers(q), MeasureIntegrity(report, q)});
+  return MakeIntegrityTable({kQuantityColumn}, table_for, rows);
+}
+
+Table MakeTableOfConditions(const IntegrityReport& report, TableFor table_for, size_t most) {
+  std::vector<IntegrityRow> rows;
+  for (size_t c = 0; c < report.conditions.size() && c < most; ++c) {
+    for (size_t q = 0; q < kNumIntegrityQuantities; ++q)
+      rows.push_back(MakeRow(report, report.conditions[c], q));
+  }
+  std::vector<ColumnOf<IntegrityRow>> keys = LevelColumns<IntegrityRow>(report.factors);
+  keys.push_back(kQuantityColumn);
+  return MakeIntegrityTable(keys, table_for, rows);
+}
+
+std::string DescribeCounts(const IntegrityReport& report) {
+  const IntegrityCounts all = CountAll(report);
+  std::string text = fmt::format(
+      "{} on {}: {} trials, {} refused. Protection levels are for a risk of {:g} an answer; alert limits: "
+      "{:g} "
+      "deg of rotation, {:g} deg of direction.",
+      report.estimator, report.study, all.tally.NumTrials(0) + all.num_unscored[0] + all.num_not_simulated,
+      all.num_refusals, report.terms.risk, report.terms.rotation_limit_deg, report.terms.direction_limit_deg);
+  if (all.num_invalid > 0)
+    text += fmt::format(" {} answers are not valid: they count as trials without a motion.", all.num_invalid);
+  for (size_t q = 0; q < kNumIntegrityQuantities; ++q) {
+    if (all.num_unscored[q] > 0)
+      text += fmt::format(" The true {} of {} answers is not known; they are left out.",
+                          IntegrityQuantityName(q), all.num_unscored[q]);
+  }
+  if (all.num_not_simulated > 0)
+    text += fmt::format(" {} trials could not be simulated; they are left out.", all.num_not_simulated);
+  return FormatParagraph(text);
+}
+
+std::string DescribeColumns(const IntegrityReport& report) {
+  return FormatParagraph(fmt::format(
+      "available: of all trials, those with a protection level within the alert limit; misleading: of the "
+      "answers, those with an error beyond their level, which the risk promises to be at most {:g} %; "
+      "hazardous: of all trials, those with an error beyond the alert limit and a level within. risk: "
+      "exceeded or kept where the whole interval of misleading is on that side. Intervals are 95 %{}.",
+      100.0 * report.terms.risk,
+      report.new_problem == NewProblem::kCondition
+          ? ", over all conditions for problems of a new condition or scene"
+          : ""));
+}
+
+Json RegionsAsJson(const RegionCounts& counts) {
+  Json json = Json::object();
+  for (size_t r = 0; r < kNumStanfordRegions; ++r) json[Name(static_cast<StanfordRegion>(r))] = counts[r];
+  return json;
+}
+
+Json CellsOf(const std::map<int, std::int64_t>& cells) {
+  Json json = Json::array();
+  for (const auto& [cell, count] : cells)
+    json.push_back({{"error", cell / kNumIntegrityBins}, {"level", cell % kNumIntegrityBins}, {"n", count}});
+  return json;
+}
+
+Json DiagramAsJson(const IntegrityReport& report, const IntegrityCounts& all, size_t quantity) {
+  return {
+      {"error", IntegrityQuantityName(quantity)},    {"alert_limit_deg", report.terms.LimitDeg(quantity)},
+      {"trials", all.tally.NumTrials(quantity)},     {"without_motion", all.tally.num_without_motion},
+      {"without_truth", all.num_unscored[quantity]}, {"regions", RegionsAsJson(all.tally.regions[quantity])},
+      {"cells", CellsOf(all.cells[quantity])}};
+}
+
+}  // namespace
+
+const char* Name(RiskVerdict verdict) {
+  switch (verdict) {
+    case RiskVerdict::kKept:
+      return "kept";
+    case RiskVerdict::kExceeded:
+      return "exceeded";
+    case RiskVerdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+IntegrityRates MeasureIntegrity(const std::vector<IntegrityTally>& clusters, bool by_trial, size_t quantity,
+                                double risk) {
+  using T = const IntegrityTally&;
+  const CountOfTally trials = [=](T t) { return t.NumTrials(quantity); };
+  const CountOfTally answers = [=](T t) { return t.NumAnswers(quantity); };
+  const auto measure = [&](std::int64_t (IntegrityTally::*count)(size_t) const, const CountOfTally& among) {
+    return MeasureTallies(
+        clusters, by_trial, [=](T t) { return (t.*count)(quantity); }, among);
+  };
+  IntegrityRates rates{measure(&IntegrityTally::NumAvailable, trials),
+                       measure(&IntegrityTally::NumMisleading, answers),
+                       measure(&IntegrityTally::NumHazardous, trials)};
+  const Interval& interval = rates.misleading.interval;
+  if (interval.lower > risk) rates.verdict = RiskVerdict::kExceeded;
+  if (interval.upper <= risk) rates.verdict = RiskVerdict::kKept;
+  return rates;
+}
+
+IntegrityRates MeasureIntegrity(const IntegrityReport& report, size_t quantity) {
+  const TallyClusters clusters = ClustersOf(report);
+  return MeasureIntegrity(clusters.tallies, clusters.by_trial, quantity, report.terms.risk);
+}
+
+bool IsRiskExceeded(const IntegrityReport& report) {
+  for (size_t q = 0; q < kNumIntegrityQuantities; ++q) {
+    if (MeasureIntegrity(report, q).verdict == RiskVerdict::kExceeded) return true;
+  }
+  return false;
+}
+
+std::string IntegrityAsText(const IntegrityReport& report) {
+  std::string text =
+      DescribeCounts(report) + "\n" + RenderText(MakeTableOfAll(report, TableFor::kPeople)) + "\n";
+  if (report.conditions.size() > 1) {
+    text += RenderText(MakeTableOfConditions(report, TableFor::kPeople, kMostConditionsInText)) + "\n";
+    if (report.conditions.size() > kMostConditionsInText)
+      text += FormatParagraph(fmt::format("The first {} of {} conditions; integrity.json has all.",
+                                          kMostConditionsInText, report.conditions.size()));
+  }
+  return text + DescribeColumns(report);
+}
+
+std::string IntegrityAsJson(const IntegrityReport& report) {
+  const IntegrityCounts all = CountAll(report);
+  Json edges = Json::array(), diagrams = Json::array();
+  for (int k = 0; k <= kNumIntegrityBins; ++k) edges.push_back(IntegrityEdgeDeg(k));
+  for (size_t q = 0; q < kNumIntegrityQuantities; ++q) diagrams.push_back(DiagramAsJson(report, all, q));
+  const Json json = {
+      {"study", report.study},
+      {"estimator", report.estimator},
+      {"risk", report.terms.risk},
+      {"refused", all.num_refusals},
+      {"not_valid", all.num_invalid},
+      {"not_simulated", all.num_not_simulated},
+      {"new_problem", report.new_problem == NewProblem::kTrial ? "trial" : "condition"},
+      {"edges_deg", std::move(edges)},
+      {"diagrams", std::move(diagrams)},
+      {"all", RenderJson(MakeTableOfAll(report, TableFor::kFile))},
+      {"conditions", RenderJson(MakeTableOfConditions(report, TableFor::kFile, report.conditions.size()))}};
+  return JsonText(kIntegrityFormat, json);
+}
+
+}  // namespace rcme

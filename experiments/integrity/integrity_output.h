@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/core/table/table.h"
+#include "experiments/integrity/integrity_work.h"
+#include "experiments/trial/trial_grouping.h"
+
+namespace rcme {
+
+struct IntegrityReport {
+  std::string study, estimator;
+  IntegrityTerms terms;
+  NewProblem new_problem = NewProblem::kTrial;
+  std::vector<std::string> factors;
+  std::vector<ConditionIntegrity> conditions;
+};
+
+// Whether errors are beyond their level as seldom as the risk says, by the 95 % interval of how often.
+enum class RiskVerdict { kKept, kExceeded, kUndecided };
+const char* Name(RiskVerdict verdict);
+
+// What a row says of one quantity. Intervals are exact binomial ones; where trials depend on each other, by
+// clusters (stats/clustered_estimate.h).
+struct IntegrityRates {
+  Estimate available;   // of all trials: level within the alert limit
+  Estimate misleading;  // of the answers: error beyond the level
+  Estimate hazardous;   // of all trials: error beyond the alert limit, level within
+  RiskVerdict verdict = RiskVerdict::kUndecided;
+};
+// `clusters` are independent; where each is to be taken as trials that are independent themselves,
+// `by_trial`.
+IntegrityRates MeasureIntegrity(const std::vector<IntegrityTally>& clusters, bool by_trial, size_t quantity,
+                                double risk);
+
+// Over all conditions, each trial with the same weight. Of a new problem from another condition, conditions
+// are the clusters; otherwise scenes or trials.
+IntegrityRates MeasureIntegrity(const IntegrityReport& report, size_t quantity);
+
+// Whether the risk is exceeded in rotation or in direction, over all conditions. If neither is, this is true
+// with probability at most 5 %: 2.5 % for each, as the lower end of an interval has it.
+bool IsRiskExceeded(const IntegrityReport& report);
+
+std::string IntegrityAsText(const IntegrityReport& report);
+std::string IntegrityAsJson(const IntegrityReport& report);
+
+}  // namespace rcme

@@ -1,0 +1,25 @@
+// Integrity counts of one estimator over the trials of a study, as work for the runner (core/work/runner.h).
+#pragma once
+
+#include <vector>
+
+#include "experiments/core/work/runner.h"
+#include "experiments/integrity/integrity_counts.h"
+#include "experiments/study/study_plan.h"
+
+namespace rcme {
+
+// `plan` has one estimator.
+WorkPlan PlanIntegrity(const StudyPlan& plan, const IntegrityTerms& terms);
+void GetIntegrity(const StudyPlan& plan, const IntegrityTerms& terms, Runner* runner);
+
+struct ConditionIntegrity {
+  std::vector<std::string> levels;
+  IntegrityCounts counts;
+  std::vector<IntegrityTally>
+      scenes;  // trials of a scene depend on each other; empty: every trial has its own
+};
+// One per condition of the plan.
+std::vector<ConditionIntegrity> ReadIntegrity(const StudyPlan& plan, const Runner& runner);
+
+}  // namespace rcme

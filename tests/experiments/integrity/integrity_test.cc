@@ -1,0 +1,195 @@
+// Integrity counts: the regions, the grid, counts of real trials against their answers, and the verdict about
+// the risk with its false alarms and its power.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "estimator/protection_level.h"
+#include "experiments/integrity/integrity_output.h"
+#include "experiments/integrity/integrity_work.h"
+#include "stats/constants.h"
+#include "stats/random.h"
+#include "tests/test_support/small_study.h"
+
+namespace rcme {
+namespace {
+
+TEST(StanfordRegion, IsByErrorLevelAndLimit) {
+  const struct {
+    double error, level, limit;
+    StanfordRegion region;
+  } kKnown[] = {{0.5, 0.8, 1.0, StanfordRegion::kAvailable},
+                {0.8, 0.8, 0.8, StanfordRegion::kAvailable},
+                {0.9, 0.8, 1.0, StanfordRegion::kMisleading},
+                {1.1, 0.8, 1.0, StanfordRegion::kHazardous},
+                {0.5, 1.2, 1.0, StanfordRegion::kUnavailable},
+                {1.1, 1.2, 1.0, StanfordRegion::kUnavailable},
+                {1.3, 1.2, 1.0, StanfordRegion::kUnavailableMisleading}};
+  for (const auto& k : kKnown) EXPECT_EQ(FindStanfordRegion(k.error, k.level, k.limit), k.region) << k.error;
+}
+
+TEST(IntegrityBins, AreBetweenTheirEdges) {
+  EXPECT_EQ(IntegrityEdgeDeg(kNumIntegrityBins), 180.0);
+  EXPECT_NEAR(IntegrityEdgeDeg(kNumIntegrityBins - kIntegrityBinsPerDecade), 18.0, 1e-12);
+  for (const double angle : {1e-3, 0.5, 1.0, 17.0, 179.9}) {
+    const int bin = FindIntegrityBin(angle);
+    EXPECT_GT(angle, IntegrityEdgeDeg(bin));
+    EXPECT_LE(angle, IntegrityEdgeDeg(bin + 1));
+  }
+  EXPECT_EQ(FindIntegrityBin(0.0), 0);
+  EXPECT_EQ(FindIntegrityBin(1e-9), 0);
+  EXPECT_EQ(FindIntegrityBin(180.0), kNumIntegrityBins - 1);
+}
+
+StudyPlan PlanOfOne(int trials, int repeats = 1) {
+  Study study = SmallStudy();
+  study.estimators.resize(1);
+  study.trials = trials;
+  study.repeats_per_scene = repeats;
+  return MakePlan(study);
+}
+
+std::vector<ConditionIntegrity> CountPlan(const StudyPlan& plan, const IntegrityTerms& terms) {
+  Runner runner = Runner::InMemory(PlanIntegrity(plan, terms), 2);
+  GetIntegrity(plan, terms, &runner);
+  return ReadIntegrity(plan, runner);
+}
+
+TEST(IntegrityCounts, AreThoseOfTheTrialsOneByOne) {
+  const StudyPlan plan = PlanOfOne(130);  // two items
+  const IntegrityTerms terms{0.05, 0.4, 2.0};
+  const std::vector<ConditionIntegrity> conditions = CountPlan(plan, terms);
+  ASSERT_EQ(conditions.size(), 2u);
+  for (size_t c = 0; c < 2; ++c) {
+    std::int64_t num_available = 0, num_misleading = 0, num_hazardous = 0, num_answers = 0;
+    for (std::uint32_t trial = 0; trial < 130; ++trial) {
+      const TrialResult result = RunTrial(plan, plan.conditions[c], trial);
+      if (result.records.front().status != MotionStatus::kOk) continue;
+      ++num_answers;
+      const double level_deg =
+          kDegPerRad * ComputeProtectionLevels(result.estimates.front(), 0.05).direction_rad;
+      const double error_deg = result.records.front().direction_error_deg;
+      num_available += level_deg <= 2.0;
+      num_misleading += error_deg > level_deg;
+      num_hazardous += level_deg <= 2.0 && error_deg > 2.0;
+    }
+    const IntegrityTally& tally = conditions[c].counts.tally;
+    EXPECT_EQ(tally.NumAnswers(1), num_answers);
+    EXPECT_EQ(tally.NumTrials(1), 130);
+    EXPECT_EQ(tally.NumAvailable(1), num_available);
+    EXPECT_EQ(tally.NumMisleading(1), num_misleading);
+    EXPECT_EQ(tally.NumHazardous(1), num_hazardous);
+    EXPECT_GT(num_misleading, 0);
+    EXPECT_LT(num_available, num_answers);
+    EXPECT_TRUE(conditions[c].scenes.empty());
+  }
+}
+
+TEST(IntegrityCounts, ScenesAreKeptWhereTrialsShareThem) {
+  const std::vector<ConditionIntegrity> conditions = CountPlan(PlanOfOne(120, 40), {});
+  for (const ConditionIntegrity& condition : conditions) {
+    ASSERT_EQ(condition.scenes.size(), 3u);  // the third is in two items
+    IntegrityTally sum;
+    for (const IntegrityTally& scene : condition.scenes) {
+      EXPECT_EQ(scene.NumTrials(0), 40);
+      sum.Add(scene);
+    }
+    EXPECT_EQ(sum.regions, condition.counts.tally.regions);
+  }
+}
+
+TEST(IntegrityCounts, ComeBackFromTheirText) {
+  const StudyPlan plan = PlanOfOne(1);
+  const IntegrityCounts counts = CountTrial(RunTrial(plan, plan.conditions[0], 0), {});
+  std::map<std::int64_t, IntegrityTally> back_scenes;
+  const std::string text = IntegrityCountsAsText(counts, {{7, counts.tally}});
+  const IntegrityCounts back = ReadIntegrityCounts(text, 1, &back_scenes);
+  EXPECT_EQ(IntegrityCountsAsText(back, back_scenes), text);
+  EXPECT_THROW(ReadIntegrityCounts(text, 2, &back_scenes), std::invalid_argument);
+  for (const char* wrong : {"[]", "3", "[[0,[1,0,0,0,0],[1,0,0,0,0]],0,0,[0,0],[1,2],[1,1],[]]",
+                            "[[0,[1,0,0,0,0],[1,0,0,0,0]],0,0,[0,0],[10000,1],[1,1],[]]",
+                            "[[0,[2,0,0,0,0],[1,0,0,0,0]],0,0,[0,0],[1,2],[1,1],[]]"})
+    EXPECT_THROW(ReadIntegrityCounts(wrong, 1, &back_scenes), std::invalid_argument) << wrong;
+}
+
+// Answers to so many trials, errors beyond the level with this probability in each.
+IntegrityReport DrawReport(std::int64_t trials, double misleading, double risk, RandomStream& rng) {
+  IntegrityReport report{"drawn", "drawn", {risk, 1.0, 5.0}, NewProblem::kTrial, {}, {{}}};
+  for (std::int64_t i = 0; i < trials; ++i) {
+    for (RegionCounts& of : report.conditions[0].counts.tally.regions)
+      ++of[static_cast<size_t>(rng.Uniform() < misleading ? StanfordRegion::kUnavailableMisleading
+                                                          : StanfordRegion::kAvailable)];
+  }
+  return report;
+}
+
+// Of 1,000 estimators that just keep their risk at most 5 % are said to exceed it; more than 73 would be with
+// probability 1e-3. An excess of 1.5 % over 1 % is seen in 1,000 trials nearly always: exceeded is said from
+// 18 misleading answers on, of which 25 are expected for each kind of error, so that both miss with
+// probability .004.
+TEST(RiskVerdict, FalseAlarmsAndPowerAreKnown) {
+  RandomStream rng({.seed = 1, .purpose = 493});
+  int num_false_alarms = 0, num_seen = 0;
+  for (int i = 0; i < 1000; ++i) {
+    num_false_alarms += IsRiskExceeded(DrawReport(1000, 0.01, 0.01, rng));
+    num_seen += i < 200 && IsRiskExceeded(DrawReport(1000, 0.025, 0.01, rng));
+  }
+  EXPECT_LE(num_false_alarms, 73);
+  EXPECT_GE(num_false_alarms, 10);  // the test is not empty: its exact rate is about 3 %
+  EXPECT_GE(num_seen, 190);
+}
+
+TEST(RiskVerdict, KeptNeedsAsManyTrialsAsTheRiskAsksFor) {
+  RandomStream rng({.seed = 2, .purpose = 493});
+  const auto verdict = [&](std::int64_t trials) {
+    return MeasureIntegrity(DrawReport(trials, 0.0, 1e-3, rng), 0).verdict;
+  };
+  EXPECT_EQ(verdict(0), RiskVerdict::kUndecided);
+  EXPECT_EQ(verdict(3687), RiskVerdict::kUndecided);
+  EXPECT_EQ(verdict(3688), RiskVerdict::kKept);  // log(.025) / log(.999) = 3687.0
+}
+
+// All misleading answers are in one of 40 conditions: for new trials many, for new conditions one of 40.
+TEST(RiskVerdict, OfNewConditionsCountsConditions) {
+  IntegrityReport report{"drawn", "drawn", {1e-3, 1.0, 5.0}, NewProblem::kTrial, {}, {}};
+  report.conditions.resize(40);
+  for (ConditionIntegrity& condition : report.conditions) {
+    for (RegionCounts& of : condition.counts.tally.regions) of[0] = 1000;
+  }
+  for (RegionCounts& of : report.conditions[0].counts.tally.regions) of = {900, 100, 0, 0, 0};
+  EXPECT_TRUE(IsRiskExceeded(report));
+  report.new_problem = NewProblem::kCondition;
+  EXPECT_FALSE(IsRiskExceeded(report));
+  EXPECT_EQ(MeasureIntegrity(report, 0).misleading.value, 0.0025);
+}
+
+TEST(IntegrityOutput, SaysCountsInWordsAndInJson) {
+  IntegrityReport report{"demo", "ours", {1e-3, 1.0, 5.0}, NewProblem::kTrial, {"scene"}, {}};
+  report.conditions.resize(2);
+  for (size_t c = 0; c < 2; ++c) {
+    IntegrityCounts& counts = report.conditions[c].counts;
+    report.conditions[c].levels = {c == 0 ? "room" : "street"};
+    counts.tally.num_without_motion = counts.num_refusals = 2;
+    counts.tally.regions[0] = {5, 1, 1, 1, 0};
+    counts.tally.regions[1] = {4, 0, 0, 3, 1};
+    counts.cells[0][101] = 8;
+    counts.cells[1][9998] = 8;
+  }
+  const std::string text = IntegrityAsText(report);
+  EXPECT_NE(text.find("ours on demo: 20 trials, 4 refused"), std::string::npos) << text;
+  EXPECT_NE(text.find("street"), std::string::npos);
+  const auto json = nlohmann::json::parse(IntegrityAsJson(report));
+  EXPECT_EQ(json["format"], "rcme integrity 1");
+  EXPECT_EQ(json["diagrams"][0]["regions"]["hazardous"], 2);
+  EXPECT_EQ(json["diagrams"][1]["cells"][0], (nlohmann::json{{"error", 99}, {"level", 98}, {"n", 16}}));
+  EXPECT_EQ(json["all"][0]["misleading"], 0.25);
+  EXPECT_EQ(json["all"][0]["misleading_interval"].size(), 2u);
+  EXPECT_EQ(json["all"][1]["available"], 0.4);
+  EXPECT_EQ(json["conditions"].size(), 4u);
+  EXPECT_EQ(json["conditions"][3]["levels"]["scene"], "street");
+}
+
+}  // namespace
+}  // namespace rcme
