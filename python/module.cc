@@ -11,6 +11,7 @@
 
 #include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
+#include "estimator/protection_level.h"
 #include "experiments/audit/claims/audit_output.h"
 #include "experiments/audit/claims/audit_work.h"
 #include "experiments/audit/claims/case.h"
@@ -104,6 +105,13 @@ py::dict DictOf(const MotionEstimate& estimate) {
   return dict;
 }
 
+// {risk, rotation, direction}, rad; None without a motion.
+py::object LevelsAt(const MotionEstimate& estimate, double risk) {
+  if (estimate.status != MotionStatus::kOk) return py::none();
+  const ProtectionLevels levels = ComputeProtectionLevels(estimate, risk);
+  return py::dict("risk"_a = risk, "rotation"_a = levels.rotation_rad, "direction"_a = levels.direction_rad);
+}
+
 Camera CameraOf(const std::array<double, 4>& k, int width, int height) {
   return {k[0], k[1], k[2], k[3], width, height};
 }
@@ -111,7 +119,7 @@ Camera CameraOf(const std::array<double, 4>& k, int width, int height) {
 py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
                   double sigma_px, std::vector<double> noise_scale, const std::string& name,
                   const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process,
-                  const std::vector<std::pair<double, double>>& bounds) {
+                  const std::vector<std::pair<double, double>>& bounds, double integrity_risk) {
   std::vector<EstimatorSpec> specs = {file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file)};
   EstimatorSpec& spec = specs.front();
   SetOwnOptions(&spec, options);
@@ -128,7 +136,9 @@ py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const
     RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
     found = EstimateWithBounds(*estimator, problem, failure_bounds, rng);
   }
-  py::dict dict = DictOf(Judged(std::move(found.estimate), problem.matches.size()));
+  const MotionEstimate judged = Judged(std::move(found.estimate), problem.matches.size());
+  py::dict dict = DictOf(judged);
+  dict["protection_levels"] = LevelsAt(judged, integrity_risk);
   dict["p_failure_for_bounds"] = ListOf(found.probabilities);
   dict["estimator"] = spec.label;
   return dict;

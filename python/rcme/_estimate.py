@@ -33,7 +33,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         estimator (its name; default rcme_calibrated) or estimator_file (a path); allow_process (bool; default False), whether
         the command of an estimator file may run (docs/threat_model.md); sigma_px, the standard deviation of the
         noise of a coordinate in each image (default 0.5); noise_scale, N positive numbers: how many times as great each match's
-        noise is (only `rcme.estimators()` that say so use it; default: all alike); seed of the random samples (default 1); and any option of the
+        noise is (only `rcme.estimators()` that say so use it; default: all alike); integrity_risk of the protection levels
+        (1e-12 to 0.999; default 1e-3); seed of the random samples (default 1); and any option of the
         estimator: `rcme.estimators()` lists them.
     bounds : iterable of (rotation, direction)
         Angles in degrees, above 0 and up to 180: the probability of failure for each, from the same fit. Only rcme_calibrated.
@@ -50,7 +51,9 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         p_failure, the probability that the motion is wrong by more than the estimator's bounds (max_rotation_error_deg, ...;
         None if it states none); p_failure_domain, "verified" or "extrapolated": whether the matches are like those that it was
         verified on ("not_stated"); p_failure_for_bounds, for each of `bounds` {rotation_deg, direction_deg, p_failure, domain}
-        (empty where there is no motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
+        (empty where there is no motion); protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and
+        that of t exceed with a probability of at most integrity_risk each, by pose_cov and p_failure (pi: every angle; None
+        without a motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
         other_motions: a list of further explanations {R, t, pose_cov, weight, explained_share}, the most likely first.
 
     Raises
@@ -68,7 +71,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     pairs = _bounds(bounds)
     try:
         answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
-                                chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs)
+                                chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs,
+                                chosen["integrity_risk"])
     except ValueError as error:
         raise ValueError(f"options: {error}") from None
     return _pose_and_info(answer, len(x1))
@@ -93,6 +97,7 @@ def _options(options: Optional[Mapping[str, Any]], num_matches: int) -> dict[str
         raise ValueError("options: estimator and estimator_file are both there; expected one of them")
     return {"sigma_px": _check.number("options['sigma_px']", rest.pop("sigma_px", 0.5), 1e-9, 1000.0),
             "noise_scale": _check.scales("options['noise_scale']", rest.pop("noise_scale", None), num_matches),
+            "integrity_risk": _check.number("options['integrity_risk']", rest.pop("integrity_risk", 1e-3), 1e-12, 0.999),
             "seed": _check.whole("options['seed']", rest.pop("seed", 1), 0, 2**63 - 1),
             "estimator": _check.plain("options['estimator']", "rcme_calibrated" if name is None else name),
             "estimator_file": "" if file is None else _check.existing("options['estimator_file']", file, "an estimator file"),
@@ -129,5 +134,6 @@ def _pose_and_info(answer: dict[str, Any], num_matches: int) -> tuple[Optional[P
             **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd")},
             "p_failure_domain": answer["p_failure_domain"],
             "p_failure_for_bounds": answer["p_failure_for_bounds"],
+            "protection_levels": answer["protection_levels"],
             "other_motions": answer["other_motions"]}
     return Pose(motion["R"], motion["t"]) if motion else None, info

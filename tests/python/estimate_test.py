@@ -39,6 +39,26 @@ class Estimate(unittest.TestCase):
         self.assertEqual(of[2]["domain"], "extrapolated")
         self.assertEqual(rcme.estimate_relative_pose(*self.arguments)[1]["p_failure"], info["p_failure"])
 
+    def test_protection_levels_are_of_the_covariance_the_probability_and_the_risk(self):
+        """An isotropic covariance has closed forms, but no estimator states one: the levels lie between those of the least and
+        of the greatest standard deviation in all directions."""
+        _, info = rcme.estimate_relative_pose(*self.arguments, {"estimator": "standard", "integrity_risk": 0.01})
+        levels, cov = info["protection_levels"], info["pose_cov"]
+        self.assertEqual(levels["risk"], 0.01)
+        for name, block, quantile in (("rotation", cov[:3, :3], 3.3682), ("direction", cov[3:, 3:], 3.0349)):
+            sd = np.sqrt(np.linalg.eigvalsh(block)[-1])
+            self.assertTrue(2.5758 * sd * 0.999 < levels[name] < quantile * sd * 1.001, name)
+        stated = rcme.estimate_relative_pose(*self.arguments, {"integrity_risk": 0.9})[1]
+        self.assertLess(stated["protection_levels"]["rotation"], 1.0)
+        nothing = rcme.estimate_relative_pose(*self.arguments, {"integrity_risk": 1e-12})[1]
+        self.assertGreater(nothing["protection_levels"]["rotation"], stated["protection_levels"]["rotation"])
+        default = rcme.estimate_relative_pose(*self.arguments)[1]["protection_levels"]
+        self.assertEqual(default["risk"], 1e-3)
+        few = [array[:3] for array in self.arguments[:2]] + self.arguments[2:]
+        self.assertIsNone(rcme.estimate_relative_pose(*few)[1]["protection_levels"])
+        with self.assertRaisesRegex(ValueError, "integrity_risk"):
+            rcme.estimate_relative_pose(*self.arguments, {"integrity_risk": 0})
+
     def test_pose_cov_is_of_rotation_and_translation_in_this_order(self):
         pose, info = rcme.estimate_relative_pose(*self.arguments, {"estimator": "standard"})
         cov = info["pose_cov"]
