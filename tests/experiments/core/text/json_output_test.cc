@@ -33,7 +33,7 @@ TEST(JsonText, BytesThatAreNoTextAreReplaced) {
 // The page names every format of the program, and no other.
 TEST(JsonText, ThePageHasTheSameFormats) {
   const std::set<std::string> formats = FormatsIn("experiments/core/text/json_output.h");
-  EXPECT_EQ(formats.size(), 17u);
+  EXPECT_EQ(formats.size(), 18u);
   EXPECT_EQ(FormatsIn("docs/output_formats.md"), formats);
 }
 
@@ -42,6 +42,7 @@ TEST(JsonText, TheFiguresKnowTheSameFormats) {
   for (const auto& [path, format] : {std::pair("plots/audit_figures/audit_file.py", kAuditFormat),
                                      {"plots/tuning_figures/tune_file.py", kTuningFormat},
                                      {"plots/tuning_figures/tune_file.py", kTransferFormat},
+                                     {"plots/stanford_figure/integrity_file.py", kIntegrityFormat},
                                      {"plots/trial_sheet/trial_file.py", kTrialFormat},
                                      {"plots/reliability_figure/reliability_file.py", kReliabilityFormat},
                                      {"plots/report_page/data.py", kReportFormat},
