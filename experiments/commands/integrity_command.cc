@@ -66,9 +66,13 @@ void RunIntegrity(const IntegrityArguments& arguments) {
   if (!runner.ReadsParts()) GetIntegrity(plan, arguments.terms, &runner);
   if (is_part) return PrintPartIsDone(runner.shard(), arguments.out);
   RequireWhole(runner);
-  IntegrityReport report{plan.study.name,   plan.study.estimators.front().label,
-                         arguments.terms,   UsualNewProblem(plan),
-                         plan.factor_names, ReadIntegrity(plan, runner)};
+  IntegrityReport report{plan.study.name,
+                         plan.study.estimators.front().label,
+                         arguments.terms,
+                         UsualNewProblem(plan),
+                         plan.study.common_scenes,
+                         plan.factor_names,
+                         ReadIntegrity(plan, runner)};
   WriteReport(report, arguments.out);
   runner.RemoveCheckpoint();
   if (IsRiskExceeded(report)) throw EndWith{kRiskIsExceeded};

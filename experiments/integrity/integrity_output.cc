@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
@@ -54,24 +55,37 @@ struct TallyClusters {
   bool by_trial = true;
 };
 
+TallyClusters ClustersFrom(const std::map<std::int64_t, IntegrityTally>& scenes) {
+  TallyClusters clusters;
+  for (const auto& [number, tally] : scenes) {
+    clusters.tallies.push_back(tally);
+    clusters.by_trial = clusters.by_trial && tally.NumTrials(0) <= 1 && tally.NumTrials(1) <= 1;
+  }
+  return clusters;
+}
+
 TallyClusters ClustersOf(const ConditionIntegrity& condition) {
   if (condition.scenes.empty()) return {{condition.counts.tally}, true};
-  return {condition.scenes, false};
+  return ClustersFrom(condition.scenes);
 }
 
 TallyClusters ClustersOf(const IntegrityReport& report) {
   TallyClusters all;
+  std::map<std::int64_t, IntegrityTally> common;
   all.by_trial = report.new_problem == NewProblem::kTrial;
   for (const ConditionIntegrity& condition : report.conditions) {
     if (report.new_problem == NewProblem::kCondition) {
       all.tallies.push_back(condition.counts.tally);
       continue;
     }
+    for (const auto& [number, tally] : condition.scenes) common[number].Add(tally);
     const TallyClusters of = ClustersOf(condition);
     all.by_trial = all.by_trial && of.by_trial;
     all.tallies.insert(all.tallies.end(), of.tallies.begin(), of.tallies.end());
   }
-  return all;
+  return report.has_common_scenes && !common.empty() && report.new_problem == NewProblem::kTrial
+             ? ClustersFrom(common)
+             : all;
 }
 
 struct IntegrityRow {

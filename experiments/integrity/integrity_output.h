@@ -13,6 +13,7 @@ struct IntegrityReport {
   std::string study, estimator;
   IntegrityTerms terms;
   NewProblem new_problem = NewProblem::kTrial;
+  bool has_common_scenes = false;  // a number is the same scene in all conditions
   std::vector<std::string> factors;
   std::vector<ConditionIntegrity> conditions;
 };

@@ -9,6 +9,10 @@ namespace {
 
 constexpr std::uint32_t kTrialsOfItem = 100;
 
+bool HasSharedScenes(const StudyPlan& plan) {
+  return plan.study.repeats_per_scene > 1 || (plan.study.common_scenes && plan.conditions.size() > 1);
+}
+
 std::string ComputeCounts(const StudyPlan& plan, const IntegrityTerms& terms, const Condition& condition,
                           const TrialRange& trials) {
   IntegrityCounts counts;
@@ -16,7 +20,7 @@ std::string ComputeCounts(const StudyPlan& plan, const IntegrityTerms& terms, co
   for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
     const IntegrityCounts one = CountTrial(RunTrialOfDraw(plan, condition, trial), terms);
     counts.Add(one);
-    if (plan.study.repeats_per_scene > 1)
+    if (HasSharedScenes(plan))
       scenes[static_cast<std::int64_t>(trial) / plan.study.repeats_per_scene].Add(one.tally);
   }
   return IntegrityCountsAsText(counts, scenes);
@@ -41,17 +45,13 @@ void GetIntegrity(const StudyPlan& plan, const IntegrityTerms& terms, Runner* ru
 
 std::vector<ConditionIntegrity> ReadIntegrity(const StudyPlan& plan, const Runner& runner) {
   std::vector<ConditionIntegrity> conditions(plan.conditions.size());
-  std::vector<std::map<std::int64_t, IntegrityTally>> scenes(plan.conditions.size());
   ReadResults(runner.plan(), runner.results(), 0, runner.plan().groups.size(),
               [&](const ItemPlace& place, const std::string& text) {
                 const TrialRange trials = FindTrialsOfItem(plan, place, kTrialsOfItem);
                 conditions[place.group].counts.Add(
-                    ReadIntegrityCounts(text, trials.end - trials.first, &scenes[place.group]));
+                    ReadIntegrityCounts(text, trials.end - trials.first, &conditions[place.group].scenes));
               });
-  for (size_t c = 0; c < conditions.size(); ++c) {
-    conditions[c].levels = plan.conditions[c].levels;
-    for (const auto& [scene, tally] : scenes[c]) conditions[c].scenes.push_back(tally);
-  }
+  for (size_t c = 0; c < conditions.size(); ++c) conditions[c].levels = plan.conditions[c].levels;
   return conditions;
 }
 

@@ -1,6 +1,7 @@
 // Integrity counts of one estimator over the trials of a study, as work for the runner (core/work/runner.h).
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "experiments/core/work/runner.h"
@@ -16,8 +17,9 @@ void GetIntegrity(const StudyPlan& plan, const IntegrityTerms& terms, Runner* ru
 struct ConditionIntegrity {
   std::vector<std::string> levels;
   IntegrityCounts counts;
-  std::vector<IntegrityTally>
-      scenes;  // trials of a scene depend on each other; empty: every trial has its own
+  // By number. Trials of a scene depend on each other, also those of other conditions where the study has
+  // common scenes. Empty: every trial has its own.
+  std::map<std::int64_t, IntegrityTally> scenes;
 };
 // One per condition of the plan.
 std::vector<ConditionIntegrity> ReadIntegrity(const StudyPlan& plan, const Runner& runner);

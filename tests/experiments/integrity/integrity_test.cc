@@ -92,7 +92,7 @@ TEST(IntegrityCounts, ScenesAreKeptWhereTrialsShareThem) {
   for (const ConditionIntegrity& condition : conditions) {
     ASSERT_EQ(condition.scenes.size(), 3u);  // the third is in two items
     IntegrityTally sum;
-    for (const IntegrityTally& scene : condition.scenes) {
+    for (const auto& [number, scene] : condition.scenes) {
       EXPECT_EQ(scene.NumTrials(0), 40);
       sum.Add(scene);
     }
@@ -116,7 +116,7 @@ TEST(IntegrityCounts, ComeBackFromTheirText) {
 
 // Answers to so many trials, errors beyond the level with this probability in each.
 IntegrityReport DrawReport(std::int64_t trials, double misleading, double risk, RandomStream& rng) {
-  IntegrityReport report{"drawn", "drawn", {risk, 1.0, 5.0}, NewProblem::kTrial, {}, {{}}};
+  IntegrityReport report{"drawn", "drawn", {risk, 1.0, 5.0}, NewProblem::kTrial, false, {}, {{}}};
   for (std::int64_t i = 0; i < trials; ++i) {
     for (RegionCounts& of : report.conditions[0].counts.tally.regions)
       ++of[static_cast<size_t>(rng.Uniform() < misleading ? StanfordRegion::kUnavailableMisleading
@@ -153,7 +153,7 @@ TEST(RiskVerdict, KeptNeedsAsManyTrialsAsTheRiskAsksFor) {
 
 // All misleading answers are in one of 40 conditions: for new trials many, for new conditions one of 40.
 TEST(RiskVerdict, OfNewConditionsCountsConditions) {
-  IntegrityReport report{"drawn", "drawn", {1e-3, 1.0, 5.0}, NewProblem::kTrial, {}, {}};
+  IntegrityReport report{"drawn", "drawn", {1e-3, 1.0, 5.0}, NewProblem::kTrial, false, {}, {}};
   report.conditions.resize(40);
   for (ConditionIntegrity& condition : report.conditions) {
     for (RegionCounts& of : condition.counts.tally.regions) of[0] = 1000;
@@ -165,8 +165,28 @@ TEST(RiskVerdict, OfNewConditionsCountsConditions) {
   EXPECT_EQ(MeasureIntegrity(report, 0).misleading.value, 0.0025);
 }
 
+// Both conditions look at the same 200 scenes, and mislead in the same: what seems 400 trials is 200.
+TEST(RiskVerdict, ScenesCommonToConditionsCountOnce) {
+  IntegrityReport report{"drawn", "drawn", {0.01, 1.0, 5.0}, NewProblem::kTrial, true, {}, {}};
+  report.conditions.resize(2);
+  for (ConditionIntegrity& condition : report.conditions) {
+    for (std::int64_t scene = 0; scene < 200; ++scene) {
+      IntegrityTally& tally = condition.scenes[scene];
+      for (RegionCounts& of : tally.regions) of[scene < 5 ? 1 : 0] = 1;
+      condition.counts.tally.Add(tally);
+    }
+  }
+  const Estimate common = MeasureIntegrity(report, 0).misleading;
+  EXPECT_FALSE(IsRiskExceeded(report));
+  report.has_common_scenes = false;
+  const Estimate apart = MeasureIntegrity(report, 0).misleading;
+  EXPECT_EQ(common.value, apart.value);
+  EXPECT_LT(common.interval.lower, apart.interval.lower);
+  EXPECT_GT(common.interval.upper, apart.interval.upper);
+}
+
 TEST(IntegrityOutput, SaysCountsInWordsAndInJson) {
-  IntegrityReport report{"demo", "ours", {1e-3, 1.0, 5.0}, NewProblem::kTrial, {"scene"}, {}};
+  IntegrityReport report{"demo", "ours", {1e-3, 1.0, 5.0}, NewProblem::kTrial, false, {"scene"}, {}};
   report.conditions.resize(2);
   for (size_t c = 0; c < 2; ++c) {
     IntegrityCounts& counts = report.conditions[c].counts;
