@@ -31,10 +31,10 @@ def ends_of(file, diagram):
 
 
 def place_of(region, limit, least, greatest):
-    """(x, y, alignment) of the name of a region, in a corner of it where few answers are."""
+    """(x, y, alignment) of the name of a region, where few answers are and names do not meet."""
     return {"available": (least * MARGIN, limit / MARGIN, "left", "top"),
             "misleading": (limit / MARGIN, least * MARGIN, "right", "bottom"),
-            "hazardous": (greatest / MARGIN, limit / MARGIN, "right", "top"),
+            "hazardous": (greatest / MARGIN, math.sqrt(least * limit), "right", "center"),
             "unavailable": (least * MARGIN, greatest / MARGIN ** 3, "left", "top"),
             "unavailable_misleading": (greatest / MARGIN, limit * MARGIN, "right", "bottom")}[region]
 
@@ -68,7 +68,7 @@ def draw_panel(axes, file, diagram, scale):
     draw_cells(axes, file, diagram, scale)
     draw_regions(axes, diagram, least, greatest)
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(base=10, numticks=12))
+        axis.set_major_locator(LogLocator(base=10, numticks=6))
         axis.set_major_formatter(FuncFormatter(lambda angle, _: f"{angle:g}"))
         axis.set_minor_locator(NullLocator())
     axes.tick_params(labelsize=7)
