@@ -14,6 +14,7 @@
 #include "experiments/core/work/stop_request.h"
 #include "experiments/integrity/integrity_output.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/trial/trial_items.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
