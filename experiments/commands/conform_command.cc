@@ -101,10 +101,12 @@ std::optional<AnswerRows> GetAnswers(const ConformArguments& arguments, const St
     CheckProcessEstimators(plan.study.estimators);
     GetCalibration(plan, runner);
   }
+  if (!arguments.shards.shard.empty()) {
+    PrintPartIsDone(runner->shard(), arguments.out);
+    return std::nullopt;
+  }
   RequireWhole(*runner);
-  if (arguments.shards.shard.empty()) return ReadCalibration(plan, new_problem, *runner);
-  PrintPartIsDone(runner->shard(), arguments.out);
-  return std::nullopt;
+  return ReadCalibration(plan, new_problem, *runner);
 }
 
 void Conform(const ConformArguments& arguments) {

@@ -80,11 +80,14 @@ void LookForRefusals(const ConformRule& rule, const std::vector<AskedProblem>& p
   if (noticed_after) finding->noticed_after = noticed_after;
 }
 
-// What the problems of a plan depend on, whatever is asked of them: its seed and conditions.
+// What the problems of a plan depend on, whatever is asked of them: its seed, and what its conditions are.
+// What simulated draws of a population are their settings decide; whether they can be simulated shows later.
 std::string ProblemsOf(const StudyPlan& plan) {
   std::string text = fmt::format("seed {}\n", plan.study.seed);
-  for (const Condition& condition : plan.conditions)
-    text += fmt::format("{} {}\n", condition.stream_key, condition.source->Identity());
+  for (const Condition& condition : plan.conditions) {
+    const bool is_draw = plan.study.population && !condition.source->ChosenParts().empty();
+    text += fmt::format("{} {}\n", condition.stream_key, is_draw ? "" : condition.source->Identity());
+  }
   return text;
 }
 

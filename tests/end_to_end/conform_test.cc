@@ -110,6 +110,16 @@ TEST_F(Conform, RefusesWhatMakesNoSense) {
       {"is no JSON"}));
 }
 
+// A draw that cannot be simulated is no answer.
+TEST_F(Conform, SaysWhereAPopulationHasNoAnswers) {
+  study_ = folder_.Write("p.yaml",
+                         "name: p\nseed: 1\ntrials: 4\n"
+                         "data: {scene: street, motion: vehicle, cameras: kitti, num_matches: 20}\n"
+                         "conditions: {design: random, number: 1, ranges: {parallax_deg: [50, 60]}}\n"
+                         "estimators: [{name: standard, options: {num_iterations: 20}}]\n");
+  EXPECT_TRUE(IsRefused(RunConform({"--out", file_}), {"no answer has a truth to compare with"}));
+}
+
 // A file of somebody else may name a command.
 TEST_F(Conform, RunsNoCommandThatNobodyAllowed) {
   Make();
