@@ -58,16 +58,20 @@ def write(path, rows):
         table = csv.DictWriter(file, columns, lineterminator="\n")
         table.writeheader()
         for row in rows:
-            table.writerow({key: f"{value:.6g}" if isinstance(value, float) else value for key, value in row.items()})
+            table.writerow({key: f"{value:.3g}" if isinstance(value, float) else value for key, value in row.items()})
 
 
 def population_tables(out, conditions):
     tables = {"regions": [], "accept": [], "probabilities": []}
-    of_population = ["--set", f"number={conditions}"] if conditions != 1024 else []
+    study = "studies/conform.yaml"
+    if conditions != 1024:
+        text = (ROOT / study).read_text().replace("number: 1024", f"number: {conditions}").replace("../", f"{ROOT}/")
+        study = str(out / "fewer.yaml")
+        pathlib.Path(study).write_text(text)
     for estimator in ESTIMATORS:
         rule = out / f"{estimator}.conform.json"
-        made = run(["studies/conform.yaml", "--estimator", estimator, "--out", str(rule), *PROMISE, *of_population])
-        fresh = run(["studies/conform.yaml", "--check", str(rule), "--seed", str(FRESH_SEED), *of_population])
+        made = run([study, "--estimator", estimator, "--out", str(rule), *PROMISE])
+        fresh = run([study, "--check", str(rule), "--seed", str(FRESH_SEED)])
         for draws, report in (("cross-validated", made), ("fresh", fresh)):
             for name, rows in tables.items():
                 rows += [{"estimator": estimator, "draws": draws, "answers": report["answers"], **flat(row)} for row in report[name]]
