@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """Runs of `rcme gate` with known truth: A/A runs, in which both versions are equal in law, and planted faults.
 
     gate_runs.py --program build/release/bin/rcme_gate_faults --out results/gate --equal 200 --planted 20
