@@ -95,7 +95,7 @@ void ReadPiece(const StudyPlan& plan, const TrialGrouping& grouping, const ItemP
           static_cast<std::int64_t>(piece[0].size() + piece[2].size()) <= most);
   const auto group_of = [&](double trial) {
     Require(trial >= trials.first && trial < trials.end);
-    return grouping.GroupOf(condition, static_cast<std::uint32_t>(trial));
+    return grouping.FindGroup(condition, static_cast<std::uint32_t>(trial));
   };
   for (const Json& trial : piece[0])
     all->problems.push_back({group_of(static_cast<double>(CountFrom(trial, trials.end))), true});

@@ -82,7 +82,7 @@ void LookForRefusals(const ConformRule& rule, const std::vector<AskedProblem>& p
 
 // What the problems of a plan depend on, whatever is asked of them: its seed, and what its conditions are.
 // What simulated draws of a population are their settings decide; whether they can be simulated shows later.
-std::string ProblemsOf(const StudyPlan& plan) {
+std::string DescribeProblems(const StudyPlan& plan) {
   std::string text = fmt::format("seed {}\n", plan.study.seed);
   for (const Condition& condition : plan.conditions) {
     const bool is_draw = plan.study.population && !condition.source->ChosenParts().empty();
@@ -91,7 +91,7 @@ std::string ProblemsOf(const StudyPlan& plan) {
   return text;
 }
 
-std::string HashOf(const std::string& text) {
+std::string ComputeHash(const std::string& text) {
   Fnv1a hash;
   hash.Add(text);
   return fmt::format("{:016x}", hash.value());
@@ -114,7 +114,7 @@ ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers) {
 
 ConformRule LoadToCheck(const StudyPlan& plan, const std::string& path) {
   ConformRule rule = ReadConformFile(path).rule;
-  if (rule.origin.identity == HashOf(ProblemsOf(plan)))
+  if (rule.origin.identity == ComputeHash(DescribeProblems(plan)))
     throw InputError(fmt::format(
         "conform: {} is of these very problems, so that they are not new; give another --seed or study",
         path));
@@ -142,7 +142,7 @@ ConformReport CalibrateConform(const StudyPlan& plan, NewProblem new_problem, co
   report.rule.max_direction_error_deg = plan.study.failure.max_direction_error_deg;
   const std::vector<AskedProblem> first = FirstOfGroups(answers.problems);
   report.rule.origin = {plan.study.name,
-                        HashOf(ProblemsOf(plan)),
+                        ComputeHash(DescribeProblems(plan)),
                         std::ssize(answers.rows),
                         answers.CountRefusals(),
                         std::ssize(first),

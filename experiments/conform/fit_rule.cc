@@ -151,7 +151,7 @@ std::vector<double> ChooseEdges(const FeatureModel& difficulty, const Rows& rows
 // What makes the ellipsoid of the covariance at this level hold scores up to `bound`.
 double FactorFor(double bound, double level) { return bound / ChiSquareQuantile(5, level); }
 
-double BoundOf(const Rows& rows, double level, double AnswerRow::*score) {
+double ComputeBound(const Rows& rows, double level, double AnswerRow::*score) {
   std::vector<double> scores, shares;
   for (const AnswerRow& row : rows) {
     scores.push_back(row.*score);
@@ -168,7 +168,7 @@ void SetFactors(const Rows& rows, ConformRule* rule) {
     strata[static_cast<size_t>(k)].push_back(row);
   }
   for (const Rows& stratum : strata)
-    rule->factors.push_back(FactorFor(BoundOf(stratum, rule->level, &AnswerRow::nees), rule->level));
+    rule->factors.push_back(FactorFor(ComputeBound(stratum, rule->level, &AnswerRow::nees), rule->level));
 }
 
 void CorrectLogOdds(const Rows& rows, ConformRule* rule) {
@@ -315,8 +315,9 @@ std::vector<JudgedAnswer> CrossValidate(const AnswerRows& answers, const Conform
                      others = answers.Part([&](std::int64_t group) { return !is_held_out(group); });
     if (others.rows.empty()) continue;
     const ConformRule rule = FitConformRule(others, promise, models);
-    const double one_factor = FactorFor(BoundOf(others.rows, promise.level, &AnswerRow::nees), promise.level);
-    const double ball_deg = BoundOf(others.rows, promise.level, &AnswerRow::max_error_deg);
+    const double one_factor =
+        FactorFor(ComputeBound(others.rows, promise.level, &AnswerRow::nees), promise.level);
+    const double ball_deg = ComputeBound(others.rows, promise.level, &AnswerRow::max_error_deg);
     const std::optional<double> by_count = CertifyThreshold(others, FewAgreeing(others.rows), promise);
     for (JudgedAnswer& answer : JudgeAnswers(rule, held_out.rows)) {
       answer.one_factor = one_factor;

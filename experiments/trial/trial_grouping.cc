@@ -29,19 +29,19 @@ TrialGrouping::TrialGrouping(const StudyPlan& plan, NewProblem new_problem)
     scenes_.emplace(scene, static_cast<std::int64_t>(scenes_.size()));
 }
 
-std::int64_t TrialGrouping::GroupOf(const Condition& condition, std::uint32_t trial) const {
+std::int64_t TrialGrouping::FindGroup(const Condition& condition, std::uint32_t trial) const {
   const bool is_new_condition = new_problem_ == NewProblem::kCondition;
   if (const std::optional<std::string> scene = condition.source->SharedScene()) {
     const auto pairs = static_cast<std::uint32_t>(condition.source->NumTrials(1));
     return MakeGroup(scenes_.at(*scene), is_new_condition ? 0 : trial % pairs);
   }
-  if (is_new_condition) return MakeGroup(DrawOf(condition), 0);
+  if (is_new_condition) return MakeGroup(FindDraw(condition), 0);
   const auto repeats = static_cast<std::uint32_t>(plan_.study.repeats_per_scene);
   return MakeGroup(plan_.study.common_scenes ? 0 : condition.index, trial / repeats);
 }
 
 // Conditions of one draw differ in the factors alone.
-std::int64_t TrialGrouping::DrawOf(const Condition& condition) const {
+std::int64_t TrialGrouping::FindDraw(const Condition& condition) const {
   const auto factor = std::ranges::find(plan_.factor_names, kDrawFactor);
   if (factor == plan_.factor_names.end()) return condition.index;
   return std::stoll(condition.levels.at(static_cast<size_t>(factor - plan_.factor_names.begin())));

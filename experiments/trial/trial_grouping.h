@@ -22,10 +22,10 @@ enum class NewProblem {
 class TrialGrouping {
  public:
   TrialGrouping(const StudyPlan& plan, NewProblem new_problem);
-  std::int64_t GroupOf(const Condition& condition, std::uint32_t trial) const;
+  std::int64_t FindGroup(const Condition& condition, std::uint32_t trial) const;
 
  private:
-  std::int64_t DrawOf(const Condition& condition) const;
+  std::int64_t FindDraw(const Condition& condition) const;
 
   const StudyPlan& plan_;
   NewProblem new_problem_;

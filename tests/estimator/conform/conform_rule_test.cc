@@ -152,8 +152,7 @@ TEST_F(Apply, SaysThatItIsStrangeAndRefusesIt) {
   const MotionEstimate refused = ConformJudge(rule).Apply(problem_, Answer(-20.0), true);
   EXPECT_EQ(refused.status, MotionStatus::kTooUncertain);
   EXPECT_THAT(refused.message, testing::HasSubstr("unlike the problems"));
-  MotionEstimate usual = Answer(-6.5);
-  usual.inliers.resize(usual.inliers.size());
+  const MotionEstimate usual = Answer(-6.5);
   EXPECT_EQ(ConformJudge(rule).Apply(problem_, usual, false).probability_domain,
             ProbabilityDomain::kVerified);
 }
