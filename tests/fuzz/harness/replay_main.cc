@@ -1,7 +1,7 @@
-// The main function of a harness without libFuzzer: reads every input of a folder, then damaged copies of
-// them for some seconds.
+// All harnesses in one program, without libFuzzer: one of them reads every input of a folder, then damaged
+// copies of them for some seconds.
 //
-//   NAME_fuzzer SECONDS FOLDER
+//   replay_inputs NAME SECONDS FOLDER
 //
 // Copy number n is a pure function of n and the folder. What an input cannot be read without (a crash, an
 // exception that is no InputError, more than kMaxSecondsPerInput) leaves that input in the file
@@ -23,9 +23,8 @@
 #include <vector>
 
 #include "stats/random.h"
+#include "tests/fuzz/harness/harnesses.h"
 #include "tests/test_support/mutated.h"
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size);
 
 namespace rcme {
 namespace {
@@ -47,10 +46,10 @@ void KeepInput(int signal) {
   raise(signal);
 }
 
-void Read(const std::string& bytes) {
+void Read(const std::string& bytes, Harness harness) {
   input = &bytes;
   alarm(kMaxSecondsPerInput);
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  harness(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
 std::vector<std::string> ReadInputs(const std::string& folder) {
@@ -95,14 +94,14 @@ const std::vector<std::string>& Words() {
   return words;
 }
 
-void ReadForSeconds(double seconds, const std::string& folder) {
+void ReadForSeconds(Harness harness, double seconds, const std::string& folder) {
   const std::vector<std::string> inputs = ReadInputs(folder);
-  for (const std::string& bytes : inputs) Read(bytes);
+  for (const std::string& bytes : inputs) Read(bytes, harness);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   std::uint32_t number = 0;
   for (; !inputs.empty() && std::chrono::steady_clock::now() < end; ++number) {
     RandomStream rng({.seed = 1, .trial = number, .purpose = 78});
-    Read(Mutated(inputs[number % inputs.size()], Words(), rng));
+    Read(Mutated(inputs[number % inputs.size()], Words(), rng), harness);
   }
   alarm(0);
   std::printf("%zu inputs and %u damaged copies\n", inputs.size(), number);
@@ -113,13 +112,15 @@ void ReadForSeconds(double seconds, const std::string& folder) {
 }  // namespace rcme
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: %s SECONDS FOLDER\n", argv[0]);
+  if (argc != 4 || !rcme::Harnesses().contains(argv[1])) {
+    std::fprintf(stderr, "usage: %s NAME SECONDS FOLDER, where NAME is one of:", argv[0]);
+    for (const auto& [name, harness] : rcme::Harnesses()) std::fprintf(stderr, " %s", name.c_str());
+    std::fprintf(stderr, "\n");
     return 2;
   }
-  std::string crash_file = std::filesystem::path(argv[0]).filename().string() + ".crash";
+  std::string crash_file = std::string(argv[1]) + "_fuzzer.crash";
   rcme::crash_file = &crash_file;
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM})
     std::signal(signal, rcme::KeepInput);
-  rcme::ReadForSeconds(std::atof(argv[1]), argv[2]);
+  rcme::ReadForSeconds(rcme::Harnesses().at(argv[1]), std::atof(argv[2]), argv[3]);
 }
