@@ -8,7 +8,7 @@ target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconver
 #
 # Most of a build goes into reading the same headers again. PRECOMPILED: headers of libraries that much of the room includes,
 # compiled once beside those of the language. TOGETHER: folders whose sources are compiled several at a time, so that names in
-# their anonymous namespaces differ. A source includes what it uses all the same: where CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as
+# their anonymous namespaces differ, and in those of all small folders. A source includes what it uses all the same: where CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as
 # in the preset `dev`, each is compiled by itself.
 function(rcme_add_room name)
   cmake_parse_arguments(ROOM "" "" "LINKS;PRIVATE_LINKS;APART;PRECOMPILED;TOGETHER" ${ARGN})
@@ -30,29 +30,47 @@ function(rcme_add_room name)
     target_precompile_headers(rcme_${name} PRIVATE <algorithm> <cmath> <functional> <map> <memory> <string> <vector>
                                                    ${ROOM_PRECOMPILED})
   endif()
-  rcme_compile_together(rcme_${name} 9 ${ROOM_TOGETHER})
+  if(ROOM_TOGETHER)
+    rcme_compile_together(rcme_${name} 16 ${ROOM_TOGETHER})
+  endif()
   install(TARGETS rcme_${name} EXPORT rcmeTargets)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rcme
           FILES_MATCHING PATTERN "*.h")
 endfunction()
 
-# rcme_compile_together(TARGET SIZE FOLDER ...): the target's sources in each folder are compiled SIZE at a time.
+# rcme_compile_together(TARGET SIZE FOLDER ...): the target's sources in each folder and its subfolders ("." is without
+# subfolders) are compiled SIZE at a time; folders with fewer than half as many share their groups.
 function(rcme_compile_together target size)
   if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
     return()
   endif()
+  set(of_small_folders)
   foreach(folder ${ARGN})
-    file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cc)
-    set(number 0)
-    foreach(source ${sources})
-      math(EXPR group "${number} / ${size}")
-      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}/${group})
-      math(EXPR number "${number} + 1")
-    endforeach()
+    if(folder MATCHES "(^|/)[.]$")
+      file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cc)
+    else()
+      file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cc)
+    endif()
+    list(LENGTH sources number)
+    math(EXPR doubled "2 * ${number}")
+    if(doubled LESS size)
+      list(APPEND of_small_folders ${sources})
+    else()
+      rcme_name_groups(${size} ${folder} ${sources})
+    endif()
   endforeach()
-  if(ARGN)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  endif()
+  rcme_name_groups(${size} small_folders ${of_small_folders})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# rcme_name_groups(SIZE NAME SOURCE ...): NAME/0 is the group of the first SIZE sources, and so on.
+function(rcme_name_groups size name)
+  set(number 0)
+  foreach(source ${ARGN})
+    math(EXPR group "${number} / ${size}")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name}/${group})
+    math(EXPR number "${number} + 1")
+  endforeach()
 endfunction()
 
 # rcme_uses_simd(ROOM): the room has kernels in Highway, compiled for three instruction sets and chosen at run time: plain

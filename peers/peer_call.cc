@@ -19,7 +19,7 @@ namespace {
 // As in the family of `standard` by default.
 constexpr double kSignificanceLevel = 0.05;
 
-MotionEstimate Refusal(MotionStatus status, std::string message) {
+MotionEstimate RefuseBecause(MotionStatus status, std::string message) {
   MotionEstimate estimate;
   estimate.status = status;
   estimate.message = std::move(message);
@@ -29,11 +29,11 @@ MotionEstimate Refusal(MotionStatus status, std::string message) {
 MotionEstimate EstimateFrom(const MotionProblem& problem, const std::string& library, PeerAnswer answer) {
   const RelativePose& pose = answer.cam2_from_cam1;
   if (!pose.R.allFinite() || !(std::abs(pose.t.norm() - 1.0) < 1e-6))
-    return Refusal(MotionStatus::kLibraryError, library + ": its motion is not finite, or has no direction");
+    return RefuseBecause(MotionStatus::kLibraryError, library + ": its motion is not finite, or has no direction");
   std::ranges::sort(answer.inliers);
   const std::optional<Matrix5d> pose_cov = CovarianceOfInliers(problem, pose, answer.inliers);
   if (!pose_cov) {
-    return Refusal(
+    return RefuseBecause(
         MotionStatus::kDegenerateMatches,
         fmt::format("the {} inliers of {} do not determine a motion", answer.inliers.size(), library));
   }
@@ -73,10 +73,10 @@ MotionEstimate CallPeer(const MotionProblem& problem, int sample_size, const std
   if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, sample_size)) return *refusal;
   try {
     std::optional<PeerAnswer> answer = ask();
-    if (!answer) return Refusal(MotionStatus::kNoCandidate, library + " found no motion");
+    if (!answer) return RefuseBecause(MotionStatus::kNoCandidate, library + " found no motion");
     return EstimateFrom(problem, library, std::move(*answer));
   } catch (const std::exception& error) {
-    return Refusal(MotionStatus::kLibraryError, fmt::format("{}: {}", library, error.what()));
+    return RefuseBecause(MotionStatus::kLibraryError, fmt::format("{}: {}", library, error.what()));
   }
 }
 

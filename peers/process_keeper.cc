@@ -23,7 +23,7 @@ namespace {
 
 constexpr size_t kMaxCommandBytes = size_t{1} << 17;  // longer ones Linux does not take (MAX_ARG_STRLEN)
 constexpr int kRequests = 3;                          // the keeper's end
-constexpr std::chrono::seconds kTimeToKill{2};
+constexpr std::chrono::seconds kKeeperTimeToKill{2};
 
 [[noreturn]] void ThrowNoProcess(const char* what) {
   throw NoOutsideAnswer(MotionStatus::kNoAnswer,
@@ -168,7 +168,7 @@ void LeaveProgram(int requests) {
 ProcessKeeper::~ProcessKeeper() {
   if (requests_ < 0) return;
   close(requests_);
-  const auto deadline = std::chrono::steady_clock::now() + kTimeToKill;
+  const auto deadline = std::chrono::steady_clock::now() + kKeeperTimeToKill;
   while (waitpid(keeper_, nullptr, WNOHANG) == 0 && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }

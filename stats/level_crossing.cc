@@ -37,7 +37,7 @@ bool IsRejected(std::span<const EventsAtLevel> events, size_t c, double rate,
 }
 
 // log(1 + exp(z)).
-double SoftPlus(double z) { return std::max(z, 0.0) + std::log1p(std::exp(-std::abs(z))); }
+double LogOnePlusExp(double z) { return std::max(z, 0.0) + std::log1p(std::exp(-std::abs(z))); }
 
 // Where a function of one maximum is greatest: golden-section search.
 double FindMaximum(const std::function<double(double)>& function, double low, double high) {
@@ -67,7 +67,7 @@ double ProfileLogLikelihood(std::span<const EventsAtLevel> events, double rate, 
     double sum = 0.0;
     for (const EventsAtLevel& one : events) {
       const double z = log_odds + steepness * (one.level - crossing);
-      sum += static_cast<double>(one.num_events) * z - static_cast<double>(one.num_trials) * SoftPlus(z);
+      sum += static_cast<double>(one.num_events) * z - static_cast<double>(one.num_trials) * LogOnePlusExp(z);
     }
     return sum;
   };
@@ -75,7 +75,7 @@ double ProfileLogLikelihood(std::span<const EventsAtLevel> events, double rate, 
 }
 
 constexpr size_t kNumLevels = 1024;           // of the search, over [0, 1]
-constexpr std::int64_t kNumSteps = 40;        // of the search
+constexpr std::int64_t kNumSearchSteps = 40;        // of the search
 constexpr std::int64_t kNumFreshLevels = 16;  // of the second part
 
 // The part of number `i` of a total that is divided into `num_parts`, even to within one.
@@ -190,7 +190,7 @@ Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials,
     asked->push_back(ask(PlaceOfLevel(level), number));
     search.Add(level, asked->back().num_events, asked->back().num_trials);
   };
-  const std::int64_t num_searched = num_trials / 3, num_steps = std::min(kNumSteps, num_searched);
+  const std::int64_t num_searched = num_trials / 3, num_steps = std::min(kNumSearchSteps, num_searched);
   for (std::int64_t step = 0; step < num_steps; ++step) {
     const size_t level = search.NextLevel(static_cast<size_t>(step));
     ask_at(level, EvenPart(num_searched, step, num_steps), &crossing.searched);

@@ -7,7 +7,7 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kMostCompared = 64, kMostPartners = 128;
+constexpr size_t kMostExplained = 64, kMostPartners = 128;
 
 // Of matches, in their order.
 struct Cosines {
@@ -21,7 +21,7 @@ double CosineInCamera2(const MotionProblem& problem, const RelativePose& pose, s
 Cosines ComputeCosines(const MotionProblem& problem, const RelativePose& pose, std::span<const size_t> some) {
   const Eigen::Vector3d t_in_camera1 = pose.R.transpose() * pose.t;
   Cosines cosines;
-  for (const size_t i : some.first(std::min(some.size(), kMostCompared))) {
+  for (const size_t i : some.first(std::min(some.size(), kMostExplained))) {
     cosines.a.push_back(t_in_camera1.dot(problem.camera1.Ray(problem.matches[i].x1_px).normalized()));
     cosines.b.push_back(CosineInCamera2(problem, pose, i));
   }

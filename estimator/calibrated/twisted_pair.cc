@@ -14,7 +14,7 @@ namespace {
 constexpr int kRefits = 5;
 constexpr size_t kMostSamples = 128;  // matches that the plane is sought in; their order means nothing
 // Standard deviations of the parallax within which a match is of the plane.
-constexpr double kPlaneBound = 3.0;
+constexpr double kTwistPlaneBound = 3.0;
 
 struct DepthSample {
   Eigen::Vector3d ray1;
@@ -59,8 +59,8 @@ std::optional<Eigen::Vector3d> FindPlane(const MotionProblem& problem, const Rel
     num_near = 0;
     for (const DepthSample& sample : samples) {
       const double u = (sample.inverse_depth - plane.dot(sample.ray1)) / sample.sd;
-      num_near += std::abs(u) <= kPlaneBound;
-      const double robust = refit == 0 ? 1.0 : 1.0 / (1.0 + u * u / (kPlaneBound * kPlaneBound));
+      num_near += std::abs(u) <= kTwistPlaneBound;
+      const double robust = refit == 0 ? 1.0 : 1.0 / (1.0 + u * u / (kTwistPlaneBound * kTwistPlaneBound));
       const double weight = robust * robust * sample.weight / (sample.sd * sample.sd);
       information += weight * sample.ray1 * sample.ray1.transpose();
       moment += weight * sample.inverse_depth * sample.ray1;

@@ -210,7 +210,8 @@ class AnswerTable {
 
   std::string Text() const {
     std::vector<std::vector<std::string>> rows = {AnswerColumns(bounds_, has_errors_)};
-    for (const auto& [name, answer] : rows_) rows.push_back(AnswerRow(name, answer, bounds_, has_errors_));
+    for (const auto& [name, answer] : rows_)
+      rows.push_back(FormatAnswerRow(name, answer, bounds_, has_errors_));
     const size_t num_refused = rows_.size() - num_motions_;
     return FormatColumns(rows) + "\n" + AnswerLegend(has_errors_) +
            fmt::format("{} pairs: {} motions, {} without one, {} not read\n", rows_.size() + num_unreadable_,

@@ -26,24 +26,24 @@ double LogDeterminant(const Matrix5d& covariance) {
 }
 
 // Nothing where the trial has no answer, or nobody knows how wrong it is.
-enum class Outcome { kAnswer, kRefusal, kUnscored };
-Outcome MakeRow(const FailureBounds& bounds, const TrialResult& result, AnswerRow* row) {
+enum class AnswerKind { kAnswer, kRefusal, kUnscored };
+AnswerKind MakeRow(const FailureBounds& bounds, const TrialResult& result, AnswerRow* row) {
   const TrialRecord& record = result.records.front();
-  if (!WasSimulated(record)) return Outcome::kUnscored;
-  if (HasRefused(record)) return Outcome::kRefusal;
+  if (!WasSimulated(record)) return AnswerKind::kUnscored;
+  if (HasRefused(record)) return AnswerKind::kRefusal;
   const MotionEstimate& estimate = result.estimates.front();
   row->features = MeasureVisibleFeatures(result.data.problem, estimate);
   row->is_wrong = HasFailed(record, bounds);
   row->nees = row->max_error_deg = row->log_det = kInfinity;
-  if (IsInvalid(record)) return Outcome::kAnswer;
+  if (IsInvalid(record)) return AnswerKind::kAnswer;
   if (!result.data.truth.cam2_from_cam1_true || !result.data.truth.is_direction_known)
-    return Outcome::kUnscored;
+    return AnswerKind::kUnscored;
   const double nees = NormalizedErrorOfPose(estimate.cam2_from_cam1, estimate.pose_cov,
                                             *result.data.truth.cam2_from_cam1_true);
   row->nees = std::isnan(nees) ? kInfinity : nees;
   row->max_error_deg = std::max(record.rotation_error_deg, record.direction_error_deg);
   row->log_det = LogDeterminant(estimate.pose_cov);
-  return Outcome::kAnswer;
+  return AnswerKind::kAnswer;
 }
 
 // [trial, wrong, nees, error, log det, features ...]
@@ -60,10 +60,10 @@ std::string ComputeAnswers(const StudyPlan& plan, const Condition& condition, co
   Json refused = Json::array(), rows = Json::array();
   for (std::uint32_t trial = trials.first; trial < trials.end; ++trial) {
     AnswerRow row;
-    const Outcome outcome = MakeRow(plan.study.failure, RunTrialOfDraw(plan, condition, trial), &row);
-    num_unscored += outcome == Outcome::kUnscored;
-    if (outcome == Outcome::kRefusal) refused.push_back(trial);
-    if (outcome == Outcome::kAnswer) rows.push_back(RowAsJson(trial, row));
+    const AnswerKind outcome = MakeRow(plan.study.failure, RunTrialOfDraw(plan, condition, trial), &row);
+    num_unscored += outcome == AnswerKind::kUnscored;
+    if (outcome == AnswerKind::kRefusal) refused.push_back(trial);
+    if (outcome == AnswerKind::kAnswer) rows.push_back(RowAsJson(trial, row));
   }
   return Json{std::move(refused), num_unscored, std::move(rows)}.dump();
 }

@@ -244,10 +244,10 @@ void SetFamiliar(const Rows& rows, ConformRule* rule) {
     for (const size_t feature : rule->familiar_features) rule->familiar.push_back(first[i].features[feature]);
 }
 
-struct Split {
+struct SplitByGroup {
   AnswerRows trained, calibrated;
 };
-Split SplitAnswers(const AnswerRows& answers, const ConformPromise& promise) {
+SplitByGroup SplitAnswers(const AnswerRows& answers, const ConformPromise& promise) {
   const std::map<std::int64_t, size_t> places = ShuffleGroups(answers);
   const auto num_groups = std::ssize(places);
   const auto num_trained = static_cast<std::int64_t>(kTrainedShare * static_cast<double>(num_groups));
@@ -265,7 +265,7 @@ Split SplitAnswers(const AnswerRows& answers, const ConformPromise& promise) {
 ConformRule FitConformRule(const AnswerRows& answers, const ConformPromise& promise,
                            const ConformRule* models) {
   if (answers.rows.empty()) throw InputError("conform: no answer has a truth to compare with");
-  const Split split = models != nullptr ? Split{{}, answers} : SplitAnswers(answers, promise);
+  const SplitByGroup split = models != nullptr ? SplitByGroup{{}, answers} : SplitAnswers(answers, promise);
   const Rows &trained = split.trained.rows, &calibrated = split.calibrated.rows;
   ConformRule rule;
   rule.level = promise.level;

@@ -7,7 +7,7 @@
 namespace rcme {
 namespace {
 
-constexpr std::uint32_t kTrialsOfItem = 100;
+constexpr std::uint32_t kTrialsOfIntegrityItem = 100;
 
 bool HasSharedScenes(const StudyPlan& plan) {
   return plan.study.repeats_per_scene > 1 || (plan.study.common_scenes && plan.conditions.size() > 1);
@@ -29,14 +29,14 @@ std::string ComputeCounts(const StudyPlan& plan, const IntegrityTerms& terms, co
 }  // namespace
 
 WorkPlan PlanIntegrity(const StudyPlan& plan, const IntegrityTerms& terms) {
-  return PlanTrialItems(plan, "integrity", kTrialsOfItem,
+  return PlanTrialItems(plan, "integrity", kTrialsOfIntegrityItem,
                         fmt::format("integrity: risk {}, alert limits {} and {} deg\n", terms.risk,
                                     terms.rotation_limit_deg, terms.direction_limit_deg));
 }
 
 void GetIntegrity(const StudyPlan& plan, const IntegrityTerms& terms, Runner* runner) {
   GetTrialItems(
-      plan, kTrialsOfItem,
+      plan, kTrialsOfIntegrityItem,
       [&](const Condition& condition, const TrialRange& trials) {
         return ComputeCounts(plan, terms, condition, trials);
       },
@@ -47,7 +47,7 @@ std::vector<ConditionIntegrity> ReadIntegrity(const StudyPlan& plan, const Runne
   std::vector<ConditionIntegrity> conditions(plan.conditions.size());
   ReadResults(runner.plan(), runner.results(), 0, runner.plan().groups.size(),
               [&](const ItemPlace& place, const std::string& text) {
-                const TrialRange trials = FindTrialsOfItem(plan, place, kTrialsOfItem);
+                const TrialRange trials = FindTrialsOfItem(plan, place, kTrialsOfIntegrityItem);
                 conditions[place.group].counts.Add(
                     ReadIntegrityCounts(text, trials.end - trials.first, &conditions[place.group].scenes));
               });

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint32_t kThinningPurpose = 101;
 // The pilot's trials: far beyond those of any run.
 constexpr std::uint32_t kFirstPilotTrial = 4'000'000'000, kNumPilotTrials = 1000;
-constexpr std::uint32_t kTrialsOfItem = 100;
+constexpr std::uint32_t kTrialsOfRareItem = 100;
 
 double TailOf(double bound_deg, double variance) {
   return std::erfc(RadFromDeg(bound_deg) / std::sqrt(2.0 * variance));
@@ -85,8 +85,8 @@ class Strata {
 };
 
 TrialRange FindTrialsOf(const StratifiedEffort& effort, const ItemPlace& place) {
-  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
-  return {first, std::min(first + kTrialsOfItem, effort.num_trials)};
+  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfRareItem;
+  return {first, std::min(first + kTrialsOfRareItem, effort.num_trials)};
 }
 
 constexpr char kNotSimulatedMark = '-';
@@ -202,7 +202,7 @@ WorkPlan PlanStrata(const StudyPlan& plan, const StratifiedEffort& effort) {
       "block",
       fmt::format("trials: {}\nrun share: {}\n{}", effort.num_trials, effort.run_share, plan.identity),
       {}};
-  const size_t num_blocks = (effort.num_trials + kTrialsOfItem - 1) / kTrialsOfItem;
+  const size_t num_blocks = (effort.num_trials + kTrialsOfRareItem - 1) / kTrialsOfRareItem;
   for (const Condition& condition : plan.conditions)
     work.groups.push_back({fmt::format("condition {}", condition.index), num_blocks});
   return work;

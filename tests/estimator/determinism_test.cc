@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kNumTrials = 12;
 
-MotionProblem MakeProblem(std::uint32_t trial) { return TwoCameraProblem(120, 0.5, 0.3, trial); }
+MotionProblem MakeFixedProblem(std::uint32_t trial) { return TwoCameraProblem(120, 0.5, 0.3, trial); }
 
 // Every number of an estimate, as bits.
 std::vector<std::uint64_t> BitsOf(const MotionEstimate& e) {
@@ -50,7 +50,7 @@ class Determinism
   }
   static std::vector<std::uint64_t> Estimate(const MotionEstimator& estimator, std::uint32_t trial) {
     RandomStream rng({1, 9, trial, 4});
-    return BitsOf(estimator.Estimate(MakeProblem(trial), rng));
+    return BitsOf(estimator.Estimate(MakeFixedProblem(trial), rng));
   }
 };
 

@@ -75,11 +75,11 @@ ChoiceGroup& GroupWith(const std::vector<std::string>& levels, std::vector<Choic
 // A matrix per criterion, in the order of CriterionNames().
 using Matrices = std::vector<ConfusionMatrix>;
 
-constexpr std::uint32_t kTrialsOfItem = 10;
+constexpr std::uint32_t kTrialsOfChoiceItem = 10;
 
 TrialRange FindTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
-  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
-  return {first, std::min(first + kTrialsOfItem, static_cast<std::uint32_t>(plan.study.trials))};
+  const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfChoiceItem;
+  return {first, std::min(first + kTrialsOfChoiceItem, static_cast<std::uint32_t>(plan.study.trials))};
 }
 
 Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRange trials) {
@@ -132,7 +132,8 @@ const std::string& AnswerName(size_t answer) {
 WorkPlan PlanChoices(const StudyPlan& plan) {
   CheckCanBeScored(plan);
   WorkPlan work{"model choice", "block", fmt::format("trials: {}\n{}", plan.study.trials, plan.identity), {}};
-  const auto num_blocks = (static_cast<size_t>(plan.study.trials) + kTrialsOfItem - 1) / kTrialsOfItem;
+  const auto num_blocks =
+      (static_cast<size_t>(plan.study.trials) + kTrialsOfChoiceItem - 1) / kTrialsOfChoiceItem;
   for (const Condition& condition : plan.conditions)
     work.groups.push_back({fmt::format("condition {}", condition.index), num_blocks});
   return work;

@@ -34,7 +34,7 @@ constexpr std::array<Quantity, 4> kQuantities = {{{"f", 8, &ValidityTrial::f_nee
                                                   {"fresh_point", 1, &ValidityTrial::fresh_point_d2},
                                                   {"ml_pose", 5, &ValidityTrial::ml_pose_nees}}};
 
-struct Cell {
+struct MapCell {
   std::string level;  // of the condition
   int num_points;
   double sigma_px;
@@ -84,7 +84,7 @@ std::int64_t CountCovered(const Group& group, const Quantity& quantity) {
 }
 
 // A cell without a trial has one group without a conditioning.
-void AddRows(const Cell& cell, double median_parallax_deg, Table* table) {
+void AddRows(const MapCell& cell, double median_parallax_deg, Table* table) {
   const std::vector<Group> groups =
       cell.trials.empty() ? std::vector<Group>{{"all", std::nan(""), {}}} : GroupsOf(cell.trials);
   for (const Group& group : groups) {
@@ -100,9 +100,9 @@ void AddRows(const Cell& cell, double median_parallax_deg, Table* table) {
 
 // Over all cells of one condition, which differ in nothing that parallax depends on. NaN: no cell has a
 // trial.
-double MedianParallaxDeg(std::span<const Cell> cells) {
+double MedianParallaxDeg(std::span<const MapCell> cells) {
   std::vector<double> parallaxes_rad;
-  for (const Cell& cell : cells) {
+  for (const MapCell& cell : cells) {
     for (const ValidityTrial& trial : cell.trials) parallaxes_rad.push_back(trial.parallax_rad);
   }
   if (parallaxes_rad.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -214,13 +214,13 @@ std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell
   table.AddColumns(CoverageColumns());
   std::uint32_t cell = 0;
   for (const MapCondition& condition : options.conditions) {
-    std::vector<Cell> cells;
+    std::vector<MapCell> cells;
     for (const int num_points : options.nums_points) {
       for (const double sigma_px : options.sigmas_px)
         cells.push_back({condition.level, num_points, sigma_px, trials_of(cell++)});
     }
     const double median_parallax_deg = MedianParallaxDeg(cells);
-    for (const Cell& each : cells) AddRows(each, median_parallax_deg, &table);
+    for (const MapCell& each : cells) AddRows(each, median_parallax_deg, &table);
   }
   return RenderCsv(table);
 }

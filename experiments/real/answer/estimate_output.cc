@@ -268,8 +268,8 @@ std::vector<std::string> AnswerColumns(const std::vector<FailureBounds>& bounds,
   return columns;
 }
 
-std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer,
-                                   const std::vector<FailureBounds>& bounds, bool with_errors) {
+std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnswer& answer,
+                                         const std::vector<FailureBounds>& bounds, bool with_errors) {
   const MotionEstimate& estimate = answer.estimate;
   const TrialRecord& record = answer.record;
   std::vector<std::string> row(AnswerColumns(bounds, with_errors).size(), "-");

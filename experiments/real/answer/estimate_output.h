@@ -29,8 +29,8 @@ nlohmann::ordered_json AnswerAsJson(const PairAnswer& answer, const EstimatorSpe
 // One row of a table over pairs, and what its columns mean; that of the errors only `with_errors`. One for
 // each of the bounds that were asked for.
 std::vector<std::string> AnswerColumns(const std::vector<FailureBounds>& bounds, bool with_errors);
-std::vector<std::string> AnswerRow(const std::string& name, const PairAnswer& answer,
-                                   const std::vector<FailureBounds>& bounds, bool with_errors);
+std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnswer& answer,
+                                         const std::vector<FailureBounds>& bounds, bool with_errors);
 std::string AnswerLegend(bool with_errors);
 
 // Whether the file, not the problem, is to blame: too few matches, bad numbers, points on one line.

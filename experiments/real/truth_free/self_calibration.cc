@@ -15,7 +15,7 @@ namespace rcme {
 namespace {
 
 constexpr double kSmallStep = 0.1;  // of half an interval
-constexpr double kLevel = 1.0 - kFaultConfidence;
+constexpr double kFaultLevel = 1.0 - kFaultConfidence;
 
 Eigen::Index IndexOf(CameraFault fault) { return static_cast<Eigen::Index>(fault); }
 
@@ -137,7 +137,7 @@ void CorrectNamed(const Steps& steps, CalibrationReport* report) {
     fit = steps.Take(taken);
     if (!fit) return NameNothing("corrections alone do not converge", report);
     p_left = PoolFaults(fit->estimates.units, fit->estimates.asked).p_value;
-    if (p_left >= kLevel) break;
+    if (p_left >= kFaultLevel) break;
     const std::optional<CameraFault> further = FindFurther(*fit, fit->estimates.asked);
     if (!further)
       return NameNothing(fmt::format("what they look like, corrected, leaves p = {:.2g}", p_left), report);

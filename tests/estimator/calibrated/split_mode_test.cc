@@ -16,7 +16,7 @@ struct SplitBodies {
   RelativePose first, second;
   FittedMode merged;
 };
-SplitBodies FitTwoBodies(std::uint32_t trial) {
+SplitBodies FitSplitBodies(std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2792});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 230});
   const RelativePose first = random.pose_true;
@@ -37,7 +37,7 @@ SplitBodies FitTwoBodies(std::uint32_t trial) {
 TEST(SplitMode, FindsBothMotionsOfACompromise) {
   int num_wide = 0, num_split = 0, num_right = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const SplitBodies two = FitTwoBodies(trial);
+    const SplitBodies two = FitSplitBodies(trial);
     if (two.merged.mode.mixture.scale < 1.5) continue;
     ++num_wide;
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 2793});
@@ -71,7 +71,7 @@ TEST(SplitMode, LeavesAModeOfGreaterNoiseAlone) {
 TEST(SplitCompromise, PutsBothMotionsInPlaceOfTheCompromise) {
   int num_split = 0;
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
-    const SplitBodies two = FitTwoBodies(trial);
+    const SplitBodies two = FitSplitBodies(trial);
     if (two.merged.mode.mixture.scale < 1.5) continue;
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 2795});
     Mode narrow = two.merged.mode;

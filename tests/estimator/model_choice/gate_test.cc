@@ -15,7 +15,7 @@
 namespace rcme {
 namespace {
 
-MotionEstimate Ask(const std::string& estimator, const Settings& options, const MotionProblem& problem) {
+MotionEstimate AskGate(const std::string& estimator, const Settings& options, const MotionProblem& problem) {
   RandomStream rng({.seed = 1, .purpose = 4});
   return MakeEstimator(estimator, options)->Estimate(problem, rng);
 }
@@ -30,9 +30,9 @@ TEST(Gate, WhatItLetsThroughIsTheAnswerWithoutIt) {
   const MotionProblem problem = ProblemFamily("uniform_volume", "general", 200, 0.2).Make(0);
   for (const auto& [name, criterion] : CriterionNames()) {
     for (const char* estimator : {"standard", "rcme"}) {
-      const MotionEstimate with = Ask(estimator, {{"model_choice", name}}, problem);
+      const MotionEstimate with = AskGate(estimator, {{"model_choice", name}}, problem);
       ASSERT_EQ(with.status, MotionStatus::kOk) << with.message;
-      EXPECT_EQ(NumbersOf(with), NumbersOf(Ask(estimator, {}, problem))) << name;
+      EXPECT_EQ(NumbersOf(with), NumbersOf(AskGate(estimator, {}, problem))) << name;
     }
   }
 }
@@ -43,7 +43,7 @@ TEST(Gate, RefusesByTheVerdict) {
   const auto status = [](const MotionProblem& problem, Settings options) {
     options.emplace_back("solver", "five_point");
     options.emplace_back("refinement", "none");  // which refuses a rotation itself, more often than not
-    const MotionEstimate estimate = Ask("standard", options, problem);
+    const MotionEstimate estimate = AskGate("standard", options, problem);
     if (estimate.status != MotionStatus::kOk) {
       EXPECT_TRUE(estimate.inliers.empty());
       EXPECT_FALSE(estimate.message.empty());
@@ -65,7 +65,7 @@ TEST(Gate, RefusesByTheVerdict) {
 TEST(Gate, RefusalsOfTheEstimatorStay) {
   const Settings options = {{"model_choice", "gic"}};
   MotionProblem few = ProblemFamily("plane", "general", 7, 0.0).Make(0);
-  EXPECT_EQ(Ask("standard", options, few).status, MotionStatus::kTooFewMatches);
+  EXPECT_EQ(AskGate("standard", options, few).status, MotionStatus::kTooFewMatches);
 }
 
 TEST(Gate, IsALimitThatCanBeLifted) {

@@ -46,13 +46,13 @@ MotionEstimate AnswerOf(EstimatorModel& model, const MotionProblem& problem, boo
   return model.Make()->Estimate(problem, rng);
 }
 
-struct Case {
+struct NoisyCase {
   MotionProblem problem;
   MotionEstimate answer;
 };
-Case MakeCase() {
+NoisyCase MakeNoisyCase() {
   RelativePose pose_true;
-  Case made;
+  NoisyCase made;
   made.problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose_true);
   made.answer = FitOf(made.problem, pose_true);
   made.answer.counts.num_hypotheses = 77;
@@ -60,7 +60,7 @@ Case MakeCase() {
 }
 
 TEST(CovarianceOption, IsTheEstimatorsOwnUnlessAsked) {
-  const Case c = MakeCase();
+  const NoisyCase c = MakeNoisyCase();
   const auto model = WithRobustCovariance(std::make_unique<FixedModel>(c.answer));
   EXPECT_EQ(AnswerOf(*model, c.problem, false).pose_cov, c.answer.pose_cov);
   const Matrix5d expected =
@@ -73,7 +73,7 @@ TEST(CovarianceOption, IsTheEstimatorsOwnUnlessAsked) {
 
 // What the matches' noise is said to be counts only where the estimator has weighed them by it.
 TEST(CovarianceOption, WeighsMatchesAsTheEstimatorDoes) {
-  Case c = MakeCase();
+  NoisyCase c = MakeNoisyCase();
   for (size_t i = 0; i < c.problem.matches.size(); ++i)
     c.problem.noise_scale.push_back(i % 2 == 0 ? 0.5 : 2.0);
   MotionProblem all_alike = c.problem;
@@ -89,7 +89,7 @@ TEST(CovarianceOption, WeighsMatchesAsTheEstimatorDoes) {
 }
 
 TEST(CovarianceOption, IsNotAddedASecondTime) {
-  const Case c = MakeCase();
+  const NoisyCase c = MakeNoisyCase();
   auto with_own = std::make_unique<FixedModel>(c.answer, "covariance");
   const EstimatorModel* same = with_own.get();
   EXPECT_EQ(WithRobustCovariance(std::move(with_own)).get(), same);
@@ -103,7 +103,7 @@ TEST(CovarianceOption, IsNotAddedASecondTime) {
 }
 
 TEST(MakeCovarianceRobust, LeavesWhatIsNoMotion) {
-  const Case c = MakeCase();
+  const NoisyCase c = MakeNoisyCase();
   for (const std::vector<int>& inliers :
        {std::vector<int>{0, 1, 1, 2, 3, 4, 5, 6, 7}, std::vector<int>{0, 2, 1, 3, 4, 5, 6, 7, 8},
         std::vector<int>{-1, 1, 2, 3, 4, 5, 6, 7, 8}, std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 60}}) {
@@ -121,7 +121,7 @@ TEST(MakeCovarianceRobust, LeavesWhatIsNoMotion) {
 }
 
 TEST(MakeCovarianceRobust, RefusesInliersThatDetermineNone) {
-  const Case c = MakeCase();
+  const NoisyCase c = MakeNoisyCase();
   MotionEstimate estimate = c.answer;
   estimate.inliers = {0, 1, 2, 3, 4};
   MakeCovarianceRobust(c.problem, {}, std::nullopt, &estimate);

@@ -16,13 +16,13 @@ namespace {
 constexpr std::array<double, 3> kLengthsPx = {30.0, 90.0, 270.0};
 constexpr int kNumMatches = 60;
 
-struct Sample {
+struct DrawnResiduals {
   MatchScores scores;
   std::vector<int> groups;
 };
 
 // c_ij(l) of two matches, at the key points' first matches.
-double CorrelationOf(const Sample& sample, size_t first_i, size_t first_j, double length_px) {
+double CorrelationOf(const DrawnResiduals& sample, size_t first_i, size_t first_j, double length_px) {
   const Correspondence &a = sample.scores.matches[first_i], &b = sample.scores.matches[first_j];
   const Eigen::Vector4d &u = sample.scores.normals[first_i], &v = sample.scores.normals[first_j];
   return u.head<2>().dot(v.head<2>()) * std::exp(-(a.x1_px - b.x1_px).norm() / length_px) +
@@ -41,7 +41,7 @@ std::vector<size_t> FirstOfEach(const std::vector<int>& groups) {
 }
 
 // K_b: what v_b stands before.
-std::array<Eigen::MatrixXd, 5> KernelsOf(const Sample& sample) {
+std::array<Eigen::MatrixXd, 5> KernelsOf(const DrawnResiduals& sample) {
   const std::vector<size_t> first = FirstOfEach(sample.groups);
   const auto n = static_cast<Eigen::Index>(first.size());
   std::array<Eigen::MatrixXd, 5> K;
@@ -76,7 +76,7 @@ std::array<Eigen::MatrixXd, 5> WeightsOf(const std::array<Eigen::MatrixXd, 5>& K
 }
 
 // As in the header, term by term: q = T v, M, of all subsets with v >= 0 the best, if by a deviance of 1.
-ResidualVariances VariancesByHand(const Sample& sample) {
+ResidualVariances VariancesByHand(const DrawnResiduals& sample) {
   const auto n = static_cast<Eigen::Index>(sample.groups.size());
   Eigen::MatrixXd J(n, 5);
   Eigen::VectorXd r(n);
@@ -141,10 +141,10 @@ ResidualVariances VariancesByHand(const Sample& sample) {
 
 // Errors of the law of the header, fitted; `is_repeated`: every third match is of the key point before it, or
 // beyond these of one key point of four.
-Sample DrawSample(bool is_repeated, double own, double of_key_point, double of_neighbours,
-                  std::uint32_t trial) {
+DrawnResiduals DrawSample(bool is_repeated, double own, double of_key_point, double of_neighbours,
+                          std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 73});
-  Sample sample;
+  DrawnResiduals sample;
   for (int i = 0; i < kNumMatches; ++i) {
     const bool is_of_last = is_repeated && (i % 3 == 2 || (i > 40 && i < 44));
     sample.groups.push_back(i == 0 ? 0 : sample.groups.back() + (is_of_last ? 0 : 1));
@@ -179,7 +179,7 @@ TEST(ResidualVariances, AreThoseOfTheEquationsWrittenOut) {
     for (const auto& [own, of_key_point, of_neighbours] :
          {std::array{1.0, 0.0, 0.0}, std::array{0.4, 0.6, 0.0}, std::array{0.3, 0.2, 0.8}}) {
       for (std::uint32_t trial = 0; trial < 10; ++trial) {
-        const Sample sample = DrawSample(is_repeated, own, of_key_point, of_neighbours, trial);
+        const DrawnResiduals sample = DrawSample(is_repeated, own, of_key_point, of_neighbours, trial);
         const ResidualVariances found = FitResidualVariances(sample.scores, sample.groups);
         const ResidualVariances expected = VariancesByHand(sample);
         ASSERT_NEAR(found.own, expected.own, 1e-8) << trial;
@@ -212,7 +212,7 @@ TEST(ResidualVariances, AddUp) {
 
 TEST(ResidualVariances, WithoutMatchesOrInformationAllIsOwn) {
   EXPECT_EQ(FitResidualVariances({}, {}).own, 1.0);
-  Sample sample = DrawSample(false, 1.0, 0.0, 0.0, 0);
+  DrawnResiduals sample = DrawSample(false, 1.0, 0.0, 0.0, 0);
   sample.scores.information(1, 1) = -1.0;
   const ResidualVariances variances = FitResidualVariances(sample.scores, sample.groups);
   EXPECT_EQ(variances.own, 1.0);

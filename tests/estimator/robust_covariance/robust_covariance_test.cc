@@ -103,17 +103,18 @@ TEST(BlockGroups, AreCellsOfImage1) {
   EXPECT_EQ(BlockGroups(camera, matches, 8), (std::vector<int>{0, 0, 1, 2, 0, 3}));
 }
 
-// Residuals of the fit of five parameters to errors of covariance V; all lines across x, the second image far
-// away from correlation, so that c_ij(l) = exp(-d_ij / l).
-struct Residuals {
+// ResidualsByKeyPoint of the fit of five parameters to errors of covariance V; all lines across x, the second
+// image far away from correlation, so that c_ij(l) = exp(-d_ij / l).
+struct ResidualsByKeyPoint {
   MatchScores scores;
   std::vector<int> groups;
   Matrix5d covariance_true;  // A^-1 X' V X A^-1
 };
-Residuals DrawResiduals(double own, double of_key_point, double of_neighbours, std::uint32_t trial) {
+ResidualsByKeyPoint DrawResiduals(double own, double of_key_point, double of_neighbours,
+                                  std::uint32_t trial) {
   constexpr int kNum = 150;
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 71});
-  Residuals drawn;
+  ResidualsByKeyPoint drawn;
   Eigen::MatrixXd X(kNum, 5), V(kNum, kNum);
   for (int i = 0; i < kNum; ++i) {
     const bool is_repeated = of_key_point > 0.0 && i % 3 == 2;  // of the one before it
@@ -153,7 +154,7 @@ TEST(ResidualVariances, GiveTheCovarianceOfASharedError) {
     double sum = 0.0, sum_squares = 0.0, sum_without = 0.0;
     constexpr int kNumDraws = 300;
     for (std::uint32_t trial = 0; trial < kNumDraws; ++trial) {
-      const Residuals drawn = DrawResiduals(own, of_key_point, of_neighbours, trial);
+      const ResidualsByKeyPoint drawn = DrawResiduals(own, of_key_point, of_neighbours, trial);
       const ResidualVariances variances = FitResidualVariances(drawn.scores, drawn.groups);
       const Matrix5d inverse = drawn.scores.information.inverse();
       const auto true_llt = drawn.covariance_true.llt();
@@ -174,7 +175,7 @@ TEST(ResidualVariances, OfIndependentErrorsAreMostlyOwn) {
   CoverageCount found;
   double sum_shared = 0.0;
   for (std::uint32_t trial = 0; trial < 300; ++trial) {
-    const Residuals drawn = DrawResiduals(1.0, 0.0, 0.0, trial);
+    const ResidualsByKeyPoint drawn = DrawResiduals(1.0, 0.0, 0.0, trial);
     const ResidualVariances variances = FitResidualVariances(drawn.scores, drawn.groups);
     EXPECT_NEAR(variances.Sum(), 1.0, 0.8) << trial;
     EXPECT_EQ(variances.deviance > 0.0, variances.shared.trace() > 0.0) << trial;

@@ -24,7 +24,7 @@ namespace {
 
 constexpr Sample kAllEight = {0, 1, 2, 3, 4, 5, 6, 7};
 
-Hypothesis<EightPoint> Solve(const MotionProblem& problem) {
+Hypothesis<EightPoint> SolveEight(const MotionProblem& problem) {
   Hypothesis<EightPoint> hypothesis = InstantiateModel<EightPoint>(problem, {kAllEight}).value();
   PropagateCovariance(problem, &hypothesis);
   return hypothesis;
@@ -63,7 +63,7 @@ TEST(CovarianceOfF, EqualsTheTextbookForm) {
   for (int i = 0; i < 100; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.5, rng, &random.problem);
-    const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
+    const Hypothesis<EightPoint> hypothesis = SolveEight(random.problem);
     const Eigen::Matrix3d F = FundamentalFromEssential(Matricize(hypothesis.model.f), random.problem.camera1,
                                                        random.problem.camera2);
     Matrix9d information = Matrix9d::Zero();
@@ -92,7 +92,7 @@ TEST(CovarianceOfF, HasRankEightAndNullVectorF) {
   RandomStream rng({.seed = 1, .purpose = 152});
   RandomProblem random = MakeRandomProblem(rng);
   AddNoise(0.5, rng, &random.problem);
-  const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
+  const Hypothesis<EightPoint> hypothesis = SolveEight(random.problem);
   EXPECT_LT((hypothesis.f_cov * hypothesis.model.f).norm(), 1e-13 * hypothesis.f_cov.norm());
   EXPECT_LT((hypothesis.f_cov - hypothesis.f_cov.transpose()).norm(), 1e-15 * hypothesis.f_cov.norm());
   const Eigen::Matrix<double, 8, 8> inside =
@@ -133,7 +133,7 @@ TEST(CovarianceOfMotion, IsTheSameForAllFourPosesUpToTheirTangents) {
   for (int i = 0; i < 20; ++i) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(0.5, rng, &random.problem);
-    const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
+    const Hypothesis<EightPoint> hypothesis = SolveEight(random.problem);
     const Eigen::Vector3d ray1(0.2, -0.1, 1.0), ray2(-0.15, 0.22, 1.0);
     std::vector<double> variances;
     for (const RelativePose& pose : PosesFromEssential(hypothesis.projection)) {
@@ -170,17 +170,17 @@ TEST(CovarianceOfQuaternionAndTranslation, HasRankFive) {
 
 // NEES of Sigma_p (5 dof) and of Sigma_f (8 dof, on the basis A) over random motions and random minimal
 // samples.
-struct NormalizedErrors {
+struct MeasuredErrors {
   std::vector<double> pose, f;
 };
 
-NormalizedErrors MeasureErrors(double sigma_px, int num_trials, std::uint32_t purpose) {
-  NormalizedErrors errors;
+MeasuredErrors MeasureErrors(double sigma_px, int num_trials, std::uint32_t purpose) {
+  MeasuredErrors errors;
   RandomStream rng({.seed = 1, .purpose = purpose});
   for (int trial = 0; trial < num_trials; ++trial) {
     RandomProblem random = MakeRandomProblem(rng);
     AddNoise(sigma_px, rng, &random.problem);
-    const Hypothesis<EightPoint> hypothesis = Solve(random.problem);
+    const Hypothesis<EightPoint> hypothesis = SolveEight(random.problem);
     // The estimate's own tangent, as a user of the covariance would have it.
     const RelativePose estimate = NearestTo(random.pose_true, PosesFromEssential(hypothesis.projection));
     const Matrix5d pose_cov = CovarianceOfMotion(estimate, hypothesis.f_cov);
@@ -211,7 +211,7 @@ TEST(MotionCovariance, CoversInTheLimitOfSmallNoise) {
   // covered 0.632 (0.787) at 0.5 px, 0.801 (0.906) at 0.1, 0.902 (0.946) at 0.01, 0.935 (0.950) at 0.001,
   // 0.947 (0.950) at 1e-4, 0.950 (0.950) at 1e-5. So 1e-5 it is. False alarm 2e-4; a covariance off by a
   // factor of 1.25 covers 0.983, of 0.8 covers 0.885, and the interval is 0.012 wide: power 1.
-  const NormalizedErrors errors = MeasureErrors(1e-5, 20'000, 160);
+  const MeasuredErrors errors = MeasureErrors(1e-5, 20'000, 160);
   const CoverageCount pose = Coverage(errors.pose, 5, 1.0), f = Coverage(errors.f, 8, 1.0);
   EXPECT_TRUE(pose.Admits(0.95)) << "Sigma_p: " << pose;
   EXPECT_TRUE(f.Admits(0.95)) << "Sigma_f: " << f;

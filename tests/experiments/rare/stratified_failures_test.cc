@@ -15,7 +15,7 @@
 namespace rcme {
 namespace {
 
-StudyPlan EasyAndHard(const std::string& more = "") {
+StudyPlan EasyAndHardPlan(const std::string& more = "") {
   return MakePlan(
       ParseStudy("name: easy_and_hard\nseed: 5\ntrials: 10\n" + more +
                      "data: {scene: uniform_volume, num_matches: 12, sigma_px: 0.5, severity: skipped}\n"
@@ -30,14 +30,14 @@ StudyPlan EasyAndHard(const std::string& more = "") {
 TEST(StratifyFailures, RunsTheShareThatWasAskedFor) {
   for (const double share : {0.1, 0.3}) {
     const StratifiedCell cell =
-        StratifyInMemory(EasyAndHard(), {.num_trials = 4000, .run_share = share}, 2)[0];
+        StratifyInMemory(EasyAndHardPlan(), {.num_trials = 4000, .run_share = share}, 2)[0];
     EXPECT_NEAR(static_cast<double>(cell.num_run) / 4000.0, share, 0.045);
   }
 }
 
 // The easiest trials are run once in 64, none less often; where hardly any is run all strata are used.
 TEST(StratifyFailures, GoesToTheEasiestStratum) {
-  const StratifiedCell cell = StratifyInMemory(EasyAndHard(), {.num_trials = 4000, .run_share = 0.02}, 2)[0];
+  const StratifiedCell cell = StratifyInMemory(EasyAndHardPlan(), {.num_trials = 4000, .run_share = 0.02}, 2)[0];
   std::int64_t num_trials = 0;
   for (const StratumCount& count : cell.strata) num_trials += count.num_trials;
   EXPECT_EQ(num_trials, 4000);
@@ -64,7 +64,7 @@ std::vector<double> ChancesOf(const StudyPlan& plan, std::uint32_t num_trials) {
 // least chance and the greatest of the next.
 TEST(StratifyFailures, EndAtQuartersOfTheChance) {
   constexpr std::uint32_t kTrials = 3000;
-  const StudyPlan plan = EasyAndHard();
+  const StudyPlan plan = EasyAndHardPlan();
   const StratifiedCell cell = StratifyInMemory(plan, {.num_trials = kTrials, .run_share = 0.1}, 2)[0];
   const std::vector<double> chances = ChancesOf(plan, kTrials);
   std::vector<Interval> ends;
@@ -88,7 +88,7 @@ TEST(StratifyFailures, EndAtQuartersOfTheChance) {
 
 TEST(StratifyFailures, RefusesRepeatedScenes) {
   EXPECT_TRUE(ThrowsInputError(
-      [&] { StratifyInMemory(EasyAndHard("repeats_per_scene: 2\n"), {.num_trials = 10}, 1); },
+      [&] { StratifyInMemory(EasyAndHardPlan("repeats_per_scene: 2\n"), {.num_trials = 10}, 1); },
       {"repeats_per_scene"}));
 }
 

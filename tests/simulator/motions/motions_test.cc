@@ -14,6 +14,7 @@
 #include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/goodness_of_fit.h"
+#include "tests/test_support/uniform_cdf.h"
 
 namespace rcme {
 namespace {
@@ -28,8 +29,6 @@ Motion Draw(const MotionModel& model, std::uint32_t trial) {
 Eigen::Vector3d Centre2(const Motion& motion) {  // in camera 1, over the baseline
   return -(motion.cam2_from_cam1.R.transpose() * motion.cam2_from_cam1.t);
 }
-
-double UniformCdf(double u) { return std::clamp(u, 0.0, 1.0); }
 
 class MotionContract : public testing::TestWithParam<MotionEntry> {};
 

@@ -9,11 +9,11 @@
 #include "stats/goodness_of_fit.h"
 #include "tests/simulator/outliers/wrong_matches.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/uniform_cdf.h"
 
 namespace rcme {
 namespace {
 
-double UniformCdf(double u) { return std::clamp(u, 0.0, 1.0); }
 double PUniform(const std::vector<double>& sample) {
   return TestKolmogorovSmirnov(sample, UniformCdf).p_value;
 }

@@ -15,7 +15,7 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 // A wall 2 m wide and 1 m high at z = 5 m, and a floor at y = 1 m from z = 2 m to 20 m.
 const Rectangle kWall{2, {-1.0, -0.5, 5.0}, {1.0, 0.5, 5.0}};
-const Rectangle kFloor{1, {-10.0, 1.0, 2.0}, {10.0, 1.0, 20.0}};
+const Rectangle kGround{1, {-10.0, 1.0, 2.0}, {10.0, 1.0, 20.0}};
 
 TEST(UprightCamera, ARightTurnCarriesTheOpticalAxisToTheRight) {
   const UprightCamera ahead({}, {0, 0, 0}, 0.0), right({}, {0, 0, 0}, 0.25), left({}, {0, 0, 0}, -0.125);
@@ -29,7 +29,7 @@ TEST(UprightCamera, ARightTurnCarriesTheOpticalAxisToTheRight) {
 
 TEST(UprightCamera, FirstDepthIsThatOfTheNearestRectangleOnTheRay) {
   const UprightCamera camera({}, {0, 0, 0}, 0.0), back({}, {0, 0, 0}, 0.5), near({}, {0, 0, 3.0}, 0.0);
-  for (const std::vector<Rectangle>& both : {std::vector{kFloor, kWall}, {kWall, kFloor}}) {
+  for (const std::vector<Rectangle>& both : {std::vector{kGround, kWall}, {kWall, kGround}}) {
     EXPECT_DOUBLE_EQ(camera.FirstDepth({0.0, 0.0, 1.0}, both), 5.0);
     EXPECT_DOUBLE_EQ(camera.FirstDepth({0.19, 0.09, 1.0}, both), 5.0);       // the floor is behind the wall
     EXPECT_DOUBLE_EQ(camera.FirstDepth({0.25, 0.09, 1.0}, both), 1 / 0.09);  // past the wall, to the floor

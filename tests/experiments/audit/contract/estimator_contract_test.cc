@@ -52,7 +52,7 @@ EstimatorMaker Planted(FaultyEstimator::Plant plant) {
   return [plant] { return std::make_unique<FaultyEstimator>(plant); };
 }
 
-struct Fault {
+struct BrokenContract {
   std::string name;
   EstimatorMaker make;
   std::string check;    // that finds it
@@ -60,7 +60,7 @@ struct Fault {
   std::string said;     // part of the finding
 };
 
-std::vector<Fault> Faults() {
+std::vector<BrokenContract> BrokenContracts() {
   static const std::thread::id main_thread = std::this_thread::get_id();
   return {
       {"NaN in R", Planted([](MotionEstimate& e) { e.cam2_from_cam1.R(2, 1) = kNaN; }), "answers", "matches",
@@ -115,7 +115,7 @@ std::vector<Fault> Faults() {
 }
 
 TEST(EstimatorContract, EveryFaultIsFound) {
-  for (const Fault& fault : Faults()) {
+  for (const BrokenContract& fault : BrokenContracts()) {
     SCOPED_TRACE(fault.name);
     ContractOptions options;
     if (fault.name == "never returns") options.seconds_per_call = 8.0;

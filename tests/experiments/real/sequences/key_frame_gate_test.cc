@@ -13,8 +13,8 @@ namespace {
 
 // How often each verdict is given on observations of these scenes: noise .5 px, 20 % of wrong matches.
 template <typename SceneOf>
-std::map<std::string, int> Verdicts(const KeyFrameGate& gate, SceneOf scene_of, std::uint32_t num_trials,
-                                    int num_matches = 300) {
+std::map<std::string, int> CountGateVerdicts(const KeyFrameGate& gate, SceneOf scene_of,
+                                             std::uint32_t num_trials, int num_matches = 300) {
   std::map<std::string, int> verdicts;
   for (std::uint32_t trial = 0; trial < num_trials; ++trial) {
     const Scene scene = scene_of(num_matches, trial);
@@ -48,8 +48,8 @@ Scene Planar(int num_points, std::uint32_t trial) {
 TEST(KeyFrameGate, KeepsGeneralScenesAndDropsRotations) {
   for (const ModelCriterion criterion : {ModelCriterion::kOrbSlam2, ModelCriterion::kGric}) {
     const KeyFrameGate gate{criterion};
-    EXPECT_GE(Verdicts(gate, General, 200)[kKeptPair], 195);
-    std::map<std::string, int> of_rotations = Verdicts(gate, WithoutBaseline, 200);
+    EXPECT_GE(CountGateVerdicts(gate, General, 200)[kKeptPair], 195);
+    std::map<std::string, int> of_rotations = CountGateVerdicts(gate, WithoutBaseline, 200);
     EXPECT_LE(of_rotations[kKeptPair], 4);
     // ORB-SLAM2's criterion knows no rotations; what it lets pass shows too little parallax.
     EXPECT_GE(of_rotations[criterion == ModelCriterion::kGric ? "rotation_only" : "too_little_parallax"],
@@ -61,22 +61,22 @@ TEST(KeyFrameGate, KeepsGeneralScenesAndDropsRotations) {
 // planes pass: results/model_choice), .965 if it keeps 25 %. Of 200 GRIC's keeps more than 7 with
 // probability 3e-5 at .6 %, .92 at 6 %.
 TEST(KeyFrameGate, DropsPlanesAsOftenAsItsCriterionDoes) {
-  std::map<std::string, int> of_orb_slam2 = Verdicts({ModelCriterion::kOrbSlam2}, Planar, 400);
+  std::map<std::string, int> of_orb_slam2 = CountGateVerdicts({ModelCriterion::kOrbSlam2}, Planar, 400);
   EXPECT_LE(of_orb_slam2[kKeptPair], 84);
   EXPECT_GE(of_orb_slam2["planar_scene"], 280);
-  EXPECT_LE(Verdicts({ModelCriterion::kGric}, Planar, 200)[kKeptPair], 7);
+  EXPECT_LE(CountGateVerdicts({ModelCriterion::kGric}, Planar, 200)[kKeptPair], 7);
 }
 
 TEST(KeyFrameGate, AsksForMatchesAndParallax) {
   constexpr std::uint32_t kTrials = 20;
   KeyFrameGate gate;
-  EXPECT_EQ(Verdicts(gate, General, kTrials, 99)[kTooFewMatches], 20);
-  EXPECT_EQ(Verdicts(gate, General, kTrials, 100)[kTooFewMatches], 0);
+  EXPECT_EQ(CountGateVerdicts(gate, General, kTrials, 99)[kTooFewMatches], 20);
+  EXPECT_EQ(CountGateVerdicts(gate, General, kTrials, 100)[kTooFewMatches], 0);
   gate.least_parallax_deg = 60.0;
-  EXPECT_EQ(Verdicts(gate, General, kTrials)["too_little_parallax"],
-            Verdicts({}, General, kTrials)[kKeptPair]);
+  EXPECT_EQ(CountGateVerdicts(gate, General, kTrials)["too_little_parallax"],
+            CountGateVerdicts({}, General, kTrials)[kKeptPair]);
   gate.criterion.reset();
-  EXPECT_EQ(Verdicts(gate, WithoutBaseline, kTrials, 5)[kKeptPair], 20);
+  EXPECT_EQ(CountGateVerdicts(gate, WithoutBaseline, kTrials, 5)[kKeptPair], 20);
 }
 
 // Observations of a general scene, nearly exact. The first ones are of points behind both cameras: a point at

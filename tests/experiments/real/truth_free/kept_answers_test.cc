@@ -57,10 +57,10 @@ std::string TwinText(const std::function<std::unique_ptr<MotionEstimator>()>& ma
   return TwinsAsJson({MakeTwinReport(source, *estimator, "pairs", 0.5, 1, 1, steps)});
 }
 
-using TextOf = std::string (*)(const std::function<std::unique_ptr<MotionEstimator>()>&, KeptSteps*);
+using AnswerAsText = std::string (*)(const std::function<std::unique_ptr<MotionEstimator>()>&, KeptSteps*);
 
 // How often it was stopped before it came to its end, after so many answers each time.
-int CountStops(TextOf text_of, int num_answers, const std::string& path, std::string* text) {
+int CountStops(AnswerAsText text_of, int num_answers, const std::string& path, std::string* text) {
   const WorkPlan plan{"test", "step", "the same\n", {}, true};
   for (int num_stops = 0; num_stops < 1000; ++num_stops) {
     Runner runner = Runner::WithCheckpoint(plan, path, 1);
@@ -80,7 +80,7 @@ int CountStops(TextOf text_of, int num_answers, const std::string& path, std::st
 }
 
 TEST(KeptSteps, StoppedAgainAndAgainGiveWhatOneCallGives) {
-  for (const TextOf text_of : {ValidationText, TwinText}) {
+  for (const AnswerAsText text_of : {ValidationText, TwinText}) {
     int num_left = 1'000'000'000;
     const auto make = [&] {
       return std::make_unique<StoppedEstimator>(MakeEstimator("rcme_calibrated"), &num_left);

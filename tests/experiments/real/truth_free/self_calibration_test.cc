@@ -97,7 +97,7 @@ TEST(JudgeFaults, NamesNothingOutsideOfTheStepsRange) {
 }
 
 // 20 pairs of 400 matches, noise 0.2 px, 5 % of them wrong.
-PairSet MakePairs(const Settings& data = {}) {
+PairSet MakeOwnPairs(const Settings& data = {}) {
   Study study = ParseStudy(
       "data: {scene: uniform_volume, num_matches: 400, sigma_px: 0.2, outlier_ratio: 0.05}\n"
       "estimators: [{name: rcme_calibrated}]\nseed: 8\ntrials: 20\n",
@@ -123,7 +123,7 @@ TEST(Calibrate, ConvergesToAGreatFault) {
                                        {CameraFault::kDistortion, 0.03},
                                        {CameraFault::kImage2ShiftX, 2.0}}) {
     const CalibrationReport report =
-        CalibrateSet(PlantFaultsIn(MakePairs(), {1.0, 1.0, planted * FaultVector::Unit(At(fault))}));
+        CalibrateSet(PlantFaultsIn(MakeOwnPairs(), {1.0, 1.0, planted * FaultVector::Unit(At(fault))}));
     const FaultReport& found = *std::ranges::find(report.faults, fault, &FaultReport::fault);
     EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << DescribeCalibration(report);
     EXPECT_NEAR(found.joint.value, planted, 5.0 * found.joint.standard_error) << TextOf(fault).name;
@@ -142,7 +142,7 @@ TEST(Calibrate, CorrectsWhatIsLeftBesideAGreatFault) {
   FaultVector planted = FaultVector::Zero();
   planted(At(CameraFault::kImage2ShiftX)) = 2.0;
   planted(At(CameraFault::kDistortion)) = 0.0032;
-  const CalibrationReport report = CalibrateSet(PlantFaultsIn(MakePairs(), {1.0, 1.0, planted}));
+  const CalibrationReport report = CalibrateSet(PlantFaultsIn(MakeOwnPairs(), {1.0, 1.0, planted}));
   for (const CameraFault fault : {CameraFault::kImage2ShiftX, CameraFault::kDistortion}) {
     const FaultReport& found = *std::ranges::find(report.faults, fault, &FaultReport::fault);
     EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << DescribeCalibration(report);
@@ -155,7 +155,7 @@ TEST(Calibrate, CorrectsWhatIsLeftBesideAGreatFault) {
 // either axis. They are seen and given no other's name.
 TEST(Calibrate, GivesAFurtherKindOfFaultNoName) {
   for (const CameraFault fault : {CameraFault::kTangentialX, CameraFault::kTangentialY}) {
-    PairSet set = MakePairs();
+    PairSet set = MakeOwnPairs();
     for (NamedPair& pair : set.pairs) {
       MotionProblem& problem = pair.problem;
       for (Correspondence& match : problem.matches) {
@@ -175,7 +175,7 @@ TEST(Calibrate, GivesAFurtherKindOfFaultNoName) {
 
 // A readout is asked of pairs that state the time between their images, and of no others.
 TEST(Calibrate, AsksPhotographsForNoReadout) {
-  PairSet set = MakePairs();
+  PairSet set = MakeOwnPairs();
   const auto has_readout = [](const CalibrationReport& report) {
     return std::ranges::count(report.faults, CameraFault::kReadoutTime, &FaultReport::fault) == 1;
   };
@@ -186,7 +186,7 @@ TEST(Calibrate, AsksPhotographsForNoReadout) {
 
 // Intrinsics that differ by rounding are of one camera, others not.
 TEST(Calibrate, PoolsPairsOfOneCamera) {
-  PairSet set = MakePairs();
+  PairSet set = MakeOwnPairs();
   set.pairs[4].problem.camera2.fx *= 1.0 + 1e-6;
   EXPECT_EQ(CalibrateSet(set).num_pairs, 20);
   set.pairs[4].problem.camera2.fx *= 1.001;
@@ -194,7 +194,7 @@ TEST(Calibrate, PoolsPairsOfOneCamera) {
 }
 
 TEST(ReadoutScales, AreMedianTimesOverOwn) {
-  PairSet set = MakePairs();
+  PairSet set = MakeOwnPairs();
   std::vector<PairAnswers> answers;
   for (const double seconds : {0.1, 0.2, 0.4}) {
     answers.push_back({{set.pairs[0], {}}, {}});
@@ -213,7 +213,7 @@ AdvisedEstimator Advised(double factor) {
 // Covariances a hundred times too small: found, the estimator's own, and the advice restores them: measured
 // on what it advises. A covariance of zero is found; no factor of zero helps, and the advice says so.
 TEST(ValidateAndAdvise, MeasuresWhatItAdvises) {
-  const SetReport small = ValidateAndAdvise(MakePairs(), Advised(0.01), {1, 2});
+  const SetReport small = ValidateAndAdvise(MakeOwnPairs(), Advised(0.01), {1, 2});
   EXPECT_EQ(small.covariances.verdict, TruthFreeVerdict::kTooSmall);
   EXPECT_EQ(small.covariances.cause, FaultCause::kEstimator);
   ASSERT_FALSE(small.advice.empty());
@@ -222,14 +222,14 @@ TEST(ValidateAndAdvise, MeasuresWhatItAdvises) {
                                                   HasSubstr("followed: covariances: undecided"),
                                                   HasSubstr("followed: covariances: holds")));
   EXPECT_THAT(small.advice.back(), testing::Not(HasSubstr("no covariance_factor")));
-  const SetReport zero = ValidateAndAdvise(MakePairs(), Advised(0.0), {1, 1});
+  const SetReport zero = ValidateAndAdvise(MakeOwnPairs(), Advised(0.0), {1, 1});
   EXPECT_EQ(zero.covariances.verdict, TruthFreeVerdict::kTooSmall);
   EXPECT_THAT(zero.advice.back(), HasSubstr("no covariance_factor makes them hold"));
 }
 
 // A sigma half of what it is: found, and gone when followed.
 TEST(ValidateAndAdvise, FollowsTheAssumedSigma) {
-  const SetReport report = ValidateAndAdvise(PlantFaultsIn(MakePairs(), {1.0, 0.5}), Advised(1.0), {1, 1});
+  const SetReport report = ValidateAndAdvise(PlantFaultsIn(MakeOwnPairs(), {1.0, 0.5}), Advised(1.0), {1, 1});
   EXPECT_EQ(report.sigma_verdict, TruthFreeVerdict::kTooSmall);
   EXPECT_THAT(report.advice,
               testing::Contains(HasSubstr("the assumed sigma, 0.1 px, is too small: assume 0.2")));
