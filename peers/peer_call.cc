@@ -29,7 +29,8 @@ MotionEstimate RefuseBecause(MotionStatus status, std::string message) {
 MotionEstimate EstimateFrom(const MotionProblem& problem, const std::string& library, PeerAnswer answer) {
   const RelativePose& pose = answer.cam2_from_cam1;
   if (!pose.R.allFinite() || !(std::abs(pose.t.norm() - 1.0) < 1e-6))
-    return RefuseBecause(MotionStatus::kLibraryError, library + ": its motion is not finite, or has no direction");
+    return RefuseBecause(MotionStatus::kLibraryError,
+                         library + ": its motion is not finite, or has no direction");
   std::ranges::sort(answer.inliers);
   const std::optional<Matrix5d> pose_cov = CovarianceOfInliers(problem, pose, answer.inliers);
   if (!pose_cov) {

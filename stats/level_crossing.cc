@@ -75,7 +75,7 @@ double ProfileLogLikelihood(std::span<const EventsAtLevel> events, double rate, 
 }
 
 constexpr size_t kNumLevels = 1024;           // of the search, over [0, 1]
-constexpr std::int64_t kNumSearchSteps = 40;        // of the search
+constexpr std::int64_t kNumSearchSteps = 40;  // of the search
 constexpr std::int64_t kNumFreshLevels = 16;  // of the second part
 
 // The part of number `i` of a total that is divided into `num_parts`, even to within one.
