@@ -7,7 +7,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from common import sheet, style
 from common.command_line import PlotError
-from common.text_size import width_of
+from common.text_size import height_of, width_of
 
 MAX_PANEL_ROWS = 6
 TICK_SIZE, NAME_GAP = 8, 0.08  # points; inches between names below an axis, or they stand upright
@@ -53,8 +53,19 @@ class FactorAxis:
 
     def height_of_names(self, panels_abreast):
         """Inches below a panel that upright names take on a sheet with a width, whose panels have a height of their own."""
-        names = [] if self.is_numeric or sheet.current().width is None else list(map(style.level_text, self.levels))
-        return max(width_of(name, TICK_SIZE) for name in names) if names and self.is_crowded(names, panels_abreast) else 0
+        if self.is_numeric or sheet.current().width is None:
+            return 0
+        names, is_upright = self.names(panels_abreast)
+        return max(width_of(name, TICK_SIZE) for name in names) if is_upright else 0
+
+    def names(self, panels_abreast):
+        """(the levels in words, whether they stand upright); upright ones are broken at their first space where two lines
+        fit beside each other."""
+        names = list(map(style.level_text, self.levels))
+        is_upright = self.is_crowded(names, panels_abreast)
+        if is_upright and self.width(panels_abreast) / len(names) > height_of(2, TICK_SIZE) + NAME_GAP / 2:
+            names = [name.replace(" ", "\n", 1) for name in names]
+        return names, is_upright
 
     def is_crowded(self, names, panels_abreast):
         """Whether names of words, one beside the other, would touch."""
@@ -67,8 +78,8 @@ class FactorAxis:
         axes.set_xlim(*self.limits())
         axes.set_xlabel(style.in_words(self.name))
         if not self.is_numeric:
-            names = list(map(style.level_text, self.levels))
-            axes.set_xticks(range(len(names)), names, rotation=90 if self.is_crowded(names, panels_abreast) else 0)
+            names, is_upright = self.names(panels_abreast)
+            axes.set_xticks(range(len(names)), names, rotation=90 if is_upright else 0)
             axes.tick_params(axis="x", length=0)
             axes.grid(axis="x", visible=False)
 
