@@ -213,26 +213,36 @@ def room_of_panel(columns):
     return {1: ONE_PANEL_WIDTH, 2: 3.5}.get(columns, 2.6) if width is None else width / panels_abreast(columns)
 
 
+def is_folded(rows, columns):
+    """Whether a single column of many panels stands two abreast, so that the figure is not taller than a page."""
+    return columns == 1 and rows > 2 and panels_abreast(2) == 2
+
+
 def new_figure(rows, columns, names_height=0):
     """A figure of paper size (two panels: 7 x 3.2 inches) and its axes as a rows x columns array. On a sheet of a stated
     width the panels of a row stand below each other where they do not fit; legend and caption add to its height, and
-    so does what the names below the last row take, `names_height` inches."""
-    width = sheet.current().width
+    so does what the names below the last row take, `names_height` inches. A long column is folded."""
+    width, folded = sheet.current().width, is_folded(rows, columns)
+    abreast = 2 if folded else panels_abreast(columns)
+    lines = math.ceil(rows * columns / abreast) if folded else math.ceil(columns / abreast) * rows  # of paper
     if width is None:
-        width = {1: ONE_PANEL_WIDTH, 2: 7.0}.get(columns, 2.6 * columns)
-        figure = Figure(figsize=(width, 1.0 + 2.2 * rows), layout="constrained")
-        FigureCanvasAgg(figure)
-        return figure, figure.subplots(rows, columns, squeeze=False, sharex=True, sharey="col")
-    abreast = panels_abreast(columns)
-    lines = math.ceil(columns / abreast)  # of paper, per row
-    figure = Figure(figsize=(width, (PANEL_HEIGHT * rows + names_height) * lines), layout="constrained")
+        size = ({1: ONE_PANEL_WIDTH, 2: 7.0}.get(abreast, 2.6 * abreast), 1.0 + 2.2 * lines)
+    else:
+        size = (width, PANEL_HEIGHT * lines + names_height * (lines if folded else lines // rows))
+    figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
-    grid, axes = figure.add_gridspec(rows * lines, abreast), numpy.empty((rows, columns), dtype=object)
+    grid, axes = figure.add_gridspec(lines, abreast), numpy.empty((rows, columns), dtype=object)
     for r, c in itertools.product(range(rows), range(columns)):
-        place = grid[r * lines + c // abreast, c % abreast]
-        axes[r, c] = figure.add_subplot(place, sharex=axes[0, 0], sharey=axes[0, c])
-        axes[r, c].tick_params(labelbottom=r == rows - 1)
+        line, place = divmod(r, 2) if folded else (r * (lines // rows) + c // abreast, c % abreast)
+        axes[r, c] = figure.add_subplot(grid[line, place], sharex=axes[0, 0], sharey=axes[0, c])
+    for panel in set(axes.flat) - set(bottom_panels(axes)):
+        panel.tick_params(labelbottom=False)
     return figure, axes
+
+
+def bottom_panels(panels):
+    """Those that have the x axis: the last row, or of a folded column the last panel of each half."""
+    return list(panels[-2:, 0] if is_folded(*panels.shape) else panels[-1])
 
 
 def left_panels(panels):

@@ -107,8 +107,8 @@ def draw(comparison, x, events):
                    axis.room(len(events)))
         title = next(letters) + name_of(event) + (f", {levels}" if levels else "")
         panels[r, c].set_title(style.title_lines(title, len(events)))
-        axis.prepare(panels[r, c], len(events))
-        panels[r, c].set_xlabel(style.in_words(x) if r == len(parts) - 1 else "")
+    for axes in style.bottom_panels(panels):
+        axis.prepare(axes, len(events))  # the x axis is shared by all panels
     for axes in style.left_panels(panels):
         axes.set_ylabel("Difference (% points)")
     style.add_legend_and_caption(figure, legend_of(looks, test_in_words(rows)), "; ".join(

@@ -141,10 +141,11 @@ def draw(summary, x, quantities, log_y=None):
         panels[r, c].set_title(style.title_lines(title, len(quantities)))
     for c, quantity in enumerate(quantities):
         set_y_limits(panels[:, c], drawn[quantity], is_log[quantity])
-        axis.prepare(panels[-1, c], len(quantities))  # the x axis is shared by all panels
+    for axes in style.bottom_panels(panels):
+        axis.prepare(axes, len(quantities))  # the x axis is shared by all panels
     for axes in style.left_panels(panels):
         axes.set_ylabel(f"{kind_in_words(rows)} (%)")
-    has_names = axis.is_numeric and len(quantities) == 1 and direct_labels.make_room(
+    has_names = axis.is_numeric and len(quantities) == 1 and len(parts) <= 2 and direct_labels.make_room(
         figure, len(parts), [look.label for look in looks.values()])
     has_arrows = any(is_log[quantity] and (drawn[quantity].value == 0).any() for quantity in quantities)
     style.add_legend_and_caption(figure, [] if has_names else panels[0, 0].get_legend_handles_labels()[0],
