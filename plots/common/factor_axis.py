@@ -3,6 +3,7 @@ of panels for each combination of levels of the factors that are not on the axis
 
 import math
 
+from matplotlib.ticker import FuncFormatter, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from common import sheet, style
@@ -10,6 +11,7 @@ from common.command_line import PlotError
 from common.text_size import height_of, width_of
 
 MAX_PANEL_ROWS = 6
+FAR = 50  # times the least level: levels farther than that from each other stand on a logarithmic axis
 TICK_SIZE, NAME_GAP = 8, 0.08  # points; inches between names below an axis, or they stand upright
 
 
@@ -29,19 +31,30 @@ class FactorAxis:
         self.place = {level: float(level) if self.is_numeric else float(position)
                       for position, level in enumerate(self.levels)}
 
+        self.is_logarithmic = self.is_numeric and 0 < FAR * min(self.place.values()) <= max(self.place.values())
+
     def positions(self, levels):
         return [self.place[level] for level in levels]
 
     def limits(self):
         """The ends of the axis, with a margin."""
-        left, right = min(self.place.values()), max(self.place.values())
+        left, right = self.ends()
+        return (10 ** left, 10 ** right) if self.is_logarithmic else (left, right)
+
+    def ends(self):
+        """The same; on a logarithmic axis their logarithms."""
+        left, right = min(self.steps()), max(self.steps())
         margin = (0.06 * (right - left) or 0.5) if self.is_numeric else 0.5
         return left - margin, right + margin
 
+    def steps(self):
+        """Places along the axis, evenly on paper."""
+        return [math.log10(place) if self.is_logarithmic else place for place in self.place.values()]
+
     def room(self, panels_abreast):
         """Points of paper that the marks of one level may take without meeting those of the next."""
-        left, right = self.limits()
-        places = sorted(set(self.place.values()))
+        left, right = self.ends()
+        places = sorted(set(self.steps()))
         gap = min((b - a for a, b in zip(places, places[1:])), default=right - left)
         return min(26, 0.7 * 72 * self.width(panels_abreast) * gap / (right - left))
 
@@ -75,6 +88,10 @@ class FactorAxis:
 
     def prepare(self, axes, panels_abreast):
         """Limits with a margin and, for words, ticks; conditions without a value keep their place."""
+        if self.is_logarithmic:
+            axes.set_xscale("log")
+            axes.xaxis.set_major_formatter(FuncFormatter(lambda level, _: f"{level:g}"))
+            axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xlim(*self.limits())
         axes.set_xlabel(style.in_words(self.name))
         if not self.is_numeric:

@@ -115,6 +115,8 @@ KNOWN = {
     "poselib": ("PoseLib", 2), "opencv_magsac": ("OpenCV MAGSAC", 4), "opencv_graph_cut": ("OpenCV graph cut", 6),
     "opencv_ransac": ("OpenCV RANSAC", 7), "opengv_ransac": ("OpenGV RANSAC", 8),
     "standard_five_point": ("Standard, five points", 0), "standard_eight_point": ("Standard, eight points", 9),
+    "prcme_five_point": ("pRCME, five points", 4), "prcme_eight_point": ("pRCME, eight points", 2),
+    "rcme_five_point": ("RCME, five points", 5), "rcme_eight_point": ("RCME, eight points", 6),
     "msac": ("MSAC", 10), "mlesac": ("MLESAC", 11), "lo_ransac": ("LO-RANSAC", 12), "cov_ransac": ("Cov-RANSAC", 13),
     "m_estimator": ("M-estimator", 9), "opencv_usac": ("OpenCV USAC", 4), "opencv_lmeds": ("OpenCV LMedS", 10),
 }
@@ -213,16 +215,12 @@ def room_of_panel(columns):
     return {1: ONE_PANEL_WIDTH, 2: 3.5}.get(columns, 2.6) if width is None else width / panels_abreast(columns)
 
 
-def is_folded(rows, columns):
-    """Whether a single column of many panels stands two abreast, so that the figure is not taller than a page."""
-    return columns == 1 and rows > 2 and panels_abreast(2) == 2
-
-
-def new_figure(rows, columns, names_height=0):
+def new_figure(rows, columns, names_height=0, may_fold=False):
     """A figure of paper size (two panels: 7 x 3.2 inches) and its axes as a rows x columns array. On a sheet of a stated
     width the panels of a row stand below each other where they do not fit; legend and caption add to its height, and
-    so does what the names below the last row take, `names_height` inches. A long column is folded."""
-    width, folded = sheet.current().width, is_folded(rows, columns)
+    so does what the names below the last row take, `names_height` inches. A long column may fold: its panels then stand two
+    abreast, so that the figure is not taller than a page."""
+    width, folded = sheet.current().width, may_fold and columns == 1 and rows > 2 and panels_abreast(2) == 2
     abreast = 2 if folded else panels_abreast(columns)
     lines = math.ceil(rows * columns / abreast) if folded else math.ceil(columns / abreast) * rows  # of paper
     if width is None:
@@ -242,7 +240,8 @@ def new_figure(rows, columns, names_height=0):
 
 def bottom_panels(panels):
     """Those that have the x axis: the last row, or of a folded column the last panel of each half."""
-    return list(panels[-2:, 0] if is_folded(*panels.shape) else panels[-1])
+    is_folded = panels.shape[1] == 1 and panels[0, 0].get_subplotspec().get_gridspec().ncols == 2
+    return list(panels[-2:, 0] if is_folded else panels[-1])
 
 
 def left_panels(panels):

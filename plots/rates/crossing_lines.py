@@ -109,7 +109,7 @@ def draw(crossings, x, conditions=()):
     others = [factor for factor in crossings.factors if factor != x]
     rows = rows_that_vary(rows.assign(x=axis.positions(rows[x])), others)
     parts = split_into_panel_rows(crossings.path, rows, others)
-    figure, panels = style.new_figure(len(parts), 1, axis.height_of_names(1))
+    figure, panels = style.new_figure(len(parts), 1, axis.height_of_names(1), may_fold=True)
     letters = style.letters(panels.size)
     for axes, (levels, part) in zip(panels[:, 0], parts):
         check_no_repetition(crossings.path, part)

@@ -100,7 +100,7 @@ def draw(comparison, x, events):
     for _, part in parts:
         check_no_repetition(comparison.path, part, ["x", "estimator", "event"], lambda row: f"x = {row[x]}")
     reference = style.label_of(rows.reference.iloc[0])
-    figure, panels = style.new_figure(len(parts), len(events), axis.height_of_names(len(events)))
+    figure, panels = style.new_figure(len(parts), len(events), axis.height_of_names(len(events)), may_fold=True)
     letters = style.letters(panels.size)
     for (r, (levels, part)), (c, event) in itertools.product(enumerate(parts), enumerate(events)):
         draw_panel(panels[r, c], part[part.event == event], looks, axis.is_numeric,

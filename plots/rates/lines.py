@@ -131,7 +131,7 @@ def draw(summary, x, quantities, log_y=None):
     for _, part in parts:
         check_no_repetition(summary.path, part, ["x", "estimator", "quantity"], lambda row: f"x = {row[x]}")
     looks = (style.looks_of if axis.is_numeric else style.equal_looks_of)(list(dict.fromkeys(rows.estimator)))
-    figure, panels = style.new_figure(len(parts), len(quantities), axis.height_of_names(len(quantities)))
+    figure, panels = style.new_figure(len(parts), len(quantities), axis.height_of_names(len(quantities)), may_fold=True)
     letters = style.letters(panels.size)
     drawn = {quantity: rows[rows.quantity == quantity] for quantity in quantities}
     is_log = {quantity: is_small(drawn[quantity]) if log_y is None else log_y for quantity in quantities}

@@ -256,6 +256,12 @@ class WhatAReviewerLooksFor(FailureRateTest):
         self.assertEqual(scales, ["linear", "log"])
         self.assertEqual(self.draw(TABLE + SMALL, ["invalid_motion"], log_y=False).axes[0].get_yscale(), "linear")
 
+    def test_levels_far_apart_stand_on_a_logarithmic_axis(self):
+        self.assertEqual(self.draw(TABLE, ["failure"]).axes[0].get_xscale(), "linear")  # it has a zero
+        far = TABLE.replace(",0.0,1,", ",0.01,1,")
+        self.assertEqual(self.draw(far, ["failure"]).axes[0].get_xscale(), "log")
+        self.assertEqual(line_of(self.draw(far, ["failure"]).axes[0], "Standard"), [(0.01, 0), (0.4, 0.30), (0.8, 0.60)])
+
     def test_a_panel_that_would_hold_only_zeros_is_left_out_and_named(self):
         figure = self.draw(TABLE + SMALL, ["failure", "timed_out"])
         self.assertEqual([axes.get_title("left") for axes in figure.axes], ["Failure rate"])
