@@ -24,7 +24,7 @@ LOOKS = {  # the second part of a case's name, or its group
 HANDLES = {"fast": "rcme", "reference": "its simple reference", "peer": "other libraries"}
 LABELS = {"opencv_ransac_200": "OpenCV RANSAC, 200", "opencv_usac_magsac": "OpenCV USAC_MAGSAC",
           "opencv_usac_accurate": "OpenCV USAC_ACCURATE", "poselib_relative_pose": "PoseLib relative pose",
-          **{name: look.label for name, look in style.KNOWN_LOOKS.items()}}
+          **{name: label for name, (label, _) in style.KNOWN.items()}}
 SERIES = {  # panel: x label, and its series with labels
     "n": ("Matches n", {"n": "pRCME, whole call", "n_scoring": "its scoring"}),
     "iterations": ("Hypotheses N", {"iterations": "pRCME, whole call"}),

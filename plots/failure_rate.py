@@ -37,7 +37,9 @@ def parse(arguments):
                         help="rates and scores to draw, one panel each (default: %(default)s)")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
-    parser.add_argument("--log-y", action="store_true", help="logarithmic y axis")
+    parser.add_argument("--log-y", action="store_true", default=None,
+                        help="logarithmic y axis (default: of a quantity whose rates are small)")
+    parser.add_argument("--linear-y", action="store_false", dest="log_y", help="linear y axis")
     options = parser.parse_args(arguments)
     options.quantities = names_of("--quantities", options.quantities, "failure")
     check_figure_path(options.out)

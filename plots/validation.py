@@ -8,13 +8,14 @@ It draws what the file says and computes nothing: ratios, intervals and verdicts
 import json
 import math
 import sys
+from dataclasses import replace
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from common import sheet, style
+from common import direct_labels, sheet, style
 from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
 
 EXAMPLE = """
@@ -26,13 +27,27 @@ FORMAT = "rcme validation 2"
 CAPTION = ("In brackets: pairs of the scene; bars: intervals; grey: what counts as nominal; correlation of neighbouring residuals "
            "minus that of the simulated twin; camera faults over what is nominal (below 1), linear up to there.")
 TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "rotations around loops",
-         "directions": "directions around three"}
-FAULTS = {"focal_length": ("focal length", "o", "tab:blue"), "principal_point_x": ("principal point, x", "s", "tab:orange"),
-          "principal_point_y": ("principal point, y", "D", "tab:olive"), "distortion": ("distortion", "^", "tab:purple"),
-          "readout_time": ("readout time", "v", "tab:brown")}
+         "directions": "directions around three", "simulation": "simulated twins"}
+FAULTS = {"focal_length": "focal length", "principal_point_x": "principal point, x", "principal_point_y": "principal point, y",
+          "image2_shift_x": "second image shifted, x", "image2_shift_y": "second image shifted, y"}  # others: their name in words
 FARTHEST_FAULT = 300  # of what is nominal: farther says nothing
-COLORS = {"holds": "tab:green", "too small": "tab:red", "too large": "tab:purple", "undecided": "0.45"}
-MARKERS = {"spatial_halves": "o", "random_halves": "s", "closure": "^", "directions": "v"}
+COLORS = {"holds": style.GREEN, "too small": style.VERMILLION, "too large": style.BLUE, "undecided": "0.45"}
+SIDE_BY_SIDE = 10  # inches that the three panels need beside each other
+
+
+def mark(label, marker, color):
+    return Line2D([], [], linestyle="none", marker=marker, color=color, label=label)
+
+
+def looks_by_name(sets, key, name, words):
+    """{name: Look} of the tests or faults of all sets."""
+    names = list(dict.fromkeys(entry[name] for one_set in sets for entry in one_set[key]))
+    return {name: replace(look, label=words.get(name, name.replace("_", " "))) for name, look in style.equal_looks_of(names).items()}
+
+
+def row_height(looks):
+    """Of one test or fault of a set, whose rows are 1 apart."""
+    return 0.8 / max(len(looks), 4)
 
 
 def drawn_tests(one_set):
@@ -41,9 +56,10 @@ def drawn_tests(one_set):
 
 
 def number_log_axis(axes):
-    """A logarithmic axis whose ticks are plain numbers."""
+    """A logarithmic axis whose ticks are plain numbers, over many decades the powers of ten."""
     axes.set_xscale("log")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=6))
+    low, high = axes.get_xlim()
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 50 * low else (1,), numticks=9))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
 
@@ -52,85 +68,96 @@ def draw_ratios(axes, sets):
     nominal = axes.nominal
     axes.axvspan(1 / nominal, nominal, color="0.92", zorder=0)
     axes.axvline(1, color="0.6", linewidth=0.8, zorder=1)
+    looks = looks_by_name(sets, "tests", "test", TESTS)
     for row, one_set in enumerate(sets):
         for number, test in enumerate(drawn_tests(one_set)):
-            y = row + 0.2 * (number - 1)
+            y = row + row_height(looks) * (number - (len(looks) - 1) / 2)
             lower, upper = (x if x is not None and x > 0 else test["ratio"] for x in test["interval"])
             color = COLORS.get(test["verdict"], "0.45")
             axes.plot([lower, upper], [y, y], color=color, linewidth=1.6)
-            axes.plot([test["ratio"]], [y], MARKERS[test["test"]], color=color, markersize=5)
+            axes.plot([test["ratio"]], [y], looks[test["test"]].marker, color=color, markersize=4.5)
     number_log_axis(axes)
     axes.set_yticks(range(len(sets)), [f"{style.label_of(s['name'])} ({s['pairs']})" for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.set_xlabel("covariances too small by, in variance")
-    handles = [Line2D([], [], linestyle="none", marker=MARKERS[test], color="0.45", label=words) for test, words in TESTS.items()]
-    if sheet.current().width is None:
-        axes.legend(handles=handles, loc="upper right", fontsize=7, frameon=False)
-    return handles
+    return [mark(look.label, look.marker, "0.45") for look in looks.values()] + [
+        mark(f"covariance {verdict}" if verdict != "undecided" else verdict, "_", color) for verdict, color in COLORS.items()]
+
+
+def has_faults(one_set):
+    return any(is_known(fault["beside_others"]) for fault in one_set["camera_faults"])
+
+
+def is_known(found):
+    return found["value"] is not None and found["interval"][0] is not None
 
 
 def draw_faults(axes, sets):
-    """Each fault with its interval, as multiples of what is nominal; hollow where it is undecided."""
+    """Each fault with its interval, as multiples of what is nominal; hollow where it is undecided. Sets without a fault that
+    could be measured are left out."""
+    sets, looks = [one_set for one_set in sets if has_faults(one_set)], looks_by_name(sets, "camera_faults", "fault", FAULTS)
     axes.axvspan(-1, 1, color="0.92", zorder=0)
     axes.axvline(0, color="0.6", linewidth=0.8, zorder=1)
     for row, one_set in enumerate(sets):
         for number, fault in enumerate(one_set["camera_faults"]):
             found = fault["beside_others"]
-            if found["value"] is None or found["interval"][0] is None:
+            if not is_known(found):
                 continue
-            _, marker, color = FAULTS[fault["fault"]]
+            look = looks[fault["fault"]]
             value, lower, upper = (min(max(x / fault["nominal"], -FARTHEST_FAULT), FARTHEST_FAULT)
                                    for x in (found["value"], *found["interval"]))
-            y = row + 0.16 * (number - 2)
-            axes.plot([lower, upper], [y, y], color=color, linewidth=1.2)
-            axes.plot([value], [y], marker, color=color, markersize=4, fillstyle="none" if fault["verdict"] == "undecided" else "full")
+            y = row + row_height(looks) * (number - (len(looks) - 1) / 2)
+            axes.plot([lower, upper], [y, y], color=look.color, linewidth=1.2)
+            axes.plot([value], [y], look.marker, color=look.color, markersize=4,
+                      fillstyle="none" if fault["verdict"] == "undecided" else "full")
     axes.set_xscale("symlog", linthresh=1, linscale=0.6)
     axes.set_xlim(-FARTHEST_FAULT, FARTHEST_FAULT)
-    axes.set_xticks([-100, -10, -1, 0, 1, 10, 100])
+    axes.set_xticks([-100, -10, -1, 0, 1, 10, 100] if sheet.current().width is None else [-100, -1, 1, 100])
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_yticks(range(len(sets)), [style.label_of(s["name"]) for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.set_xlabel("camera faults over nominal")
-    handles = [Line2D([], [], linestyle="none", marker=marker, color=color, label=words) for words, marker, color in FAULTS.values()]
-    if sheet.current().width is None:
-        axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=6, frameon=False)
-    return handles
+    return [mark(f"camera: {look.label}", look.marker, look.color) for look in looks.values()]
 
 
 def draw_correlations(axes, sets):
+    """Where the sets' lines end, for their names."""
     axes.axhline(0, color="0.6", linewidth=0.8)
-    handles = []
+    looks, ends = style.looks_of([one_set["name"] for one_set in sets]), []
     for number, one_set in enumerate(sets):
-        known = [c for c in one_set["correlations"] if c["difference_interval"][0] is not None]
+        look, known = looks[one_set["name"]], [c for c in one_set["correlations"] if c["difference_interval"][0] is not None]
+        if not known:
+            continue
         x = [math.sqrt(max(c["from_px"], 0.25) * c["to_px"]) * 1.03 ** number for c in known]
         y = [c["correlation"] - c["twin_correlation"] for c in known]
-        error = [[max(v - c["difference_interval"][0], 0) for v, c in zip(y, known)],
-                 [max(c["difference_interval"][1] - v, 0) for v, c in zip(y, known)]]
-        handles.append(axes.errorbar(x, y, yerr=error, fmt="o-", markersize=3, linewidth=0.9,
-                                     label=style.label_of(one_set["name"])))
+        axes.vlines(x, *zip(*(c["difference_interval"] for c in known)), color=look.color, linewidth=0.9)
+        axes.plot(x, y, **{**look.line(), "linewidth": 0.9, "markersize": 4})
+        ends.append(direct_labels.End(x[-1], y[-1], look.label, look.text_color, look.is_highlighted))
     number_log_axis(axes)
     axes.set_xlabel("distance of key points, px")
     axes.set_ylabel("correlation of residuals")
-    style.draw_legend(axes, handles, fontsize=style.font_size(6), frameon=False)
+    return ends
 
 
 def draw(validation):
     sets = validation["sets"]
-    width, height = sheet.current().width, 1.4 + 0.45 * len(sets)
-    if width is not None and style.panels_abreast(3) < 3:
+    width, height = sheet.current().width or 13, 1.4 + 0.45 * len(sets)
+    if width < SIDE_BY_SIDE:
         figure = Figure(figsize=(width, 2 * height + 2.6), layout="constrained")
         ratios, correlations, faults = figure.subplots(3, 1, height_ratios=[height, 2.6, height])
     else:
-        figure = Figure(figsize=(width or 13, height), layout="constrained")
-        ratios, correlations, faults = figure.subplots(1, 3, width_ratios=[1.3, 1, 1.2])
+        figure = Figure(figsize=(width, height), layout="constrained")
+        ratios, correlations, faults = figure.subplots(1, 3, width_ratios=[1.2, 1.2, 1.2])
     FigureCanvasAgg(figure)
     ratios.nominal = validation["nominal_variance"]
-    handles = draw_ratios(ratios, sets)
-    draw_correlations(correlations, sets)
+    handles, ends = draw_ratios(ratios, sets), draw_correlations(correlations, sets)
     handles += draw_faults(faults, sets)
-    if width is not None:
-        style.add_legend_and_caption(figure, handles, CAPTION)
+    for letter, axes, title in zip(style.letters(3), (ratios, correlations, faults),
+                                   ("Stated covariances", "Neighbouring residuals", "Camera")):
+        axes.set_title(letter + title)
+    style.add_legend_and_caption(figure, handles, CAPTION)
+    direct_labels.add(correlations, ends)
     return figure
 
 

@@ -10,6 +10,7 @@ It draws what the files say and computes nothing: coverages, intervals and count
 """
 
 import itertools
+import math
 import os
 import sys
 
@@ -23,6 +24,7 @@ from common.summary_csv import numbers, read_table
 from common.text_size import wrap
 
 NOMINAL = 0.95
+TALLEST = 7.6  # inches that panels take of a page of paper; legend and caption come to them
 QUANTITIES = {  # name in the files: name in words
     "f": "Linear model f", "pose": "Motion p from f", "fresh_point": "Inlier test, fresh match",
     "ml_pose": "Motion p, max. likelihood",
@@ -185,9 +187,17 @@ def conditions_of(rows):
 
 
 def pages_of(rows):
-    """The rows in parts of so many conditions as fit side by side."""
-    names = conditions_of(rows)
-    return [rows[rows.condition.isin(names[first:first + MAX_COLUMNS])] for first in range(0, len(names), MAX_COLUMNS)]
+    """The rows in parts of so many conditions as fit side by side and, on a sheet with a width, of so many quantities as
+    fit on a page below each other."""
+    names, quantities, pages = conditions_of(rows), [name for name in QUANTITIES if name in set(rows.quantity)], []
+    for first in range(0, len(names), MAX_COLUMNS):
+        conditions, per_page = names[first:first + MAX_COLUMNS], len(quantities)
+        if sheet.current().width is not None:
+            lines = math.ceil(len(conditions) / style.panels_abreast(len(conditions)))
+            per_page = max(1, int(TALLEST / (style.PANEL_HEIGHT * lines)))
+        for start in range(0, len(quantities), max(1, per_page)):
+            pages.append(rows[rows.condition.isin(conditions) & rows.quantity.isin(quantities[start:start + per_page])])
+    return pages
 
 
 def full_size(rows):

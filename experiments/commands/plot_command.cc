@@ -64,7 +64,8 @@ void AddPlotCommand(CLI::App& app) {
     kinds += fmt::format("  {:<18} {:<16} {}\n", kind.name, kind.input, kind.doc);
   command->footer("Kinds, their input, and what they show:\n" + kinds + R"(
 Every kind takes --width INCHES (3.3 for a column, with text of 7 to 9 points), --labels NAME=TEXT,
---no-caption and --format png,pdf,svg,tikz.
+--highlight A,B (the others grey), --no-caption, --format png,pdf,svg,tikz, and --style FILE.toml with
+these settings for all figures of a paper.
 
 Examples:
   rcme plot failure_rate --help                      the options of that kind

@@ -129,15 +129,15 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["reference"] = comparison.reference;
   json["caution"] = comparison.caution;
   json["is_of_population"] = is_of_population;
-  json["findings"] = FindingsOf(summary, comparison);
+  const std::vector<ForecastMeasures> forecasts =
+      HasFailureProbabilities(summary) ? MeasureFailureForecasts(store) : std::vector<ForecastMeasures>();
+  json["findings"] = FindingsOf(summary, comparison, forecasts);
   if (const auto preregistration = DecidePreregistered(store, run))
     json["preregistration"] = PreregistrationAsJson(*preregistration);
   WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));
   WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));
-  if (HasFailureProbabilities(summary)) {
-    const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(store);
-    WriteFileWhole(folder + "/reliability.json", ForecastsAsJson(summary.study, "", measures));
-  }
+  if (!forecasts.empty())
+    WriteFileWhole(folder + "/reliability.json", ForecastsAsJson(summary.study, "", forecasts));
   if (comparison.caution.empty() && HasMarginals(store.Description())) {
     WriteFileWhole(folder + "/marginals.csv",
                    MarginalsAsCsv(MeasureMarginals(store, {.with_pairs = false, .estimators = {}})));

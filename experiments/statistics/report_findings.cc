@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
 
 namespace rcme {
 namespace {
 
 constexpr double kSignificanceLevel = 0.05;
+constexpr double kStatedCoverage = 0.95;
+constexpr double kLeastCoverage = 0.9, kMostCoverage = 0.98;  // beyond, a 95 % region is far off
+constexpr double kManyRefusals = 0.1;                         // rate from which refusals are a finding
 
 // Labels in the order of their first row.
 template <typename Row>
@@ -20,12 +26,105 @@ std::vector<std::string> LabelsIn(const std::vector<Row>& rows) {
   return labels;
 }
 
-// "12.3 % [10.1, 14.8] at outlier_ratio 0.4, sigma_px 1".
-std::string RateAt(const SummaryRow& row, const std::vector<std::string>& factor_names) {
+// "12.30 % [10.10, 14.80]": with the digits of the tables.
+std::string PercentWithInterval(double value, const Interval& interval) {
+  return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * value, 100.0 * interval.lower,
+                     100.0 * interval.upper);
+}
+
+// " at outlier_ratio 0.4, sigma_px 1"; of a population " over the population"; nothing without factors.
+template <typename Row>
+std::string PlaceOf(const Row& row, const std::vector<std::string>& factor_names) {
   std::vector<std::string> levels;
   for (size_t f = 0; f < row.levels.size(); ++f) levels.push_back(factor_names[f] + " " + row.levels[f]);
-  return fmt::format("{:.3g} % [{:.3g}, {:.3g}]{}{}", 100.0 * row.value, 100.0 * row.interval.lower,
-                     100.0 * row.interval.upper, levels.empty() ? "" : " at ", fmt::join(levels, ", "));
+  return levels.empty() ? "" : fmt::format(" at {}", fmt::join(levels, ", "));
+}
+
+std::string RateAt(const SummaryRow& row, const std::vector<std::string>& factor_names) {
+  return PercentWithInterval(row.value, row.interval) + PlaceOf(row, factor_names);
+}
+
+// How far an interval lies outside of a range; 0 within or across its end.
+double DistanceFrom(const Interval& interval, double lower, double upper) {
+  return std::max({0.0, lower - interval.upper, interval.lower - upper});
+}
+
+// A sentence and how much it matters.
+struct Finding {
+  double weight = 0.0;
+  std::string sentence;
+};
+
+void AddByWeight(std::vector<Finding> findings, std::vector<std::string>* sentences) {
+  std::ranges::stable_sort(findings, std::greater(), &Finding::weight);
+  for (Finding& finding : findings) sentences->push_back(std::move(finding.sentence));
+}
+
+// Regions that are far from what they state, the farthest first: of each estimator the worst condition.
+void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentences) {
+  std::vector<Finding> findings;
+  for (const std::string& label : LabelsIn(summary.rows)) {
+    const SummaryRow* worst = nullptr;
+    double farthest = 0.0;
+    int num_off = 0, num_known = 0;
+    for (const SummaryRow& row : summary.rows) {
+      if (row.estimator != label || row.quantity != "nees_coverage" || row.n == 0) continue;
+      ++num_known;
+      const double distance = DistanceFrom(row.interval, kLeastCoverage, kMostCoverage);
+      if (distance > 0.0) ++num_off;
+      if (distance > farthest) worst = &row, farthest = distance;
+    }
+    if (!worst) continue;
+    findings.push_back(
+        {farthest,
+         fmt::format(
+             "Coverage: the 95 % regions that {} states hold the truth in {}{}: they are too {}{}.", label,
+             RateAt(*worst, summary.factor_names), summary.is_of_population ? " over the population" : "",
+             worst->value < kStatedCoverage ? "small" : "large",
+             num_known > 1 ? fmt::format(", and far off in {} of {} conditions", num_off, num_known) : "")});
+  }
+  AddByWeight(std::move(findings), sentences);
+}
+
+// Stated probabilities that are not the rate of failures, the farthest first.
+void AddWrongProbabilities(const std::vector<ForecastMeasures>& forecasts,
+                           std::vector<std::string>* sentences) {
+  std::vector<Finding> findings;
+  for (const ForecastMeasures& f : forecasts) {
+    const Interval failure = f.failure.interval;
+    const double distance = std::max(failure.lower - f.mean_probability, f.mean_probability - failure.upper);
+    if (f.source != ForecastSource::kStated || f.n == 0 || !(distance > 0.0)) continue;
+    const std::string of_sure =
+        f.num_sure > 0 ? fmt::format("; of the answers with P at most {} {} failed", kSureBelow,
+                                     PercentWithInterval(double(f.num_sure_failed) / double(f.num_sure),
+                                                         f.sure_failed_interval))
+                       : "";
+    findings.push_back(
+        {distance,
+         fmt::format("Probability: {} states a probability of failure of {:.2f} % on "
+                     "average, and {} of its answers failed: it is too {}{}.",
+                     f.estimator, 100.0 * f.mean_probability, PercentWithInterval(f.failure.value, failure),
+                     f.mean_probability < f.failure.value ? "sure" : "careful", of_sure)});
+  }
+  AddByWeight(std::move(findings), sentences);
+}
+
+// Estimators that refuse often: of each the condition in which it does most.
+void AddRefusals(const Summary& summary, std::vector<std::string>* sentences) {
+  std::vector<Finding> findings;
+  for (const std::string& label : LabelsIn(summary.rows)) {
+    const SummaryRow* most = nullptr;
+    for (const SummaryRow& row : summary.rows) {
+      const bool is_refusal = row.quantity == "no_candidate" || row.quantity == "other_refusal";
+      if (row.estimator != label || !is_refusal || row.n == 0) continue;
+      if (!most || row.value > most->value) most = &row;
+    }
+    if (!most || most->interval.lower < kManyRefusals) continue;
+    findings.push_back({most->value, fmt::format("Refusals: {} refuses {}{} ({}).", label,
+                                                 summary.is_of_population ? "" : "up to ",
+                                                 RateAt(*most, summary.factor_names), most->quantity)});
+  }
+  AddByWeight(std::move(findings), sentences);
 }
 
 void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* sentences) {
@@ -39,7 +138,7 @@ void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* senten
     if (!least) continue;
     const std::string range =
         least->value == most->value
-            ? fmt::format("{} {}", RateAt(*least, summary.factor_names),
+            ? fmt::format("{} {}", PercentWithInterval(least->value, least->interval),
                           summary.is_of_population ? "over the population" : "throughout")
             : fmt::format("from {} to {}", RateAt(*least, summary.factor_names),
                           RateAt(*most, summary.factor_names));
@@ -47,8 +146,10 @@ void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* senten
   }
 }
 
+// What the tests of one estimator and event decide over the conditions.
 struct Tally {
   int more = 0, less = 0;
+  const ComparisonRow* farthest = nullptr;
 };
 
 Tally CountDifferences(const Comparison& comparison, const std::string& label, const std::string& event) {
@@ -56,11 +157,34 @@ Tally CountDifferences(const Comparison& comparison, const std::string& label, c
   for (const ComparisonRow& row : comparison.rows) {
     const bool is_decided =
         row.estimator == label && row.event == event && row.holm_p_value < kSignificanceLevel;
-    if (is_decided) ++(row.difference > 0.0 ? tally.more : tally.less);
+    if (!is_decided) continue;
+    ++(row.difference > 0.0 ? tally.more : tally.less);
+    if (!tally.farthest || std::abs(row.difference) > std::abs(tally.farthest->difference))
+      tally.farthest = &row;
   }
   return tally;
 }
 
+// "fails less often in 3 (-25.00 points [-30.00, -20.00] at outlier_ratio 0.4) and more often in 1"; empty
+// where nothing is decided.
+std::string DescribeTally(const Tally& tally, const std::string& verb, const Comparison& comparison) {
+  std::vector<std::string> parts;
+  for (const bool is_less : {true, false}) {
+    const int count = is_less ? tally.less : tally.more;
+    if (count == 0) continue;
+    const bool has_farthest = (tally.farthest->difference < 0.0) == is_less;
+    const ComparisonRow& row = *tally.farthest;
+    const std::string farthest =
+        has_farthest ? fmt::format(" (by {:+.2f} points [{:+.2f}, {:+.2f}]{})", 100.0 * row.difference,
+                                   100.0 * row.interval.lower, 100.0 * row.interval.upper,
+                                   PlaceOf(row, comparison.factor_names))
+                     : "";
+    parts.push_back(fmt::format("{} often in {}{}", is_less ? "less" : "more", count, farthest));
+  }
+  return parts.empty() ? "" : fmt::format("{} {}", verb, fmt::join(parts, " and "));
+}
+
+// Those ahead of the reference first; those of which nothing is decided in one sentence.
 void AddPairedDifferences(const Summary& summary, const Comparison& comparison,
                           std::vector<std::string>* sentences) {
   if (comparison.rows.empty()) return;
@@ -69,39 +193,64 @@ void AddPairedDifferences(const Summary& summary, const Comparison& comparison,
       "of the {} condition{} ({}, Holm-adjusted p < {})", num_conditions, num_conditions == 1 ? "" : "s",
       comparison.rows.front().is_anytime_valid ? "a test that is valid at every look" : "McNemar's test",
       kSignificanceLevel);
+  std::vector<Finding> findings;
+  std::vector<std::string> undecided;
   for (const std::string& label : LabelsIn(comparison.rows)) {
     const Tally failure = CountDifferences(comparison, label, "failure");
     const Tally refusal = CountDifferences(comparison, label, "refusal");
-    sentences->push_back(fmt::format(
-        "Against {} on the same trials {} fails less often in {} and more often in {}, refuses less often "
-        "in {} and more often in {} {}.",
-        comparison.reference, label, failure.less, failure.more, refusal.less, refusal.more, test));
+    std::vector<std::string> parts;
+    for (const std::string& part :
+         {DescribeTally(failure, "fails", comparison), DescribeTally(refusal, "refuses", comparison)}) {
+      if (!part.empty()) parts.push_back(part);
+    }
+    if (parts.empty()) {
+      undecided.push_back(label);
+    } else {
+      findings.push_back({double(failure.less - failure.more) + 0.01 * (refusal.less - refusal.more),
+                          fmt::format("Against {} on the same trials {} {} {}.", comparison.reference, label,
+                                      fmt::join(parts, ", "), test)});
+    }
+  }
+  AddByWeight(std::move(findings), sentences);
+  if (!undecided.empty()) {
+    sentences->push_back(
+        fmt::format("Against {} no difference in failures or refusals is decided of {} in any {}.",
+                    comparison.reference, fmt::join(undecided, ", "), test));
   }
 }
 
-// "fails 3.1 points less often [1.2, 5.0]", of the population; nothing without trials.
+// The farthest ahead of the reference first.
 void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::string>* sentences) {
+  std::vector<Finding> findings;
   for (const ComparisonRow& row : comparison.rows) {
     if (row.event != "failure_or_refusal" || row.n == 0) continue;
     const bool is_decided = row.holm_p_value < kSignificanceLevel;
-    sentences->push_back(fmt::format(
-        "Over the population {} fails or refuses {:+.3g} points [{:+.3g}, {:+.3g}] against {} on the "
-        "same trials{}.",
-        row.estimator, 100.0 * row.difference, 100.0 * row.interval.lower, 100.0 * row.interval.upper,
-        comparison.reference, is_decided ? fmt::format(" (Holm-adjusted p < {})", kSignificanceLevel) : ""));
+    findings.push_back(
+        {-row.difference,
+         fmt::format(
+             "Over the population {} fails or refuses {:+.2f} points [{:+.2f}, {:+.2f}] against {} on the "
+             "same trials{}.",
+             row.estimator, 100.0 * row.difference, 100.0 * row.interval.lower, 100.0 * row.interval.upper,
+             comparison.reference,
+             is_decided ? fmt::format(" (Holm-adjusted p < {})", kSignificanceLevel) : "")});
   }
+  AddByWeight(std::move(findings), sentences);
 }
 
 }  // namespace
 
-std::vector<std::string> FindingsOf(const Summary& summary, const Comparison& comparison) {
+std::vector<std::string> FindingsOf(const Summary& summary, const Comparison& comparison,
+                                    const std::vector<ForecastMeasures>& forecasts) {
   std::vector<std::string> sentences;
-  AddRangesOfFailure(summary, &sentences);
+  AddWrongCoverages(summary, &sentences);
   if (summary.is_of_population) {
     AddDifferencesInPopulation(comparison, &sentences);
   } else {
     AddPairedDifferences(summary, comparison, &sentences);
   }
+  AddWrongProbabilities(forecasts, &sentences);
+  AddRefusals(summary, &sentences);
+  AddRangesOfFailure(summary, &sentences);
   return sentences;
 }
 

@@ -6,10 +6,8 @@ import os
 import sys
 
 from common import sheet, style
-
-
-class PlotError(Exception):
-    """Something the user can put right; its text is one sentence that names the file, the thing and what is allowed."""
+from common.plot_error import PlotError
+from common.style_file import read_style
 
 
 class Parser(argparse.ArgumentParser):
@@ -30,14 +28,26 @@ class FigureParser(Parser):
                            help="as wide as it is printed (a column: 3.3); texts then have 7 to 9 points")
         group.add_argument("--labels", action="append", default=[], metavar="NAME=TEXT",
                            help="what to print for an estimator, a factor, a level or a quantity; repeatable")
+        group.add_argument("--highlight", default="", metavar="A,B",
+                           help="draw these estimators in colour and the others grey")
         group.add_argument("--no-caption", action="store_true", help="leave out the small print below the figure")
-        group.add_argument("--format", default="png,pdf", metavar="A,B",
-                           help=f"what to write, of {', '.join(sheet.FORMATS)} (default: %(default)s)")
+        group.add_argument("--format", metavar="A,B",
+                           help=f"what to write, of {', '.join(sheet.FORMATS)} (default: png,pdf)")
+        group.add_argument("--style", metavar="FILE.toml",
+                           help="a file with width, caption, formats, highlight, [labels] and [colors], for all figures of a "
+                           "paper; what the command line gives comes first")
 
     def parse_args(self, arguments=None, namespace=None):
         options = super().parse_args(arguments, namespace)
-        options.sheet = sheet.Sheet(self.checked_width(options.width), dict(map(label_of, options.labels)),
-                                    not options.no_caption, checked_formats(options.format))
+        shared, labels = read_style(options.style), dict(map(label_of, options.labels))
+        highlight = tuple(filter(None, options.highlight.split(",")))
+        formats = shared.get("formats", ["png", "pdf"]) if options.format is None else names_of("--format", options.format, "pdf")
+        options.sheet = sheet.Sheet(
+            width=self.checked_width(shared.get("width") if options.width is None else options.width),
+            labels={**shared.get("labels", {}), **labels}, has_caption=shared.get("caption", True) and not options.no_caption,
+            formats=checked_formats(formats), highlight=highlight or tuple(shared.get("highlight", ())),
+            colors=shared.get("colors", {}), asked=(*(("--labels", name) for name in labels),
+                                                    *(("--highlight", name) for name in highlight)))
         return options
 
     def checked_width(self, width):
@@ -53,20 +63,19 @@ def label_of(text):
     return name, label
 
 
-def checked_formats(text):
-    formats = tuple(names_of("--format", text, "pdf"))
+def checked_formats(formats):
     for name in formats:
         if name not in sheet.FORMATS:
             raise PlotError(f"--format {name}: is not known; allowed: {', '.join(sheet.FORMATS)}.")
-    return formats
+    return tuple(formats)
 
 
-def check_labels_were_met():
-    """A label for what the figure does not show is a mistake."""
+def check_names_were_met():
+    """A label or a highlight of the command line for what the figure does not show is a mistake."""
     in_use = sheet.current()
-    for name in in_use.labels:
+    for option, name in in_use.asked:
         if name not in in_use.met:
-            raise PlotError(f"--labels {name}: the figure shows nothing of that name; it shows {', '.join(in_use.met)}.")
+            raise PlotError(f"{option} {name}: the figure shows nothing of that name; it shows {', '.join(in_use.met)}.")
 
 
 def names_of(option, text, example):
@@ -126,5 +135,5 @@ def written_figures(options, draw, dpi=style.RC["savefig.dpi"]):
     """The paths."""
     with sheet.use(getattr(options, "sheet", sheet.Sheet())):
         figures = draw(options)
-        check_labels_were_met()
+        check_names_were_met()
         return [path for more, figure in figures.items() for path in style.save(figure, options.out + more, dpi)]

@@ -3,13 +3,15 @@ of panels for each combination of levels of the factors that are not on the axis
 
 import math
 
+from matplotlib.ticker import FuncFormatter, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from common import sheet, style
 from common.command_line import PlotError
-from common.text_size import width_of
+from common.text_size import height_of, width_of
 
 MAX_PANEL_ROWS = 6
+FAR = 50  # times the least level: levels farther than that from each other stand on a logarithmic axis
 TICK_SIZE, NAME_GAP = 8, 0.08  # points; inches between names below an axis, or they stand upright
 
 
@@ -29,19 +31,30 @@ class FactorAxis:
         self.place = {level: float(level) if self.is_numeric else float(position)
                       for position, level in enumerate(self.levels)}
 
+        self.is_logarithmic = self.is_numeric and 0 < FAR * min(self.place.values()) <= max(self.place.values())
+
     def positions(self, levels):
         return [self.place[level] for level in levels]
 
     def limits(self):
         """The ends of the axis, with a margin."""
-        left, right = min(self.place.values()), max(self.place.values())
+        left, right = self.ends()
+        return (10 ** left, 10 ** right) if self.is_logarithmic else (left, right)
+
+    def ends(self):
+        """The same; on a logarithmic axis their logarithms."""
+        left, right = min(self.steps()), max(self.steps())
         margin = (0.06 * (right - left) or 0.5) if self.is_numeric else 0.5
         return left - margin, right + margin
 
+    def steps(self):
+        """Places along the axis, evenly on paper."""
+        return [math.log10(place) if self.is_logarithmic else place for place in self.place.values()]
+
     def room(self, panels_abreast):
         """Points of paper that the marks of one level may take without meeting those of the next."""
-        left, right = self.limits()
-        places = sorted(set(self.place.values()))
+        left, right = self.ends()
+        places = sorted(set(self.steps()))
         gap = min((b - a for a, b in zip(places, places[1:])), default=right - left)
         return min(26, 0.7 * 72 * self.width(panels_abreast) * gap / (right - left))
 
@@ -53,8 +66,19 @@ class FactorAxis:
 
     def height_of_names(self, panels_abreast):
         """Inches below a panel that upright names take on a sheet with a width, whose panels have a height of their own."""
-        names = [] if self.is_numeric or sheet.current().width is None else list(map(style.level_text, self.levels))
-        return max(width_of(name, TICK_SIZE) for name in names) if names and self.is_crowded(names, panels_abreast) else 0
+        if self.is_numeric or sheet.current().width is None:
+            return 0
+        names, is_upright = self.names(panels_abreast)
+        return max(width_of(name, TICK_SIZE) for name in names) if is_upright else 0
+
+    def names(self, panels_abreast):
+        """(the levels in words, whether they stand upright); upright ones are broken at their first space where two lines
+        fit beside each other."""
+        names = list(map(style.level_text, self.levels))
+        is_upright = self.is_crowded(names, panels_abreast)
+        if is_upright and self.width(panels_abreast) / len(names) > height_of(2, TICK_SIZE) + NAME_GAP / 2:
+            names = [name.replace(" ", "\n", 1) for name in names]
+        return names, is_upright
 
     def is_crowded(self, names, panels_abreast):
         """Whether names of words, one beside the other, would touch."""
@@ -64,11 +88,15 @@ class FactorAxis:
 
     def prepare(self, axes, panels_abreast):
         """Limits with a margin and, for words, ticks; conditions without a value keep their place."""
+        if self.is_logarithmic:
+            axes.set_xscale("log")
+            axes.xaxis.set_major_formatter(FuncFormatter(lambda level, _: f"{level:g}"))
+            axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xlim(*self.limits())
         axes.set_xlabel(style.in_words(self.name))
         if not self.is_numeric:
-            names = list(map(style.level_text, self.levels))
-            axes.set_xticks(range(len(names)), names, rotation=90 if self.is_crowded(names, panels_abreast) else 0)
+            names, is_upright = self.names(panels_abreast)
+            axes.set_xticks(range(len(names)), names, rotation=90 if is_upright else 0)
             axes.tick_params(axis="x", length=0)
             axes.grid(axis="x", visible=False)
 

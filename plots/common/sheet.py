@@ -19,6 +19,9 @@ class Sheet:
     labels: dict = field(default_factory=dict)  # name of an estimator, factor, level or quantity: what to print
     has_caption: bool = True
     formats: tuple = ("png", "pdf")
+    highlight: tuple = ()  # estimators in colour, the others grey; none: all in colour
+    colors: dict = field(default_factory=dict)  # name of an estimator: its colour
+    asked: tuple = ()  # (option, name) of the command line: what the figure has to show
     met: dict = field(default_factory=dict)  # the names that the figure asked for, in order
 
     def text_of(self, name, otherwise):

@@ -62,6 +62,17 @@ class Look:
     dashes: object = SOLID
     line_width: float = 1.4
     marker_size: float = 5.0
+    is_rest: bool = False  # grey, behind the others
+    is_highlighted: bool = False
+
+    @property
+    def zorder(self):
+        return 2.5 if self.is_rest else 3
+
+    @property
+    def text_color(self):
+        """For its name beside its line: a grey that can be read."""
+        return "0.4" if self.is_rest else self.color
 
     def line(self):
         """Keyword arguments for `Axes.plot`."""
@@ -79,45 +90,68 @@ class Look:
 
 
 def size_of(marker):
-    """Squares and diamonds look larger than a circle of the same nominal size; in print, stars are lost."""
-    in_print = {} if sheet.current().width is None else {"*": 1.5, "d": 1.15, "p": 1.1}
+    """Squares and diamonds look larger than a circle of the same nominal size; in print, thin marks are lost."""
+    in_print = {} if sheet.current().width is None else {"d": 1.15, "p": 1.1}
     return {"s": 0.86, "D": 0.8, **in_print}.get(marker, 1)
 
 
-# Keys are the estimators' labels in a study. One hue per family; a darker or lighter neighbour, with dashes, for its
-# rank-aware reading.
-KNOWN_LOOKS = {
-    "standard": Look("Standard", BLACK, "o"),
-    "prcme": Look("pRCME", ORANGE, "s"),
-    "rcme": Look("RCME", BLUE, "D"),
-    "prcme_as_printed": Look("pRCME, as printed", ORANGE, "P"),
-    "rcme_as_printed": Look("RCME, as printed", BLUE, "X"),
-    "prcme_rank_aware": Look("pRCME, rank-aware", VERMILLION, "^", DASHED),
-    "rcme_rank_aware": Look("RCME, rank-aware", SKY_BLUE, "v", DASH_DOT),
-    "rcme_predictive": Look("RCME, predictive likelihood", GREEN, "H", DOTTED),
-    "rcme_calibrated": Look("RCME, calibrated", PURPLE, "8"),
+# (colour, marker, dashes) of one estimator: no two share a colour or a marker. Any two colours are at least 12 apart
+# (CIEDE2000) to the eye and in simulated protanopia and deuteranopia; where two are alike in grey their dashes differ. The
+# first seven are those of Okabe and Ito.
+SLOTS = (
+    (BLACK, "o", SOLID), (BLUE, "D", SOLID), (VERMILLION, "^", DASHED), (GREEN, "H", DOTTED), (ORANGE, "P", SOLID),
+    (SKY_BLUE, "X", DASH_DOT), (PURPLE, "v", LONG_DASHED), ("#960000", "s", SOLID), ("#000069", "<", DOTTED),
+    ("#4B5A5A", ">", DASHED), ("#1E00D2", "d", DASH_DOT), ("#5A694B", "p", LONG_DASHED), ("#3C87FF", "8", SOLID),
+    ("#5A2D2D", "h", DASHED))
+REST = "0.66"  # the grey of estimators that are not highlighted, and of those beyond the last slot
+
+# An estimator's label in a study: (in words, the slot it takes if it is free). Those that a figure may show together have
+# different ones; where two want the same, the one further up has it.
+KNOWN = {
+    "standard": ("Standard", 0), "rcme_calibrated": ("RCME, calibrated", 1),
+    "prcme": ("pRCME", 4), "prcme_as_printed": ("pRCME, as printed", 4), "prcme_rank_aware": ("pRCME, rank-aware", 2),
+    "rcme": ("RCME", 5), "rcme_as_printed": ("RCME, as printed", 5), "rcme_rank_aware": ("RCME, rank-aware", 6),
+    "rcme_predictive": ("RCME, predictive likelihood", 3), "rcme_predictive_tuned": ("RCME, predictive, tuned", 3),
+    "poselib": ("PoseLib", 2), "opencv_magsac": ("OpenCV MAGSAC", 4), "opencv_graph_cut": ("OpenCV graph cut", 6),
+    "opencv_ransac": ("OpenCV RANSAC", 7), "opengv_ransac": ("OpenGV RANSAC", 8),
+    "standard_five_point": ("Standard, five points", 0), "standard_eight_point": ("Standard, eight points", 9),
+    "prcme_five_point": ("pRCME, five points", 4), "prcme_eight_point": ("pRCME, eight points", 2),
+    "rcme_five_point": ("RCME, five points", 5), "rcme_eight_point": ("RCME, eight points", 6),
+    "msac": ("MSAC", 10), "mlesac": ("MLESAC", 11), "lo_ransac": ("LO-RANSAC", 12), "cov_ransac": ("Cov-RANSAC", 13),
+    "m_estimator": ("M-estimator", 9), "opencv_usac": ("OpenCV USAC", 4), "opencv_lmeds": ("OpenCV LMedS", 10),
 }
-OTHER_COLORS = (GREEN, PURPLE, BLUE, VERMILLION, BLACK, SKY_BLUE, ORANGE)
-OTHER_MARKERS = ("<", "*", "d", ">", "p", "h")
-OTHER_DASHES = (DOTTED, LONG_DASHED, DASH_DOT, SOLID, DASHED)
+
+
+def slots_of(estimators):
+    """{name: index of SLOTS, or None where all are taken}: those in KNOWN have theirs if they can, the others what is
+    left, in the given order. Colours that --style gives to an estimator are no other's."""
+    given = {color.lower() for name, color in sheet.current().colors.items() if name in estimators}
+    free, slots = [slot for slot, (color, *_) in enumerate(SLOTS) if color.lower() not in given], {}
+    for name, (_, wanted) in KNOWN.items():
+        if name in estimators and wanted in free:
+            slots[name] = wanted
+            free.remove(wanted)
+    others = [name for name in estimators if name not in slots]
+    return {**slots, **dict(itertools.zip_longest(others, free[:len(others)]))}
 
 
 def looks_of(estimators):
-    """{name: Look}, in the given order; estimators this file does not know take the free looks in turn.
+    """{name: Look}, in the given order. With --highlight only those named have colours.
 
     Where estimators tie (many are at exactly 0 %), their lines coincide. So the first is drawn widest and each later
     one, on top of it, narrower: what lies below stays visible as a rim.
     """
-    looks, others, last = {}, 0, len(estimators) - 1
+    looks, last, in_use, slots = {}, len(estimators) - 1, sheet.current(), slots_of(estimators)
     for position, name in enumerate(estimators):
-        look = KNOWN_LOOKS.get(name)
-        if look is None:  # 7, 6 and 5 have no common divisor: 210 different looks
-            look = Look(name, OTHER_COLORS[others % 7], OTHER_MARKERS[others % 6], OTHER_DASHES[others % 5])
-            others += 1
-        look = replace(look, label=sheet.current().text_of(name, look.label))
+        slot = slots[name]
+        color, marker, dashes = (REST, ".", SOLID) if slot is None else SLOTS[slot]
+        is_rest = slot is None or (in_use.highlight and name not in in_use.highlight)
+        color = REST if is_rest else in_use.colors.get(name, color)
         rim = 0.5 + (last / 2 - position) / max(last, 4)  # from 1 to 0; two estimators differ only a little
-        looks[name] = replace(look, line_width=1.1 + 1.0 * rim,
-                              marker_size=(3.6 + 4.0 * rim) * size_of(look.marker))
+        rim = rim if not in_use.highlight else 0 if is_rest else 0.6
+        looks[name] = Look(label_of(name), color, marker, dashes, line_width=1.1 + 1.0 * rim,
+                           marker_size=(3.6 + 4.0 * rim) * size_of(marker), is_rest=is_rest,
+                           is_highlighted=name in in_use.highlight)
     return looks
 
 
@@ -128,7 +162,7 @@ def equal_looks_of(estimators):
 
 def label_of(estimator):
     """An estimator's label in words, as every legend has it."""
-    return sheet.current().text_of(estimator, KNOWN_LOOKS[estimator].label if estimator in KNOWN_LOOKS else estimator)
+    return sheet.current().text_of(estimator, KNOWN.get(estimator, (estimator,))[0])
 
 
 def split_unit(name):
@@ -145,8 +179,8 @@ def in_words(name):
 
 
 def level_text(level):
-    """A level of a factor as the figure prints it."""
-    return sheet.current().text_of(level, level)
+    """A level of a factor as the figure prints it: 'moving_object' -> 'moving object'."""
+    return sheet.current().text_of(level, level.replace("_", " "))
 
 
 def level_in_words(name, level):
@@ -165,6 +199,7 @@ def letters(count):
     return (f"({letter}) " if count > 1 else "" for letter in "abcdefghijklmnopqrstuvwxyz" * 9)
 
 
+ONE_PANEL_WIDTH = 4.6  # inches: of a figure of one panel on a sheet without a width
 PANEL_WIDTH, PANEL_HEIGHT = 2.2, 1.9  # inches: of the narrowest panel on a sheet with a width, and of all there
 
 
@@ -177,29 +212,36 @@ def panels_abreast(columns):
 def room_of_panel(columns):
     """Inches of paper for one of so many panels, its labels included."""
     width = sheet.current().width
-    return {1: 4.6, 2: 3.5}.get(columns, 2.6) if width is None else width / panels_abreast(columns)
+    return {1: ONE_PANEL_WIDTH, 2: 3.5}.get(columns, 2.6) if width is None else width / panels_abreast(columns)
 
 
-def new_figure(rows, columns, names_height=0):
+def new_figure(rows, columns, names_height=0, may_fold=False):
     """A figure of paper size (two panels: 7 x 3.2 inches) and its axes as a rows x columns array. On a sheet of a stated
     width the panels of a row stand below each other where they do not fit; legend and caption add to its height, and
-    so does what the names below the last row take, `names_height` inches."""
-    width = sheet.current().width
+    so does what the names below the last row take, `names_height` inches. A long column may fold: its panels then stand two
+    abreast, so that the figure is not taller than a page."""
+    width, folded = sheet.current().width, may_fold and columns == 1 and rows > 2 and panels_abreast(2) == 2
+    abreast = 2 if folded else panels_abreast(columns)
+    lines = math.ceil(rows * columns / abreast) if folded else math.ceil(columns / abreast) * rows  # of paper
     if width is None:
-        width = {1: 4.6, 2: 7.0}.get(columns, 2.6 * columns)
-        figure = Figure(figsize=(width, 1.0 + 2.2 * rows), layout="constrained")
-        FigureCanvasAgg(figure)
-        return figure, figure.subplots(rows, columns, squeeze=False, sharex=True, sharey="col")
-    abreast = panels_abreast(columns)
-    lines = math.ceil(columns / abreast)  # of paper, per row
-    figure = Figure(figsize=(width, (PANEL_HEIGHT * rows + names_height) * lines), layout="constrained")
+        size = ({1: ONE_PANEL_WIDTH, 2: 7.0}.get(abreast, 2.6 * abreast), 1.0 + 2.2 * lines)
+    else:
+        size = (width, PANEL_HEIGHT * lines + names_height * (lines if folded else lines // rows))
+    figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
-    grid, axes = figure.add_gridspec(rows * lines, abreast), numpy.empty((rows, columns), dtype=object)
+    grid, axes = figure.add_gridspec(lines, abreast), numpy.empty((rows, columns), dtype=object)
     for r, c in itertools.product(range(rows), range(columns)):
-        place = grid[r * lines + c // abreast, c % abreast]
-        axes[r, c] = figure.add_subplot(place, sharex=axes[0, 0], sharey=axes[0, c])
-        axes[r, c].tick_params(labelbottom=r == rows - 1)
+        line, place = divmod(r, 2) if folded else (r * (lines // rows) + c // abreast, c % abreast)
+        axes[r, c] = figure.add_subplot(grid[line, place], sharex=axes[0, 0], sharey=axes[0, c])
+    for panel in set(axes.flat) - set(bottom_panels(axes)):
+        panel.tick_params(labelbottom=False)
     return figure, axes
+
+
+def bottom_panels(panels):
+    """Those that have the x axis: the last row, or of a folded column the last panel of each half."""
+    is_folded = panels.shape[1] == 1 and panels[0, 0].get_subplotspec().get_gridspec().ncols == 2
+    return list(panels[-2:, 0] if is_folded else panels[-1])
 
 
 def left_panels(panels):

@@ -42,7 +42,8 @@ aside h3 { margin-top: .6rem; }
 aside p, aside caption { font-size: .82rem; color: var(--soft); }
 .scroll { overflow-x: auto; margin: .8rem 0 1.2rem; }
 table { border-collapse: collapse; font-size: .82rem; line-height: 1.3; font-variant-numeric: tabular-nums; }
-caption { text-align: left; caption-side: top; padding: 0 0 .5rem; color: var(--soft); font-size: .95em; max-width: 60rem; }
+caption { text-align: left; caption-side: top; padding: 0 0 .5rem; color: var(--soft); font-size: .95em;
+  max-width: min(60rem, calc(100vw - 1.8rem)); }
 th, td { padding: .28rem .55rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--rule); }
 td { white-space: nowrap; }
 thead th { vertical-align: bottom; border-bottom: 2px solid var(--soft); font-weight: 600; }
@@ -81,7 +82,7 @@ figcaption { font-size: .86rem; color: var(--soft); max-width: 60rem; margin-top
 }
 @media (prefers-reduced-motion: no-preference) { html { scroll-behavior: smooth; } }
 @media print {
-  @page { size: A4 landscape; margin: 12mm; }
+  @page { size: A4 portrait; margin: 12mm; }
   :root { color-scheme: light; --paper: #fff; --ink: #000; --soft: #444; --panel: #fff; --group: #eee; --link: #000; --rule: #ccc; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   .beside { display: block; }
@@ -89,12 +90,14 @@ figcaption { font-size: .86rem; color: var(--soft); max-width: 60rem; margin-top
   h3, caption { break-after: avoid; }
   .scroll { overflow: visible; }
   table { font-size: 7.2pt; }
-  th, td { padding: .12rem .35rem; }
+  th, td { padding: .12rem .25rem; }
+  td { white-space: normal; }
+  thead th { overflow-wrap: anywhere; }
   thead { display: table-header-group; }
   thead button::after { content: ""; }
   tr, figure { break-inside: avoid; }
   tr:has(th[scope=rowgroup]) { break-after: avoid; }
-  figure img { max-height: 165mm; width: auto; filter: none; }
+  figure img { max-height: 230mm; width: auto; filter: none; }
   details.study::details-content { content-visibility: visible; display: block; block-size: auto; }
 }
 """

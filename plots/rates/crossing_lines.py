@@ -109,7 +109,7 @@ def draw(crossings, x, conditions=()):
     others = [factor for factor in crossings.factors if factor != x]
     rows = rows_that_vary(rows.assign(x=axis.positions(rows[x])), others)
     parts = split_into_panel_rows(crossings.path, rows, others)
-    figure, panels = style.new_figure(len(parts), 1, axis.height_of_names(1))
+    figure, panels = style.new_figure(len(parts), 1, axis.height_of_names(1), may_fold=True)
     letters = style.letters(panels.size)
     for axes, (levels, part) in zip(panels[:, 0], parts):
         check_no_repetition(crossings.path, part)
@@ -121,8 +121,10 @@ def draw(crossings, x, conditions=()):
         axes.set_ylim(*crossings.range)
         draw_panel(axes, part, looks, axis, crossings.range)
         axes.set_title(style.title_lines(next(letters) + levels, 1))
+    for axes in style.left_panels(panels):
         axes.set_ylabel(style.in_words(crossings.setting))
-    axis.prepare(panels[-1, 0], 1)  # the x axis is shared by all panels
+    for axes in style.bottom_panels(panels):
+        axis.prepare(axes, 1)  # the x axis is shared by all panels
     handles = {handle.get_label(): handle for axes in panels.flat for handle in axes.get_legend_handles_labels()[0]}
     style.add_legend_and_caption(figure, list(handles.values()), caption_of(crossings, rows, others, axis))
     return figure

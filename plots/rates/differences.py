@@ -100,15 +100,15 @@ def draw(comparison, x, events):
     for _, part in parts:
         check_no_repetition(comparison.path, part, ["x", "estimator", "event"], lambda row: f"x = {row[x]}")
     reference = style.label_of(rows.reference.iloc[0])
-    figure, panels = style.new_figure(len(parts), len(events), axis.height_of_names(len(events)))
+    figure, panels = style.new_figure(len(parts), len(events), axis.height_of_names(len(events)), may_fold=True)
     letters = style.letters(panels.size)
     for (r, (levels, part)), (c, event) in itertools.product(enumerate(parts), enumerate(events)):
         draw_panel(panels[r, c], part[part.event == event], looks, axis.is_numeric,
                    axis.room(len(events)))
         title = next(letters) + name_of(event) + (f", {levels}" if levels else "")
         panels[r, c].set_title(style.title_lines(title, len(events)))
-        axis.prepare(panels[r, c], len(events))
-        panels[r, c].set_xlabel(style.in_words(x) if r == len(parts) - 1 else "")
+    for axes in style.bottom_panels(panels):
+        axis.prepare(axes, len(events))  # the x axis is shared by all panels
     for axes in style.left_panels(panels):
         axes.set_ylabel("Difference (% points)")
     style.add_legend_and_caption(figure, legend_of(looks, test_in_words(rows)), "; ".join(

@@ -1,20 +1,24 @@
 """Rates and scores against one factor: a line with an interval band per estimator, or marks with bars where levels are words."""
 
 import itertools
-import math
 
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from common import style
+from common import direct_labels, style
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
 from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
                              n_in_words, select_rates, title_of)
 
+STATED_LEVELS = {"nees_coverage": 0.95}  # what a quantity is where the covariance holds
+SMALL = 0.02  # where half of the rates that are not zero lie below it, a linear axis shows them all as nothing
+STATED = dict(color="0.35", linewidth=0.9, linestyle=style.DASHED, zorder=1, label="_stated")
+WANTED = ("success",)  # rates that are near one where all is well
+
 
 def draw_line(axes, points, look):
     """One estimator's line with its interval band; both break where a value is missing."""
-    axes.fill_between(points.x, points.lower, points.upper, color=look.color, alpha=0.13, linewidth=0)
-    line, = axes.plot(points.x, points.value, **look.line(), clip_on=False, zorder=3)
+    axes.fill_between(points.x, points.lower, points.upper, color=look.color, alpha=0.13, linewidth=0, zorder=look.zorder - 1)
+    line, = axes.plot(points.x, points.value, **look.line(), clip_on=False, zorder=look.zorder)
     line.set_in_layout(points.value.notna().any())  # an empty one would confuse the layout
     gap = points.value.isna()
     alone = points[~gap & gap.shift(1, fill_value=True) & gap.shift(-1, fill_value=True)]  # too narrow for a band
@@ -27,7 +31,7 @@ def draw_abreast(axes, points, look, aside):
     axes.vlines(points.x, points.lower, points.upper, color=look.color, linewidth=1, zorder=2,
                 transform=axes.transData + aside)
     line, = axes.plot(points.x, points.value, **{**look.line(), "linestyle": "none"}, transform=axes.transData + aside,
-                      clip_on=False, zorder=3)
+                      clip_on=False, zorder=look.zorder)
     line.set_in_layout(len(points) > 0)
 
 
@@ -38,6 +42,12 @@ def draw_upper_limits(axes, zeros, looks):
             aside = abreast(axes, position, len(at_one_x), 24)
             for mark in looks[row.estimator].upper_limit():
                 axes.plot([row.x], [row.upper], **mark, transform=axes.transData + aside, clip_on=False, zorder=4)
+
+
+def is_small(points):
+    """Whether a logarithmic axis shows what a linear one does not."""
+    positive = points.value[(points.kind == "rate") & (points.value > 0) & ~points.quantity.isin((*WANTED, *STATED_LEVELS))]
+    return len(positive) > 0 and positive.median() < SMALL
 
 
 def draw_panel(axes, points, looks, axis, room, log_y):
@@ -54,52 +64,92 @@ def draw_panel(axes, points, looks, axis, room, log_y):
             draw_line(axes, of_estimator, look)
         else:
             draw_abreast(axes, of_estimator, look, abreast(axes, position, len(looks), room))
+    for quantity in set(points.quantity) & set(STATED_LEVELS):
+        axes.axhline(STATED_LEVELS[quantity], **STATED)
     if points.upper.isna().all():
         axes.text(0.5, 0.5, "no trials (n = 0)", transform=axes.transAxes, ha="center", va="center", color="0.4")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:g}"))
 
 
 def set_y_limits(column_of_axes, points, log_y):
-    """From zero; on a logarithmic axis from the decade below everything that is drawn."""
+    """From zero; on a logarithmic axis from half of the least value that is drawn."""
     if not log_y:
         column_of_axes[0].set_ylim(bottom=0, top=None if points.upper.max() > 0 else 1)
         return
     drawn = points.value.where(points.value > 0, points.upper)
     smallest = min(drawn.dropna(), default=0.1)
-    column_of_axes[0].set_ylim(10 ** math.floor(math.log10(smallest) - 0.3), 1)
+    column_of_axes[0].set_ylim(smallest / 2, 1)
     for axes in column_of_axes:
         axes.yaxis.set_major_locator(LogLocator(numticks=12))
         axes.yaxis.set_minor_formatter(NullFormatter())
 
 
-def caption_of(rows, other_factors, is_numeric, log_y):
+def with_content(rows, quantities):
+    """(quantities with a panel, those without: no trial had them); of none with content the first keeps its panel."""
+    shown = [quantity for quantity in quantities if (rows.upper[rows.quantity == quantity] > 0).any() and
+             (rows.value[rows.quantity == quantity] > 0).any()] or list(quantities[:1])
+    return shown, [quantity for quantity in quantities if quantity not in shown]
+
+
+def without_content_in_words(rows, quantity):
+    """'Other refusals: none, at most 0.9 % at a point'."""
+    upper = rows.upper[rows.quantity == quantity].max()
+    return f"{title_of(quantity)}: " + (f"0 everywhere, at most {100 * upper:.2g} % at a point" if upper == upper else "no trials")
+
+
+def caption_of(rows, other_factors, is_numeric, has_arrows, left_out):
     return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, "point"),
                       f"{'bands' if is_numeric else 'bars'}: {interval_in_words(rows)} intervals"] +
-                     (["arrows: rate zero, at its upper bound"] if log_y and (rows.value == 0).any() else [])) + "."
+                     (["arrows: rate zero, at its upper bound"] if has_arrows else []) +
+                     [f"dashed: the stated level, {100 * level:g} %" for quantity, level in STATED_LEVELS.items()
+                      if quantity in set(rows.quantity)] +
+                     [without_content_in_words(rows, quantity) for quantity in left_out]) + "."
 
 
-def draw(summary, x, quantities, log_y=False):
-    """The whole figure: quantities side by side, one row of panels per combination of the other factors."""
+def ends_of(points, looks, log_y):
+    """Where each estimator's line ends, for its name."""
+    ends = []
+    for estimator, look in looks.items():
+        known = points[(points.estimator == estimator) & points.value.notna()].sort_values("x")
+        if len(known):
+            last = known.iloc[-1]
+            ends.append(direct_labels.End(last.x, last.upper if log_y and last.value == 0 else last.value, look.label,
+                                          look.text_color, look.is_highlighted))
+    return ends
+
+
+def draw(summary, x, quantities, log_y=None):
+    """The whole figure: quantities side by side, one row of panels per combination of the other factors. Names stand beside
+    the lines where there is one panel abreast and room, in a legend elsewhere. `log_y` None: where rates are small."""
     check_factor(summary, "--x", x)
     rows = select_rates(summary, quantities)
     axis = FactorAxis(x, rows[x])
     other_factors = [factor for factor in summary.factors if factor != x]
     rows = rows_that_vary(rows.assign(x=axis.positions(rows[x])), other_factors)
+    quantities, left_out = with_content(rows, quantities)
     parts = split_into_panel_rows(summary.path, rows, other_factors)
     for _, part in parts:
         check_no_repetition(summary.path, part, ["x", "estimator", "quantity"], lambda row: f"x = {row[x]}")
     looks = (style.looks_of if axis.is_numeric else style.equal_looks_of)(list(dict.fromkeys(rows.estimator)))
-    figure, panels = style.new_figure(len(parts), len(quantities), axis.height_of_names(len(quantities)))
+    figure, panels = style.new_figure(len(parts), len(quantities), axis.height_of_names(len(quantities)), may_fold=True)
     letters = style.letters(panels.size)
+    drawn = {quantity: rows[rows.quantity == quantity] for quantity in quantities}
+    is_log = {quantity: is_small(drawn[quantity]) if log_y is None else log_y for quantity in quantities}
     for (r, (levels, part)), (c, quantity) in itertools.product(enumerate(parts), enumerate(quantities)):
-        draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), log_y)
+        draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), is_log[quantity])
         title = next(letters) + title_of(quantity) + (f", {levels}" if levels else "")
         panels[r, c].set_title(style.title_lines(title, len(quantities)))
     for c, quantity in enumerate(quantities):
-        set_y_limits(panels[:, c], rows[rows.quantity == quantity], log_y)
-        axis.prepare(panels[-1, c], len(quantities))  # the x axis is shared by all panels
+        set_y_limits(panels[:, c], drawn[quantity], is_log[quantity])
+    for axes in style.bottom_panels(panels):
+        axis.prepare(axes, len(quantities))  # the x axis is shared by all panels
     for axes in style.left_panels(panels):
         axes.set_ylabel(f"{kind_in_words(rows)} (%)")
-    style.add_legend_and_caption(figure, panels[0, 0].get_legend_handles_labels()[0],
-                                 caption_of(rows, other_factors, axis.is_numeric, log_y))
+    has_names = axis.is_numeric and len(quantities) == 1 and len(parts) <= 2 and direct_labels.make_room(
+        figure, len(parts), [look.label for look in looks.values()])
+    has_arrows = any(is_log[quantity] and (drawn[quantity].value == 0).any() for quantity in quantities)
+    style.add_legend_and_caption(figure, [] if has_names else panels[0, 0].get_legend_handles_labels()[0],
+                                 caption_of(rows, other_factors, axis.is_numeric, has_arrows, left_out))
+    for axes, (_, part) in zip(panels[:, 0], parts if has_names else []):
+        direct_labels.add(axes, ends_of(part[part.quantity == quantities[0]], looks, is_log[quantities[0]]))
     return figure

@@ -10,6 +10,7 @@ TITLES = {  # other quantities: their name in words
     "failure": "Failure rate", "success": "Success rate", "failure_or_refusal": "Failure or refusal rate",
     "no_candidate": "Detect-fail rate",  # the paper's word
     "other_refusal": "Other refusals",
+    "failure_probability": "Stated probability of failure",
     "kappa_flag": "Kappa-flag rate", "nees_coverage": "NEES coverage",
     "auc_5_deg": "AUC@5\u00b0", "auc_10_deg": "AUC@10\u00b0", "auc_20_deg": "AUC@20\u00b0", "maa_10_deg": "mAA(10\u00b0)",
 }

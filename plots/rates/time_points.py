@@ -38,8 +38,8 @@ def front_of(points):
 def draw_point(axes, look, point):
     (time, time_lower, time_upper), (success, lower, upper) = point
     axes.errorbar(time, success, [[success - lower], [upper - success]], [[time - time_lower], [time_upper - time]],
-                  fmt="none", ecolor=look.color, elinewidth=0.8)
-    axes.plot(time, success, **{**look.line(), "linestyle": "none"})
+                  fmt="none", ecolor=look.color, elinewidth=0.8, zorder=look.zorder)
+    axes.plot(time, success, **{**look.line(), "linestyle": "none"}, zorder=look.zorder)
 
 
 def points_by_estimator(summaries):
@@ -54,11 +54,11 @@ def points_by_estimator(summaries):
 def draw_panel(axes, looks, by_estimator):
     for name, points in by_estimator.items():
         axes.plot([time[0] for time, _ in points], [success[0] for _, success in points], color=looks[name].color,
-                  linestyle=looks[name].dashes, linewidth=0.9)
+                  linestyle=looks[name].dashes, linewidth=0.9, zorder=looks[name].zorder)
         for point in points:
             draw_point(axes, looks[name], point)
     front = front_of([(time[0], success[0]) for points in by_estimator.values() for time, success in points])
-    axes.step(*zip(*front), where="post", color="0.75", linewidth=4, alpha=0.5, zorder=0)
+    axes.step(*zip(*front), where="post", color="0.75", linewidth=4.5, alpha=0.45, zorder=0)
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda ms, _: f"{ms:g}"))
     if sheet.current().width is not None:  # a narrow panel may hold no power of ten
@@ -98,5 +98,5 @@ def draw(summaries):
     which = "A panel per study" if len(panels) > 1 else f"Study {next(iter(panels))}"
     style.add_legend_and_caption(figure, handles, f"{which}; success: neither failed nor refused, over all conditions, "
                                  "with its 95 % interval; time: median with its 95 % interval; a line joins one estimator's "
-                                 "budgets; grey: the points that no other beats in both.")
+                                 "budgets; broad grey: the points that no other beats in both.")
     return figure

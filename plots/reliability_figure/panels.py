@@ -6,7 +6,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from common import sheet, style
 from common.command_line import PlotError
@@ -103,7 +103,8 @@ def draw_histogram(axes, entry, edges):
     axes.stairs(entry.histogram, edges, fill=True, **BARS)
     axes.set_yscale("symlog", linthresh=1, linscale=0.4)
     axes.set_ylim(0, 1.6 * max(entry.histogram))
-    axes.yaxis.set_ticks([tick for tick in (0, *(10 ** power for power in range(9))) if tick <= max(entry.histogram)])
+    powers = range(0, 9, 1 if max(entry.histogram) < 1000 else 2)
+    axes.yaxis.set_ticks([10 ** power for power in powers if 10 ** power <= max(entry.histogram)])
     axes.yaxis.set_minor_locator(NullLocator())
     axes.yaxis.set_major_formatter(FuncFormatter(lambda count, _: f"{count:g}"))
     axes.set(xlabel="Stated P (%)", ylabel="Trials")
@@ -111,16 +112,21 @@ def draw_histogram(axes, entry, edges):
 
 
 def draw_risk_coverage(axes, entries, looks):
+    """Logarithmic: each curve begins with the first failure among the surest answers."""
     for entry in entries:
-        axes.plot(*zip(*entry.risk_coverage), color=looks[entry.estimator].color,
-                  linestyle=looks[entry.estimator].dashes, linewidth=1.3, label="_risk")
+        look, curve = looks[entry.estimator], [point for point in entry.risk_coverage if point[1] > 0]
+        axes.plot(*(zip(*curve) if curve else ([], [])), color=look.color, linestyle=look.dashes, linewidth=1.3, label="_risk",
+                  zorder=look.zorder)
+    risks = [risk for entry in entries for _, risk in entry.risk_coverage if risk > 0]
     axes.set_xlim(0, 1)
-    axes.set_yscale("function", functions=(root, square))
-    top = max(risk for entry in entries for _, risk in entry.risk_coverage)
-    axes.set_ylim(0, min(1.0, 1.05 * top) or 1)
-    axes.yaxis.set_ticks([tick for tick in (0, 0.001, *TICKS[1:]) if tick <= (top or 1)])
+    axes.set_yscale("log")
+    axes.set_ylim(0.7 * min(risks, default=0.001), min(1.0, 1.5 * max(risks, default=1)))
+    axes.yaxis.set_major_locator(LogLocator(numticks=9) if max(risks, default=1) > 9 * min(risks, default=0) else LogLocator(subs=(1, 2, 5)))
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.xaxis.set_major_formatter(per_cent)
     axes.yaxis.set_major_formatter(per_cent)
+    if not risks:
+        axes.text(0.5, 0.5, "no failure", transform=axes.transAxes, ha="center", va="center", color="0.4")
     axes.set(xlabel="Answered, surest first (%)", ylabel="Failed among them (%)")
 
 
@@ -134,8 +140,8 @@ def caption_of(file, group):
     parts = [f"Study {file.study}"] + ([style.level_in_words(file.by, group)] if file.by else [])
     return "; ".join(parts + [
         "lines: isotonic regression of failures on P; dots: ten bins of equal width with exact 95 % intervals",
-        "the band is pointwise", "axes in proportion to the square root", "risk and coverage: a refusal is the least sure "
-        "and counts as a failure; AURC: area under the curve"]) + "."
+        "the band is pointwise", "axes of P in proportion to the square root", "risk and coverage: from the first failure "
+        "on, a refusal is the least sure and counts as a failure; AURC: area under the curve"]) + "."
 
 
 def draw(file, names=None, group=None):

@@ -15,6 +15,7 @@ from rates.selection import title_of
 from reliability_figure import panels as reliability
 
 QUANTITIES = ("failure", "failure_or_refusal", "no_candidate")  # the first two that a table has: an old one lacks the second
+MEASURES = ("nees_coverage", "auc_10_deg", "failure_probability")  # of a figure of their own
 EVENTS = ("failure", "failure_or_refusal")
 MAX_SLICES = 6  # heat maps of one run
 
@@ -46,21 +47,30 @@ def quantities_of(run):
     return [quantity for quantity in QUANTITIES if quantity in present][:2]
 
 
-def rates_in_words(run):
-    return " and ".join(title_of(quantity).lower() for quantity in quantities_of(run))
+def measures_of(run):
+    """Those that some estimator has a number of."""
+    rows = run.summary.rows
+    return [quantity for quantity in MEASURES if ((rows.quantity == quantity) & (rows.n != "0")).any()]
 
 
-def line_figure(run, x):
-    caption = f"{rates_in_words(run).capitalize()} against {in_running_text(x)}."
-    return drawn(lambda: lines.draw(run.summary, x, quantities_of(run)),
-                 f"{caption} A line per estimator with the band of its exact 95 % intervals; the numbers are in the table "
+def rates_in_words(quantities):
+    """'Failure rate and detect-fail rate', 'NEES coverage, AUC@10 and ...'."""
+    titles = [title if place == 0 or title[1:2].isupper() else title[:1].lower() + title[1:]
+              for place, title in enumerate(map(title_of, quantities))]
+    return " and ".join([", ".join(titles[:-1]), titles[-1]] if len(titles) > 1 else titles)
+
+
+def line_figure(run, x, quantities):
+    caption = f"{rates_in_words(quantities)} against {in_running_text(x)}."
+    return drawn(lambda: lines.draw(run.summary, x, quantities),
+                 f"{caption} A line per estimator with the band of its 95 % intervals; the numbers are in the table "
                  "of results.", caption,
-                 script_command(run, "failure_rate", ["--x", x, "--quantities", ",".join(quantities_of(run))]))
+                 script_command(run, "failure_rate", ["--x", x, "--quantities", ",".join(quantities)]))
 
 
 def heat_map_figure(run, x, y, fixed):
     """`fixed`: [(factor, level)] of the others that vary."""
-    caption = f"{rates_in_words(run).capitalize()} over {in_running_text(x)} and {in_running_text(y)}" + "".join(
+    caption = f"{rates_in_words(quantities_of(run))} over {in_running_text(x)} and {in_running_text(y)}" + "".join(
         f", {style.level_in_words(*pair)}" for pair in fixed) + "."
     conditions = [f"{factor}={level}" for factor, level in fixed]
     arguments = ["--x", x, "--y", y, "--quantities", ",".join(quantities_of(run))]
@@ -122,7 +132,9 @@ def figures(run):
         x, y = sorted(by_levels[:2], key=varying.index)
         parts, compared = [heat_maps(run, x, y, [factor for factor in varying if factor not in (x, y)])], by_levels[:1]
     else:
-        parts, compared = [line_figure(run, factor) for factor in varying], varying
+        parts, compared = [line_figure(run, factor, quantities_of(run)) for factor in varying], varying
+    if measures_of(run):
+        parts += [line_figure(run, factor, measures_of(run)) for factor in compared]
     if run.comparison is not None:
         parts += [difference_figure(run, factor) for factor in compared]
     return joined(parts)

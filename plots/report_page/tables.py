@@ -108,18 +108,17 @@ def results(run):
     lines = []
     for row, of in groups:
         num_trials = of["not_scored"]["n"] if "not_scored" in of else max((number["n"] for number in of.values()), key=int)
-        lines.append((row, [style.label_of(row["estimator"]), num_trials,
-                            *(cell(of.get(quantity), num_trials) for quantity in shown),
-                            trial_to_replay(run, int(row["condition"]), row["estimator"])]))
+        lines.append((row, [trial_to_replay(run, int(row["condition"]), row["estimator"]), style.label_of(row["estimator"]),
+                            num_trials, *(cell(of.get(quantity), num_trials) for quantity in shown)]))
     return table(
         f"Rates of each estimator {'over all conditions' if run.is_of_population else 'in each condition'}, in per cent of "
         f"its n trials with {interval_in_words(run.summary.rows[run.summary.rows.kind == 'rate'])} intervals, scores with anytime-valid "
         "ones, medians with distribution-free ones, and means with their Monte-Carlo standard errors; n stands with a "
         "number that is not of all trials. "
         "T is a trial worth a look: the command beside the condition runs it again.",
-        ["estimator", "n", *map(heading, shown), "T"],
+        ["T", "estimator", "n", *map(heading, shown)],
         by_condition(lines, lambda row: condition_heading(run, row, run.summary.factors, with_replay=True)),
-        class_="results")
+        num_names=2, class_="results")
 
 
 def measured_cell(measured, digits=3, scale=1, unit=""):

@@ -21,7 +21,6 @@ TARGET_LINE = dict(color=TARGET, linewidth=1.5, linestyle=style.LONG_DASHED)
 SHORT = {"failure": "failure", "refusal": "refusal", "false_refusal": "false refusal"}
 LEGEND_SIZE = 7  # points, of a legend beside the panel
 MAX_LABELS = {"x": 8, "y": 10}  # of levels along an axis
-NOT_A_STAR = "8"  # in place of the star, which is the tuned setting's
 MAX_TICKS = 300  # of levels along an axis; more would touch
 FAR_SPREAD = 8  # the widest gap between levels over the narrowest; beyond, levels stand evenly
 
@@ -31,8 +30,8 @@ def looks_of(others):
     labels = [other.label for other in others]
     keys = [label if labels.count(label) == 1 else f"{label}, {other.words}" for label, other in zip(labels, others)]
     looks = style.equal_looks_of(keys)
-    return [replace(looks[key], label=other.name(), marker_size=1.35 * looks[key].marker_size,
-                    marker=looks[key].marker.replace(TUNED["marker"], NOT_A_STAR)) for key, other in zip(keys, others)]
+    return [replace(looks[key], label=other.name(), marker_size=1.35 * looks[key].marker_size)
+            for key, other in zip(keys, others)]
 
 
 def marks_of(look):

@@ -209,7 +209,7 @@ class DrawnValues(FailureRateTest):
     def test_words_stand_side_by_side_in_the_order_of_the_study_without_lines(self):
         words = TABLE.replace(",0.4,1", ",student_t,1").replace(",0.0,1", ",gaussian,1").replace(",0.8,1", ",laplace,1")
         failure = self.draw(words).axes[0]
-        self.assertEqual([label.get_text() for label in failure.get_xticklabels()], ["student_t", "gaussian", "laplace"])
+        self.assertEqual([label.get_text() for label in failure.get_xticklabels()], ["student t", "gaussian", "laplace"])
         self.assertEqual(line_of(failure, "Standard"), [(0, 0.30), (1, 0), (2, 0.60)])
         self.assertEqual({line.get_linestyle() for line in failure.lines}, {"None"})
         bars = {tuple(map(tuple, segment)) for lines in failure.collections for segment in lines.get_segments()}
@@ -225,11 +225,52 @@ class DrawnValues(FailureRateTest):
         self.assertEqual(line_of(failure, "Standard"), [(0.0, 0), (0.4, 0.30), (0.8, 0.60)])
         self.assertEqual(failure.get_title("left"), "(a) Failure rate")
 
-    def test_looks_differ_without_colour(self):
-        names = [*style.KNOWN_LOOKS, *(f"other {number}" for number in range(6))]
-        looks = style.looks_of(names)
-        self.assertEqual(len({look.marker for look in looks.values()}), len(names))
-        self.assertEqual(looks["rcme"].color, style.looks_of(["rcme"])["rcme"].color)
+
+# One quantity, so that names may stand beside the lines; a coverage; rates that are small; and one that is always zero.
+COVERAGE = """demo,"a, first",0.4,1,standard,nees_coverage,rate,0.91,0.88,0.93,,400
+demo,b,0.0,1,standard,nees_coverage,rate,0.95,0.93,0.97,,390
+"""
+SMALL = """demo,"a, first",0.4,1,standard,invalid_motion,rate,0.01,0.004,0.02,,400
+demo,b,0.0,1,standard,invalid_motion,rate,0.002,0.001,0.01,,390
+demo,"a, first",0.4,1,standard,timed_out,rate,0,0,0.0092,,400
+demo,b,0.0,1,standard,timed_out,rate,0,0,0.0094,,390
+"""
+
+
+class WhatAReviewerLooksFor(FailureRateTest):
+    def test_names_stand_beside_the_lines_of_one_panel_in_their_colours(self):
+        figure = self.draw(quantities=["failure"])
+        self.assertEqual(figure.legends, [])
+        names = {text.get_text(): text.get_color() for text in figure.axes[0].texts}
+        colors = {line.get_label(): line.get_color() for line in figure.axes[0].lines}
+        self.assertEqual(names, {name: colors[name] for name in ("Standard", "mine")})
+
+    def test_a_coverage_has_a_line_at_the_level_it_states_and_other_rates_have_none(self):
+        figure = self.draw(TABLE + COVERAGE, ["nees_coverage", "failure"])
+        levels = [[line.get_ydata()[0] for line in axes.lines if line.get_label() == "_stated"] for axes in figure.axes]
+        self.assertEqual(levels, [[0.95], []])
+        self.assertIn("dashed: the stated level, 95 %", figure.texts[0].get_text().replace("\n", " "))
+
+    def test_rates_that_are_small_have_a_logarithmic_axis_unless_asked_otherwise(self):
+        scales = [axes.get_yscale() for axes in self.draw(TABLE + SMALL, ["failure", "invalid_motion"], log_y=None).axes]
+        self.assertEqual(scales, ["linear", "log"])
+        self.assertEqual(self.draw(TABLE + SMALL, ["invalid_motion"], log_y=False).axes[0].get_yscale(), "linear")
+
+    def test_levels_far_apart_stand_on_a_logarithmic_axis(self):
+        self.assertEqual(self.draw(TABLE, ["failure"]).axes[0].get_xscale(), "linear")  # it has a zero
+        far = TABLE.replace(",0.0,1,", ",0.01,1,")
+        self.assertEqual(self.draw(far, ["failure"]).axes[0].get_xscale(), "log")
+        self.assertEqual(line_of(self.draw(far, ["failure"]).axes[0], "Standard"), [(0.01, 0), (0.4, 0.30), (0.8, 0.60)])
+
+    def test_a_panel_that_would_hold_only_zeros_is_left_out_and_named(self):
+        figure = self.draw(TABLE + SMALL, ["failure", "timed_out"])
+        self.assertEqual([axes.get_title("left") for axes in figure.axes], ["Failure rate"])
+        self.assertIn("Timed out: 0 everywhere, at most 0.94 % at a point", figure.texts[0].get_text().replace("\n", " "))
+        self.assertEqual(len(self.draw(TABLE + SMALL, ["timed_out"]).axes), 1)
+
+    def test_a_highlight_that_the_figure_does_not_show_is_refused(self):
+        self.assert_refused(self.run_main("--highlight", "yours"), "--highlight yours", "standard, mine")
+        self.assertEqual(self.run_main("--highlight", "mine")[0], 0)
 
 
 class Refusals(FailureRateTest):

@@ -61,7 +61,7 @@ class Drawn(HeatMapTest):
         self.assertEqual(texts_of(standard), {(0, 0): ["30.0", "[10.0, 50.0]"], (0, 1): ["12.3", "[2.0, 33.0]"],
                                               (1, 0): ["60.0", "[55.0, 90.0]"], (1, 1): ["7.0", "[5.0, 9.0]"]})
         self.assertEqual(texts_of(mine)[1, 0], ["n = 0"])
-        self.assertEqual([label.get_text() for label in standard.get_xticklabels()], ["student_t", "gaussian"])
+        self.assertEqual([label.get_text() for label in standard.get_xticklabels()], ["student t", "gaussian"])
         self.assertEqual([label.get_text() for label in standard.get_yticklabels()], ["1", "0.5"])
         self.assertEqual((standard.get_xlabel(), standard.get_ylabel()), ("Noise", "Sigma (px)"))
 

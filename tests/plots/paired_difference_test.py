@@ -106,7 +106,7 @@ demo,0,0.0,mine,standard,failure,390,1,2,3,4,-0.1,-0.3,0.2,,0.3,event,0.2,discor
         words = TABLE.replace("1,0.4,", "1,student_t,").replace("0,0.0,", "0,gaussian,").replace("2,0.8,", "2,laplace,")
         failure, refusal = self.draw(words, events=["failure", "refusal"]).axes
         self.assertEqual((failure.get_title("left"), refusal.get_title("left")), ("(a) Failures", "(b) Refusals"))
-        self.assertEqual([label.get_text() for label in failure.get_xticklabels()], ["student_t", "gaussian", "laplace"])
+        self.assertEqual([label.get_text() for label in failure.get_xticklabels()], ["student t", "gaussian", "laplace"])
         self.assertEqual(marks_of(failure, "mine"), {0: (-0.30, True), 1: (0, False)})
         self.assertEqual(marks_of(refusal, "mine"), {1: (0.5, True)})
         self.assertFalse([line for line in failure.lines if line.get_label() == "_line"])

@@ -33,7 +33,8 @@ class ReliabilityTest(PlotTestCase):
         for words in ("n = 100, refused 7", "Brier 0.0310 [0.0200, 0.0500]", "slope not defined", "AUC 0.910"):
             self.assertIn(words, text)
         self.assertEqual(list(histogram.patches[0].get_data().values), [80, 0, 5, 15])
-        self.assertEqual([tuple(point) for point in risk.lines[0].get_xydata()], [(0.5, 0), (1, 0.18)])
+        self.assertEqual([tuple(point) for point in risk.lines[0].get_xydata()], [(1, 0.18)])  # zero has no place
+        self.assertEqual(risk.get_yscale(), "log")
         self.assertEqual(len(risk.lines), 2, "all estimators, also those without a diagram")
 
     def test_those_that_state_probabilities_come_first(self):

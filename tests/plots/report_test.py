@@ -81,6 +81,19 @@ class Page(ReportTest):
         self.assertIn("<strong>0.0123 *</strong>", self.page())
         self.assertNotIn("<strong>0.0789", self.page())
 
+    def test_coverage_auc_and_probability_have_a_figure_where_they_have_numbers(self):
+        more = "".join(f"demo,{condition},{level},mine,nees_coverage,rate,0.8,0.7,0.9,,{n}\n"
+                       for condition, (level, n) in enumerate((("gaussian", 10), ("laplace", 0))))
+        self.add_run(summary_csv=summary() + more.replace("0.8,0.7,0.9,,0", ",0,1,,0"))
+        page = self.page()
+        self.assertIn("NEES coverage against noise.", page)
+        self.assertNotIn("AUC@10", page)
+        self.assertIn("--quantities nees_coverage", page)
+
+    def test_prose_is_as_wide_as_a_small_screen_and_paper_is_upright(self):
+        self.assertRegex(report.CSS, r"\ncaption \{[^}]*max-width: min\(60rem, calc\(100vw")
+        self.assertIn("A4 portrait", report.CSS)
+
     def test_commands_can_be_pasted(self):
         self.add_run()
         text = "".join(Structure(self.page()).text)
@@ -91,7 +104,7 @@ class Page(ReportTest):
                         "rcme compare 'runs/a b.sqlite' --against standard --format csv",
                         "--against standard --format csv --out comparison.csv && rcme plot paired_difference"):
             self.assertIn(command, text)
-        self.assertIn("3first failure", text)
+        self.assertIn("3first failuremine", text)  # in the first column
 
     def again(self, numbers, until="", interval="exact"):
         """(the command that runs the study again, whether it gives fewer trials, whether other intervals); `numbers`:

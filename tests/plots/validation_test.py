@@ -44,12 +44,24 @@ class Validation(PlotTestCase):
 
     def test_every_test_with_a_ratio_stands_at_it(self):
         ratios = script.draw(fake()).axes[0]
-        markers = [line.get_xdata()[0] for line in ratios.lines if line.get_marker() in "os^" and len(line.get_xdata()) == 1]
+        markers = [line.get_xdata()[0] for line in ratios.lines if line.get_marker() not in ("None", "_") and len(line.get_xdata()) == 1]
         self.assertEqual(markers, [2.0, 1.0, 3.0, 0.5, 1.1])
 
     def test_every_fault_stands_at_its_multiple_of_what_is_nominal(self):
         faults = script.draw(fake()).axes[2]
         self.assertEqual([line.get_xdata()[0] for line in faults.lines if line.get_marker() == "o"], [2.0])
+
+    def test_sets_without_a_fault_that_could_be_measured_are_left_out_of_its_panel(self):
+        ratios, _, faults = script.draw(fake()).axes
+        self.assertEqual([label.get_text() for label in ratios.get_yticklabels()], ["hall (12)", "street (3)"])
+        self.assertEqual([label.get_text() for label in faults.get_yticklabels()], ["hall"])
+
+    def test_a_test_and_a_fault_that_this_script_does_not_know_are_drawn_by_their_names(self):
+        content = fake()
+        content["sets"][0]["tests"].append(test_of("new_test", 1.2, "holds"))
+        content["sets"][0]["camera_faults"].append({**content["sets"][0]["camera_faults"][0], "fault": "new_fault"})
+        names = [text.get_text() for text in script.draw(content).legends[0].get_texts()]
+        self.assertLessEqual({"new test", "camera: new fault"}, set(names))
 
     def test_what_is_no_validation_is_refused(self):
         for content in ("{", "[]", {"format": "rcme summary 1", "sets": [1]}, {**fake(), "sets": []}):

@@ -5,9 +5,10 @@ import pathlib
 import unittest
 from unittest import mock
 
-from plot_test_case import PlotTestCase
+from plot_test_case import PLOTS, PlotTestCase
 
 import validity_map
+from common import sheet
 from matplotlib.collections import LineCollection
 
 MAP_HEADER = ("sigma_px,num_points,baseline_m,median_parallax_deg,conditioning,median_conditioning,quantity,n,"
@@ -102,6 +103,14 @@ class DrawnValues(ValidityMapTest):
         pages = validity_map.pages_of(self.read(MAP + more)[1])
         self.assertEqual([validity_map.conditions_of(page) for page in pages],
                          [[f"baseline {b} m" for b in ("0.5", "1", "2", "3")], ["baseline 4 m"]])
+
+    def test_a_column_of_paper_is_no_taller_than_a_page(self):
+        with sheet.use(sheet.Sheet(width=3.3)):
+            path = str(PLOTS.parent / "results" / "validity_map" / "validity_map.csv")
+            pages = validity_map.pages_of(validity_map.read_coverages(path, validity_map.MAP_KEYS, ["median_parallax_deg"]))
+            heights = [validity_map.draw_map(path, page).get_figheight() for page in pages]
+        self.assertEqual(len(pages), 4)
+        self.assertLess(max(heights), 9)
 
     def test_borders_run_between_the_cells_on_either_side_of_a_level(self):
         for upper_right in ("0.942", "0.94"):  # a coverage at a level is on its upper side

@@ -31,27 +31,97 @@ ComparisonRow Difference(std::uint32_t condition, const std::string& event, doub
   return row;
 }
 
-TEST(FindingsOf, NamesTheEndsOfEveryRangeAndCountsWhatTheTestsTell) {
+SummaryRow Rate(const std::string& quantity, const std::string& label, const std::string& level, double value,
+                double half_width) {
+  SummaryRow row = Failure(0, level, label, value);
+  row.quantity = quantity;
+  row.interval = {value - half_width, value + half_width};
+  return row;
+}
+
+TEST(FindingsOf, NamesTheEndsOfEveryRangeAndWhatTheTestsTell) {
   Summary summary;
   summary.factor_names = {"outlier_ratio"};
   summary.rows = {Failure(0, "0.1", "standard", 0.02), Failure(0, "0.1", "ours", 0.05),
                   Failure(1, "0.4", "standard", 0.3), Failure(1, "0.4", "ours", 0.05)};
   Comparison comparison;
   comparison.reference = "standard";
+  comparison.factor_names = summary.factor_names;
   comparison.rows = {Difference(0, "failure", 0.03, 0.2), Difference(1, "failure", -0.25, 1e-6),
                      Difference(1, "refusal", 0.1, 0.001)};
-  const std::vector<std::string> sentences = FindingsOf(summary, comparison);
+  comparison.rows[1].levels = {"0.4"};
+  comparison.rows[1].interval = {-0.3, -0.2};
+  const std::vector<std::string> sentences = FindingsOf(summary, comparison, {});
   ASSERT_EQ(sentences.size(), 3u);
-  EXPECT_EQ(sentences[0],
-            "Failure rate of standard: from 2 % [1, 4] at outlier_ratio 0.1 to 30 % [15, 60] at "
-            "outlier_ratio 0.4.");
-  EXPECT_EQ(sentences[1], "Failure rate of ours: 5 % [2.5, 10] at outlier_ratio 0.1 throughout.");
-  EXPECT_THAT(sentences[2],
-              HasSubstr("Against standard on the same trials ours fails less often in 1 and more often in 0, "
-                        "refuses less often in 0 and more often in 1 of the 2 conditions (McNemar"));
+  EXPECT_THAT(sentences[0],
+              HasSubstr("Against standard on the same trials ours fails less often in 1 (by -25.00 points "
+                        "[-30.00, -20.00] at outlier_ratio 0.4), refuses more often in 1"));
+  EXPECT_THAT(sentences[0], HasSubstr("of the 2 conditions (McNemar"));
+  EXPECT_EQ(
+      sentences[1],
+      "Failure rate of standard: from 2.00 % [1.00, 4.00] at outlier_ratio 0.1 to 30.00 % [15.00, 60.00] at "
+      "outlier_ratio 0.4.");
+  EXPECT_EQ(sentences[2], "Failure rate of ours: 5.00 % [2.50, 10.00] throughout.");
 }
 
-TEST(FindingsOf, SaysNothingOfNothing) { EXPECT_TRUE(FindingsOf({}, {}).empty()); }
+TEST(FindingsOf, WhatMattersMostComesFirst) {
+  Summary summary;
+  summary.factor_names = {"outlier_ratio"};
+  summary.rows = {
+      Rate("failure", "a", "0.1", 0.05, 0.01),       Rate("no_candidate", "a", "0.1", 0.5, 0.05),
+      Rate("nees_coverage", "a", "0.1", 0.8, 0.05),  Rate("nees_coverage", "b", "0.1", 0.05, 0.02),
+      Rate("nees_coverage", "c", "0.1", 0.93, 0.01), Rate("other_refusal", "b", "0.1", 0.05, 0.01),
+      Rate("nees_coverage", "b", "0.4", 0.95, 0.02)};
+  Comparison comparison;
+  comparison.reference = "c";
+  comparison.rows = {Difference(0, "failure", 0.03, 0.2)};
+  ForecastMeasures forecast;
+  forecast.estimator = "a";
+  forecast.n = 100;
+  forecast.mean_probability = 0.1;
+  forecast.failure.value = 0.2;
+  forecast.failure.interval = {0.15, 0.25};
+  const std::vector<std::string> sentences = FindingsOf(summary, comparison, {forecast});
+  ASSERT_EQ(sentences.size(), 6u);
+  EXPECT_EQ(
+      sentences[0],
+      "Coverage: the 95 % regions that b states hold the truth in 5.00 % [3.00, 7.00] at outlier_ratio 0.1: "
+      "they are too small, and far off in 1 of 2 conditions.");
+  EXPECT_THAT(sentences[1], HasSubstr("regions that a states hold the truth in 80.00 %"));
+  EXPECT_THAT(sentences[2], HasSubstr("Against c no difference in failures or refusals is decided of ours"));
+  EXPECT_EQ(sentences[3],
+            "Probability: a states a probability of failure of 10.00 % on average, and 20.00 % [15.00, "
+            "25.00] of its "
+            "answers failed: it is too sure.");
+  EXPECT_EQ(sentences[4],
+            "Refusals: a refuses up to 50.00 % [45.00, 55.00] at outlier_ratio 0.1 (no_candidate).");
+  EXPECT_THAT(sentences[5], HasSubstr("Failure rate of a"));
+}
+
+TEST(FindingsOf, TheOneAheadComesBeforeTheOneBehind) {
+  Comparison comparison;
+  comparison.reference = "c";
+  comparison.rows = {Difference(0, "failure", 0.3, 0.001), Difference(0, "failure", -0.2, 0.001)};
+  comparison.rows[0].estimator = "behind";
+  const std::vector<std::string> sentences = FindingsOf({}, comparison, {});
+  ASSERT_EQ(sentences.size(), 2u);
+  EXPECT_THAT(sentences[0], HasSubstr("ours fails less often"));
+  EXPECT_THAT(sentences[1], HasSubstr("behind fails more often"));
+}
+
+TEST(FindingsOf, RightProbabilitiesAndSmallSamplesAreNoFinding) {
+  Summary summary;
+  summary.rows = {Rate("nees_coverage", "a", "", 0.8, 0.15)};
+  summary.rows[0].levels = {};
+  ForecastMeasures forecast;
+  forecast.n = 100;
+  forecast.mean_probability = 0.2;
+  forecast.failure.value = 0.2;
+  forecast.failure.interval = {0.15, 0.25};
+  EXPECT_TRUE(FindingsOf(summary, {}, {forecast}).empty());
+}
+
+TEST(FindingsOf, SaysNothingOfNothing) { EXPECT_TRUE(FindingsOf({}, {}, {}).empty()); }
 
 }  // namespace
 }  // namespace rcme
