@@ -77,6 +77,7 @@ A first session:
   rcme summarize run.sqlite --format csv --out summary.csv     the same for programs and figures
   rcme plot failure_rate summary.csv --x outlier_ratio --out figure
   rcme report run.sqlite --out report.html                     everything on one page
+  rcme failures run.sqlite                                     the trials that failed, as a list
   rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full
   rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture
   rcme tune tune_mu_lambda --out tuned.yaml                    thresholds with a guarantee
@@ -100,6 +101,7 @@ A first session:
   AddMarginalsCommand(app);
   AddReportCommand(app);
   AddPlotCommand(app);
+  AddFailuresCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);
   AddCheckCommand(app);
@@ -137,6 +139,9 @@ A first session:
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     if (std::fflush(stdout) != 0) throw InputError("standard output cannot be written");
     return 0;
+  } catch (const CLI::ExtrasError&) {
+    PrintMessage("{}", DescribeUnexpected(app));
+    return 2;
   } catch (const CLI::ParseError& error) {
     if (app.exit(error) != 0) {
       PrintMessage("{}", SuggestionsFor(app));

@@ -19,6 +19,7 @@ void AddCompareCommand(CLI::App& app);
 void AddConformCommand(CLI::App& app);
 void AddGateCommand(CLI::App& app);
 void AddIntegrityCommand(CLI::App& app);
+void AddFailuresCommand(CLI::App& app);
 void AddReliabilityCommand(CLI::App& app);
 void AddMarginalsCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);

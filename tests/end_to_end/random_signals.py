@@ -109,6 +109,8 @@ def commands(inputs):
         Command("merge_pieces", lambda out: ["merge", *inputs.pieces, "--partial", "--out", out / "merged.json"]),
         Command("summarize", lambda out: ["summarize", run, "--format", "csv", "--out", out / "summary.csv"]),
         Command("summarize_raw", lambda out: ["summarize", run, "--raw", "csv", "--out", out / "raw.csv"]),
+        Command("failures", lambda out: ["failures", run, "--limit", "0", "--format", "csv", "--out", out / "failures.csv"]),
+        Command("replay", lambda out: ["replay", run, "--condition", "0", "--trial", "1", "--emit-cpp", out / "trial.cc"]),
         Command("compare", lambda out: ["compare", run, "--format", "json", "--out", out / "comparison.json"]),
         Command("reliability", lambda out: ["reliability", run, "--out", out / "reliability.txt"], codes=(0, 2)),
         Command("report", lambda out: ["report", run, "--out", out / "report.html"]),
