@@ -70,6 +70,7 @@ int RunProgram(int argc, const char* const* argv, const char* installed_share) {
   CLI::App app{R"(Measures how often two-view motion estimators are wrong, and whether they know it.
 
 A first session:
+  rcme ask                                                     which estimator, for your camera?
   rcme list studies                                            the installed studies
   rcme run failure_vs_outliers --out run.sqlite                run one, or a study file of yours
   rcme summarize run.sqlite                                    rates with exact intervals
@@ -90,6 +91,7 @@ A first session:
   app.get_formatter()->column_width(34);
   app.require_subcommand(0, 1);            // of `rcme plot audit` the second word is no command
   app.group("Studies and their results");  // of the commands that follow
+  AddAskCommand(app);
   AddLockCommand(app);
   AddRunCommand(app);
   AddSummarizeCommand(app);

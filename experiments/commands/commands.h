@@ -11,6 +11,7 @@ struct EndWith {
   int exit_code;
 };
 
+void AddAskCommand(CLI::App& app);
 void AddLockCommand(CLI::App& app);
 void AddRunCommand(CLI::App& app);
 void AddAuditCommand(CLI::App& app);

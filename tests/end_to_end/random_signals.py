@@ -111,6 +111,8 @@ def commands(inputs):
         Command("summarize_raw", lambda out: ["summarize", run, "--raw", "csv", "--out", out / "raw.csv"]),
         Command("failures", lambda out: ["failures", run, "--limit", "0", "--format", "csv", "--out", out / "failures.csv"]),
         Command("replay", lambda out: ["replay", run, "--condition", "0", "--trial", "1", "--emit-cpp", out / "trial.cc"]),
+        Command("ask", lambda out: ["ask", "--image", "640x480", "--focal", "500", "--noise", "0.5", "--scene", "plane", "--wrong", "0.2",
+                                    "--matches", "60", "--trials", "10", *base, "--out", out], grows=True),
         Command("compare", lambda out: ["compare", run, "--format", "json", "--out", out / "comparison.json"]),
         Command("reliability", lambda out: ["reliability", run, "--out", out / "reliability.txt"], codes=(0, 2)),
         Command("report", lambda out: ["report", run, "--out", out / "report.html"]),

@@ -8,6 +8,7 @@ namespace rcme {
 
 // A program that reads one of these refuses a format that it does not know; the number rises whenever a key
 // goes or changes its meaning. docs/output_formats.md has the same list.
+inline constexpr const char* kAnswerFormat = "rcme answer 1";
 inline constexpr const char* kAuditFormat = "rcme audit 1";
 inline constexpr const char* kPartFormat = "rcme part 2";
 inline constexpr const char* kComparisonFormat = "rcme comparison 1";
