@@ -70,6 +70,7 @@ int RunProgram(int argc, const char* const* argv, const char* installed_share) {
   CLI::App app{R"(Measures how often two-view motion estimators are wrong, and whether they know it.
 
 A first session:
+  rcme ask                                                     which estimator, for your camera?
   rcme list studies                                            the installed studies
   rcme run failure_vs_outliers --out run.sqlite                run one, or a study file of yours
   rcme summarize run.sqlite                                    rates with exact intervals
@@ -77,6 +78,7 @@ A first session:
   rcme summarize run.sqlite --format csv --out summary.csv     the same for programs and figures
   rcme plot failure_rate summary.csv --x outlier_ratio --out figure
   rcme report run.sqlite --out report.html                     everything on one page
+  rcme failures run.sqlite                                     the trials that failed, as a list
   rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full
   rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture
   rcme tune tune_mu_lambda --out tuned.yaml                    thresholds with a guarantee
@@ -89,6 +91,7 @@ A first session:
   app.get_formatter()->column_width(34);
   app.require_subcommand(0, 1);            // of `rcme plot audit` the second word is no command
   app.group("Studies and their results");  // of the commands that follow
+  AddAskCommand(app);
   AddLockCommand(app);
   AddRunCommand(app);
   AddSummarizeCommand(app);
@@ -100,6 +103,7 @@ A first session:
   AddMarginalsCommand(app);
   AddReportCommand(app);
   AddPlotCommand(app);
+  AddFailuresCommand(app);
   AddReplayCommand(app);
   AddShowCommand(app);
   AddCheckCommand(app);
@@ -137,6 +141,9 @@ A first session:
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     if (std::fflush(stdout) != 0) throw InputError("standard output cannot be written");
     return 0;
+  } catch (const CLI::ExtrasError&) {
+    PrintMessage("{}", DescribeUnexpected(app));
+    return 2;
   } catch (const CLI::ParseError& error) {
     if (app.exit(error) != 0) {
       PrintMessage("{}", SuggestionsFor(app));

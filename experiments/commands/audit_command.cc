@@ -123,6 +123,7 @@ soon as the verdict is decided, and its intervals are valid at every look.
 Writes DIR/audit.html and DIR/audit.md (to read), DIR/audit.json (everything) and a
 figure per family of claims.
 
+Examples:
   rcme audit --out audit                               all claims, a few minutes
   rcme audit --only inlier,sigma_p.theta --out audit   a family and one claim
   rcme audit --budget full --seed 2 --out audit        narrower intervals, other streams
@@ -157,7 +158,9 @@ code 75 (docs/many_machines.md):
       ->delimiter(',');
   command
       ->add_option("--budget", arguments->budget,
-                   "quick (minutes) or full (up to hours; prints an estimate first)")
+                   "quick (all claims of the paper: minutes) or full (hours). A study takes longer the more "
+                   "conditions "
+                   "and slow estimators it has; the greatest time is printed first")
       ->check(IsOneOf({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,

@@ -3,11 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "estimator/estimator_registry.h"
 #include "experiments/core/files/shared_files.h"
+#include "experiments/data/make_data.h"
+#include "experiments/statistics/summarize.h"
+#include "experiments/study/study.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
+#include "simulator/camera_registry.h"
+#include "simulator/motion_registry.h"
+#include "simulator/noise_registry.h"
+#include "simulator/outlier_registry.h"
+#include "simulator/scene_registry.h"
 
 namespace rcme {
 namespace {
@@ -37,8 +46,42 @@ std::vector<std::string> EstimatorNames() {
   return names;
 }
 
+template <typename Entry>
+void AddParameterNames(const std::vector<Entry>& registry, std::set<std::string>* names) {
+  for (const Entry& entry : registry) {
+    const auto model = entry.make();
+    for (const Parameter& parameter : model->Parameters()) names->insert(parameter.name() + "=");
+  }
+}
+
+// "sigma_px=": the keys of --set, of the data of every simulation and the options of every estimator.
+std::vector<std::string> SettingNames() {
+  std::set<std::string> names = {"scene=", "cameras=", "motion=", "noise=", "outliers="};
+  AddParameterNames(SceneRegistry(), &names);
+  AddParameterNames(CameraRegistry(), &names);
+  AddParameterNames(MotionRegistry(), &names);
+  AddParameterNames(NoiseRegistry(), &names);
+  AddParameterNames(OutlierRegistry(), &names);
+  AddParameterNames(EstimatorRegistry(), &names);
+  for (const SettingHelp& help : DescribeSettings({{"scene", SceneRegistry().front().name}}))
+    names.insert(help.name + "=");
+  FailureBounds bounds;
+  for (const Parameter& parameter : Parameters(bounds)) names.insert(parameter.name() + "=");
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> QuantityNames() {
+  std::vector<std::string> names;
+  for (const QuantityHelp& quantity : SummaryQuantities()) names.push_back(quantity.name);
+  return names;
+}
+
 std::vector<std::string> ValuesOf(const CLI::Option& option) {
   const std::string name = option.get_single_name();
+  if (name == "set") return SettingNames();
+  if (name == "shard") return {"1/2", "auto", "auto/8"};
+  if (name == "estimators") return EstimatorNames();
+  if (name == "quantities") return QuantityNames();
   if (name == "estimator") return EstimatorNames();
   if (name == "estimator-file" || name == "add-estimator") return NamesIn(SharedFolder::kEstimators);
   if (name == "study") return NamesIn(SharedFolder::kStudies);
@@ -112,6 +155,14 @@ std::string SuggestionsFor(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) suggest(*command, command->remaining());
   if (app.get_subcommands().empty()) suggest(app, app.remaining());
   return sentences;
+}
+
+std::string DescribeUnexpected(const CLI::App& app) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::vector<std::string> words = (chosen.empty() ? &app : chosen.front())->remaining();
+  return fmt::format(
+      "The following arguments were not expected: {}\n{}Run with --help for more information.\n",
+      Printable(fmt::format("{}", fmt::join(words, " "))), SuggestionsFor(app));
 }
 
 }  // namespace rcme

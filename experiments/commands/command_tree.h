@@ -30,5 +30,7 @@ std::vector<std::string> CommandNames(const CLI::App& app);
 
 // What the words that the parser did not expect may have meant, a sentence each: of commands and options.
 std::string SuggestionsFor(const CLI::App& app);
+// The same with the words themselves, in the order in which they were given.
+std::string DescribeUnexpected(const CLI::App& app);
 
 }  // namespace rcme

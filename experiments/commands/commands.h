@@ -11,6 +11,7 @@ struct EndWith {
   int exit_code;
 };
 
+void AddAskCommand(CLI::App& app);
 void AddLockCommand(CLI::App& app);
 void AddRunCommand(CLI::App& app);
 void AddAuditCommand(CLI::App& app);
@@ -19,6 +20,7 @@ void AddCompareCommand(CLI::App& app);
 void AddConformCommand(CLI::App& app);
 void AddGateCommand(CLI::App& app);
 void AddIntegrityCommand(CLI::App& app);
+void AddFailuresCommand(CLI::App& app);
 void AddReliabilityCommand(CLI::App& app);
 void AddMarginalsCommand(CLI::App& app);
 void AddReportCommand(CLI::App& app);

@@ -6,6 +6,7 @@
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/plot_options.h"
 
 namespace rcme {
 namespace {
@@ -38,11 +39,29 @@ std::vector<std::string> PositionalValues(const DescribedCommand& command) {
   return values;
 }
 
+// Of the scripts that draw, which know their options themselves.
+void AddPlotOptions(std::vector<DescribedOption>* options) {
+  DescribedOption kind;
+  kind.names = {"kind"};
+  kind.description = "kind of figure";
+  kind.is_positional = true;
+  kind.values = PlotKinds();
+  options->insert(options->begin(), kind);
+  for (const PlotOption& option : PlotOptions()) {
+    DescribedOption& described = options->emplace_back();
+    described.names = {option.name};
+    described.description = option.doc;
+    described.takes_value = option.takes_value;
+    described.values = option.values;
+  }
+}
+
 // The program itself stands first; its arguments are the commands.
 std::vector<DescribedCommand> TreeFor(const CLI::App& app) {
   std::vector<DescribedCommand> tree = DescribedTree(app);
   for (DescribedCommand& command : tree) {
     if (command.name == "help") command.options.front().values = CommandNames(app);
+    if (command.name == "plot") AddPlotOptions(&command.options);
   }
   return tree;
 }
@@ -74,6 +93,7 @@ std::string Bash(const CLI::App& app) {
          "  case $current in\n"
          "    -*) COMPREPLY=($(compgen -W \"$options\" -- \"$current\")) ;;\n"
          "    *) COMPREPLY=($(compgen -W \"$values\" -- \"$current\"))\n"
+         "       [ \"$previous\" = --set ] && { compopt -o nospace 2>/dev/null; return; }\n"
          "       [ -n \"$command\" ] && COMPREPLY+=($(compgen -f -- \"$current\")) ;;\n"
          "  esac\n"
          "}\n"
@@ -140,6 +160,8 @@ void AddCompletionCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "completion", "Print a script that completes commands, options and names in your shell");
   command->footer(R"(If rcme is installed, its scripts are too, and every new shell uses them. Otherwise:
+
+Examples:
   bash   rcme completion bash > ~/.local/share/bash-completion/completions/rcme
   zsh    rcme completion zsh > _rcme      in a folder of $fpath
   fish   rcme completion fish > ~/.config/fish/completions/rcme.fish)");

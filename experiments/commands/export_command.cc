@@ -111,7 +111,7 @@ void AddExportCommand(CLI::App& app) {
   FOLDER/study.yaml       the study as it was exported, for `rcme import`
   FOLDER/study.lock       its lock, if it has one (`rcme lock`)
 
-Example:
+Examples:
   rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
   python3 mine.py < problems/problems.jsonl > answers.jsonl
   rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite)");

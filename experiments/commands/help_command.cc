@@ -12,6 +12,9 @@ namespace rcme {
 
 void AddHelpCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("help", "Print the help of a command, like its --help");
+  command->footer(R"(Examples:
+  rcme help
+  rcme help estimate)");
   auto name = std::make_shared<std::string>();
   command->add_option("command", *name, "name of a command; default: the program itself");
   command->callback([&app, name] {

@@ -87,7 +87,7 @@ void AddImportCommand(CLI::App& app) {
 problem without an answer gets the status no_answer; an answer that cannot be read gets
 unreadable_answer.
 
-Example:
+Examples:
   rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
   python3 mine.py < problems/problems.jsonl > answers.jsonl
   rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "estimator/estimator_registry.h"
@@ -12,6 +13,7 @@
 #include "experiments/core/files/shared_files.h"
 #include "experiments/core/files/yaml_input.h"
 #include "experiments/core/text/columns.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/statistics/summarize.h"
@@ -31,6 +33,15 @@ Rows ListEstimators() {
   Rows rows = {{"estimator", "what it is"}};
   for (const EstimatorEntry& entry : EstimatorRegistry()) rows.push_back({entry.name, entry.doc});
   return rows;
+}
+
+// What the list of estimators lacks, and how to get it; empty: nothing.
+std::string DescribeLeftOut() {
+  const bool has_poselib = std::ranges::count(EstimatorRegistry(), "poselib", &EstimatorEntry::name) > 0;
+  return has_poselib ? ""
+                     : "Left out: poselib, as PoseLib was not found when rcme was built. Install PoseLib\n"
+                       "(https://github.com/PoseLib/PoseLib), then configure the build again with\n"
+                       "-DCMAKE_PREFIX_PATH=FOLDER_OF_POSELIB.\n";
 }
 
 Rows ListOptions() {
@@ -161,6 +172,20 @@ Rows ListEstimatorFiles() {
   return rows;
 }
 
+// {name of the list: [{column: text, ...}, ...]}; an empty column is left out.
+void AddAsJson(const std::string& name, const Rows& rows, nlohmann::ordered_json* json) {
+  nlohmann::ordered_json& list = (*json)[name] = nlohmann::ordered_json::array();
+  for (size_t r = 1; r < rows.size(); ++r) {
+    nlohmann::ordered_json row = nlohmann::ordered_json::object();
+    for (size_t c = 0; c < rows[r].size(); ++c) {
+      std::string key = rows[0][c];
+      std::ranges::replace(key, ' ', '_');
+      if (!rows[r][c].empty()) row[key] = rows[r][c];
+    }
+    list.push_back(row);
+  }
+}
+
 }  // namespace
 
 void AddListCommand(CLI::App& app) {
@@ -183,15 +208,28 @@ void AddListCommand(CLI::App& app) {
   command
       ->add_option("what", *what, "which list; default: all except studies, populations and estimator_files")
       ->check(IsOneOf(names));
-  command->add_option("--format", *format, "table: columns for a terminal; markdown: as in docs/reference")
-      ->check(IsOneOf({"table", "markdown"}))
+  command->footer(R"(Examples:
+  rcme list studies
+  rcme list settings
+  rcme list estimators --format json)");
+  command
+      ->add_option("--format", *format,
+                   "table: columns for a terminal; markdown: as in docs/reference; json: for programs")
+      ->check(IsOneOf({"table", "markdown", "json"}))
       ->capture_default_str();
   command->callback([what, format] {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
     for (const auto& [name, lister] : kLists) {
       const bool is_of_files = name == "studies" || name == "populations" || name == "estimator_files";
       if (what->empty() ? is_of_files : name != *what) continue;
+      if (*format == "json") {
+        AddAsJson(name, lister(), &json);
+        continue;
+      }
       fmt::print("{}\n", *format == "table" ? FormatColumns(lister()) : FormatMarkdown(lister()));
+      if (*format == "table" && name == "estimators") fmt::print("{}", DescribeLeftOut());
     }
+    if (*format == "json") fmt::print("{}", JsonText(kListFormat, json));
   });
 }
 

@@ -4,9 +4,9 @@
 #include <cctype>
 #include <memory>
 
-#include "experiments/core/files/file_output.h"
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
+#include "experiments/core/files/file_output.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
@@ -131,7 +131,10 @@ void WriteMan(const CLI::App& app, const std::string& command, const std::string
 void AddManCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("man", "Write manual pages for man(1)");
   command->footer(R"(If rcme is installed, so are its manual pages: man rcme, man rcme-run. Otherwise:
-  rcme man run | man -l -)");
+
+Examples:
+  rcme man run | man -l -
+  rcme man --out man1)");
   auto name = std::make_shared<std::string>(), folder = std::make_shared<std::string>();
   CLI::Option* of = command->add_option("command", *name, "name of a command; default: the program itself");
   command->add_option("-o,--out", *folder, "folder to write the pages of all commands into")->excludes(of);

@@ -16,8 +16,12 @@ void AddMatchCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("match", "Match two undistorted images and write a file for `rcme estimate`");
   command->footer(R"(Every match has a column sigma_px: its noise relative to the other matches, from the
-sizes of its key points (experiments/real/images/features.h). A K that does not fit the
-size of its image gives a warning; an impossible K is refused.)");
+sizes of its key points. A K that does not fit the size of its image gives a warning; an
+impossible K is refused.
+
+Examples:
+  rcme match left.png right.png --K1 718.9 718.9 607.2 185.2 --out pair.csv.gz
+  rcme estimate pair.csv.gz)");
   auto arguments = std::make_shared<MatchImagesOptions>();
   auto out = std::make_shared<std::string>();
   command

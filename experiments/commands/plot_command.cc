@@ -4,6 +4,7 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/commands/plot_options.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
@@ -41,8 +42,7 @@ const std::vector<Kind>& Kinds() {
 void RunPlot(const std::vector<std::string>& words) {
   const auto kind = words.empty() ? Kinds().end() : std::ranges::find(Kinds(), words.front(), &Kind::name);
   if (kind == Kinds().end()) {
-    std::vector<std::string> names;
-    for (const Kind& known : Kinds()) names.push_back(known.name);
+    const std::vector<std::string> names = PlotKinds();
     throw InputError(fmt::format(
         "plot: {}; give one of: {}",
         words.empty() ? "which kind of figure?"
@@ -55,6 +55,31 @@ void RunPlot(const std::vector<std::string>& words) {
 }
 
 }  // namespace
+
+std::vector<std::string> PlotKinds() {
+  std::vector<std::string> names;
+  for (const Kind& kind : Kinds()) names.push_back(kind.name);
+  return names;
+}
+
+const std::vector<PlotOption>& PlotOptions() {
+  static const std::vector<PlotOption> options = {
+      {"--x", "factor of the horizontal axis"},
+      {"--y", "factor of the vertical axis"},
+      {"--quantities", "quantities to draw"},
+      {"--estimators", "labels of the estimators to draw"},
+      {"--event", "event of a comparison"},
+      {"--group", "level of the factor of rcme reliability --by"},
+      {"--where", "level of another factor, name=level"},
+      {"--log-y", "logarithmic vertical axis", /*takes_value=*/false},
+      {"--page", "all figures on one page", /*takes_value=*/false},
+      {"--width", "width in inches"},
+      {"--labels", "what is printed for a name, name=text"},
+      {"--no-caption", "without the caption", /*takes_value=*/false},
+      {"--format", "formats of the files", true, {"png", "pdf", "svg", "tikz"}},
+      {"--out", "figure to write, without suffix"}};
+  return options;
+}
 
 void AddPlotCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(

@@ -1,15 +1,23 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
 #include "experiments/real/answer/why.h"
 #include "experiments/run/store/result_store.h"
+#include "experiments/statistics/trial_output.h"
+#include "experiments/statistics/trial_program.h"
 #include "experiments/trial/trial_columns.h"
 #include "experiments/trial/trial_outcome.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -73,14 +81,39 @@ struct ReplayArguments {
   std::string run;
   std::uint32_t condition = 0, trial = 0;
   bool allow_process = false;
+  std::string cpp, estimator;  // file of --emit-cpp, and the label of its estimator; empty: the most telling
 };
 
+void EmitCpp(const StudyPlan& plan, const Condition& condition, const TrialResult& result,
+             const ReplayArguments& arguments) {
+  const std::vector<EstimatorSpec>& specs = plan.study.estimators;
+  auto chosen = specs.begin() + static_cast<std::ptrdiff_t>(MostTelling(plan, result));
+  if (!arguments.estimator.empty())
+    chosen = std::ranges::find(specs, arguments.estimator, &EstimatorSpec::label);
+  if (chosen == specs.end()) {
+    std::vector<std::string> labels;
+    for (const EstimatorSpec& spec : specs) labels.push_back(spec.label);
+    throw InputError(fmt::format("--estimator: {} is not an estimator of the run; it has: {}",
+                                 Quoted(arguments.estimator), fmt::join(labels, ", ")));
+  }
+  WriteFileWhole(arguments.cpp,
+                 TrialAsCpp(plan, condition, result, static_cast<size_t>(chosen - specs.begin())));
+  PrintMessage("{}: a program that calls {} on this problem; how to build it stands at its top\n",
+               arguments.cpp, chosen->label);
+}
+
 void Replay(const ReplayArguments& arguments) {
-  const auto& [run, condition_index, trial, allow_process] = arguments;
+  const std::string& run = arguments.run;
+  const std::uint32_t condition_index = arguments.condition, trial = arguments.trial;
   const ResultStore store = ResultStore::OpenForReading(run);
-  const StudyPlan plan = PlanOfStored(store, allow_process);
+  const StudyPlan plan = PlanOfStored(store, arguments.allow_process);
   const Condition& condition = ChosenCondition(plan, condition_index);
   const std::vector<TrialRecord> stored = store.RecordsOf(condition_index, trial);
+  if (stored.empty()) {
+    PrintMessage(
+        "{}: no trial {} of condition {} is in the file, which asks for {} of it; made from the study\n", run,
+        trial, condition_index, store.Description().conditions[condition_index].num_trials);
+  }
   const TrialResult result = RunTrial(plan, condition, trial);
   PrintData(plan, condition, trial, result.data);
   for (size_t e = 0; e < result.records.size(); ++e) {
@@ -91,6 +124,7 @@ void Replay(const ReplayArguments& arguments) {
                                                                                             : "DIFFERENT");
   }
   fmt::print("{}", WhyAsText(plan, result));
+  if (!arguments.cpp.empty()) EmitCpp(plan, condition, result, arguments);
 }
 
 }  // namespace
@@ -98,6 +132,16 @@ void Replay(const ReplayArguments& arguments) {
 void AddReplayCommand(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("replay", "Run one trial of a result file again and print it in full");
+  command->footer(R"(Says for each estimator whether the record in the file is the same, and why an answer is
+wrong. A trial beyond those of the run is made from its study.
+
+--emit-cpp writes a C++ program that calls one estimator on the same problem with the
+same samples, with nothing of the study around it: for a debugger.
+
+Examples:
+  rcme failures run.sqlite                                 which trials to look at
+  rcme replay run.sqlite --condition 6 --trial 17
+  rcme replay run.sqlite --condition 6 --trial 17 --emit-cpp trial.cc --estimator standard)");
   auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command
@@ -107,6 +151,12 @@ void AddReplayCommand(CLI::App& app) {
   command->add_option("--trial", arguments->trial, "trial, from 0")
       ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
       ->required();
+  CLI::Option* cpp =
+      command->add_option("--emit-cpp", arguments->cpp, "also write a C++ program of one estimator's call");
+  command
+      ->add_option("--estimator", arguments->estimator,
+                   "label of the estimator of --emit-cpp; default: the first that failed or refused")
+      ->needs(cpp);
   AddProcessOption(command, &arguments->allow_process);
   command->callback([arguments] { Replay(*arguments); });
 }

@@ -171,6 +171,16 @@ void Run(const RunArguments& arguments) {
 
 void AddRunCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("run", "Run a study and keep every trial in a result file");
+  command->footer(R"(Every trial is a function of the seed, its condition and its number: equal runs give
+equal numbers, whatever the number of threads. A run that was stopped or killed goes on
+with the same command.
+
+Examples:
+  rcme run failure_vs_outliers --trials 100 --out run.sqlite
+  rcme run study.yaml --set outlier_ratio=0.4 --add-estimator mine.yaml --out run.sqlite
+  rcme run study.yaml --until ci=0.01 --max-time 1h --out run.sqlite
+  rcme run study.yaml --shard 3/64 --out part_3.sqlite       one share; then rcme merge
+  rcme summarize run.sqlite)");
   auto arguments = std::make_shared<RunArguments>();
   command
       ->add_option("study", arguments->study,

@@ -7,6 +7,7 @@
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/statistics/forecast_output.h"
+#include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_latex.h"
 #include "experiments/statistics/summary_output.h"
@@ -32,7 +33,8 @@ std::string Tables(const ResultStore& store, const Summary& summary) {
 
 struct Arguments {
   std::string run, format = "table", raw, fifths_of, out;
-  std::vector<std::string> quantities = DefaultLatexQuantities(), labels;  // of a table for a paper
+  std::vector<std::string> quantities;  // empty: the usual ones of the format
+  std::vector<std::string> labels;      // of a table for a paper
   bool with_times = false, is_pooled = false;
 };
 
@@ -58,11 +60,16 @@ void WarnOfRefusals(const Summary& summary) {
 }
 
 std::string TextOf(const Summary& summary, const Arguments& arguments) {
-  const std::string& format = arguments.format;
-  return format == "csv"     ? SummaryAsCsv(summary)
-         : format == "json"  ? SummaryAsJson(summary)
-         : format == "latex" ? SummaryAsLatex(summary, arguments.quantities, LabelsOf(arguments.labels))
-                             : SummaryAsTable(summary);
+  const std::vector<std::string>& quantities = arguments.quantities;
+  if (arguments.format == "latex") {
+    return SummaryAsLatex(summary, quantities.empty() ? DefaultLatexQuantities() : quantities,
+                          LabelsOf(arguments.labels));
+  }
+  if (arguments.format == "table")
+    return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
+  Summary shown = summary;
+  if (!quantities.empty()) KeepQuantities(quantities, &shown);
+  return arguments.format == "csv" ? SummaryAsCsv(shown) : SummaryAsJson(shown);
 }
 
 }  // namespace
@@ -88,6 +95,7 @@ does not grow with the number of trials.
 
 Examples:
   rcme summarize run.sqlite
+  rcme summarize run.sqlite --quantities failure,nees_coverage
   rcme summarize run.sqlite --format csv --out summary.csv
   rcme summarize run.sqlite --format latex --quantities failure,nees_coverage --labels rcme=RCME
   rcme summarize run.sqlite --fifths-of crb_direction_deg
@@ -103,10 +111,9 @@ Examples:
           ->capture_default_str();
   command
       ->add_option("--quantities", arguments->quantities,
-                   "a,b,...: the columns of --format latex (rcme list quantities)")
-      ->delimiter(',')
-      ->needs(format)
-      ->capture_default_str();
+                   "a,b,...: these alone (rcme list quantities); default: the main ones in a table, all in "
+                   "csv and json")
+      ->delimiter(',');
   command
       ->add_option("--labels", arguments->labels,
                    "name=text, repeatable: what --format latex prints for an estimator, factor or quantity")
@@ -149,8 +156,9 @@ Examples:
                                                                GroupByFifth(store, arguments->fifths_of));
     summary.preregistration = DecidePreregistered(store, arguments->run);
     WarnOfRefusals(summary);
-    PrintOrWrite(arguments->out,
-                 arguments->format == "table" ? Tables(store, summary) : TextOf(summary, *arguments));
+    PrintOrWrite(arguments->out, arguments->format == "table" && arguments->quantities.empty()
+                                     ? Tables(store, summary)
+                                     : TextOf(summary, *arguments));
   });
 }
 

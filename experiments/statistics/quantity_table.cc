@@ -1,7 +1,13 @@
 #include "experiments/statistics/quantity_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
+#include <set>
+
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -32,10 +38,14 @@ NumberFormat FormatOf(SummaryRow::Kind kind) {
   return is_number ? kSignificant : kPercent;
 }
 
-Table MakeTableOf(const std::vector<SummaryRow>& rows, std::vector<ColumnOf<EstimatorRow>> columns,
-                  const std::vector<std::string>& quantities) {
+// `repeats_per_scene` above 1: n counts scenes.
+Table MakeTableOf(const std::vector<SummaryRow>& rows, int repeats_per_scene,
+                  std::vector<ColumnOf<EstimatorRow>> columns, const std::vector<std::string>& quantities) {
   using R = const EstimatorRow&;
-  columns.push_back({{.name = "n", .type = ColumnType::kCount, .is_key = true, .is_symbol = true},
+  columns.push_back({{.name = repeats_per_scene > 1 ? "scenes" : "n",
+                      .type = ColumnType::kCount,
+                      .is_key = true,
+                      .is_symbol = repeats_per_scene == 1},
                      [](R r) { return r.num_trials; }});
   for (const std::string& quantity : quantities) {
     const auto row = std::ranges::find(rows, quantity, &SummaryRow::quantity);
@@ -69,15 +79,36 @@ Estimate MakeEstimate(const SummaryRow& row, std::int64_t num_trials) {
   return estimate;
 }
 
+void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& quantities) {
+  std::set<std::string> known;
+  for (const SummaryRow& row : summary.rows) {
+    if (row.estimator != kSceneLabel) known.insert(row.quantity);
+  }
+  for (const std::string& quantity : quantities) {
+    if (!known.contains(quantity))
+      throw InputError(
+          fmt::format("--quantities: {} is not a quantity of an estimator in this summary; allowed: {}",
+                      Quoted(quantity), fmt::join(known, ", ")));
+  }
+}
+
+void KeepQuantities(const std::vector<std::string>& quantities, Summary* summary) {
+  CheckAreQuantities(*summary, quantities);
+  std::erase_if(summary->rows, [&](const SummaryRow& row) {
+    return row.estimator == kSceneLabel || std::ranges::count(quantities, row.quantity) == 0;
+  });
+}
+
 Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& quantities) {
   std::vector<ColumnOf<EstimatorRow>> columns = LevelColumns<EstimatorRow>(summary.factor_names);
   columns.push_back(
       {{.name = "estimator", .is_key = true}, [](const EstimatorRow& row) { return row.estimator; }});
-  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/false), std::move(columns), quantities);
+  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/false), summary.repeats_per_scene,
+                     std::move(columns), quantities);
 }
 
 Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities) {
-  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/true),
+  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/true), summary.repeats_per_scene,
                      LevelColumns<EstimatorRow>(summary.factor_names), quantities);
 }
 

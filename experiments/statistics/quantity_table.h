@@ -18,4 +18,9 @@ Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& 
 // The same of the problems, without a column of estimators.
 Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities);
 
+// Throws InputError for a quantity of --quantities that the summary does not have of its estimators.
+void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& quantities);
+// Takes away all rows but those of these quantities of estimators. Throws as CheckAreQuantities.
+void KeepQuantities(const std::vector<std::string>& quantities, Summary* summary);
+
 }  // namespace rcme

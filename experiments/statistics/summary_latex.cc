@@ -49,19 +49,6 @@ class Names {
   std::set<std::string> known_;
 };
 
-void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& quantities) {
-  std::set<std::string> known;
-  for (const SummaryRow& row : summary.rows) {
-    if (row.estimator != kSceneLabel) known.insert(row.quantity);
-  }
-  for (const std::string& quantity : quantities) {
-    if (!known.contains(quantity))
-      throw InputError(
-          fmt::format("--quantities: {} is not a quantity of an estimator in this summary; allowed: {}",
-                      Quoted(quantity), fmt::join(known, ", ")));
-  }
-}
-
 // Puts the labels in the place of factors, estimators and quantities.
 void Rename(Names* names, Table* table) {
   for (size_t c = 0; c < table->columns.size(); ++c) {

@@ -202,24 +202,23 @@ std::string FormatPopulation(const Summary& summary) {
   return text + ".\n--format csv holds effective_n and the intervals of these very conditions.\n";
 }
 
-}  // namespace
+// The study, how much of it is done, and these quantities.
+std::string FormatQuantities(const Summary& summary, const std::vector<std::string>& quantities) {
+  return fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
+                     summary.num_trials_planned, RenderText(MakeQuantityTable(summary, quantities)));
+}
 
-std::string SummaryAsTable(const Summary& summary) {
-  std::string text = summary.preregistration ? PreregistrationAsText(*summary.preregistration) + "\n" : "";
-  text += fmt::format(
-      "Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
-      summary.num_trials_planned,
-      RenderText(MakeQuantityTable(summary, {"failure", "failure_or_refusal", "no_candidate", "other_refusal",
-                                             "kappa_flag", "nees_coverage", "nees_median",
-                                             "rotation_error_deg", "direction_error_deg", "time_ms"})));
-  text += FormatAccuracy(summary) + FormatSplit(summary) + FormatSeverity(summary);
-  text += summary.is_of_population
-              ? FormatPopulation(summary)
-              : fmt::format(
-                    "Rates: intervals {}.\n"
-                    "Means of successes: +- Monte-Carlo standard error. Medians: distribution-free\n"
-                    "95 % intervals. auc and maa: {}.\n",
-                    IntervalKindsIn(summary), DescribeIntervalKind(IntervalKind::kBetting));
+// How the intervals of the tables are made.
+std::string DescribeIntervals(const Summary& summary) {
+  std::string text =
+      summary.is_of_population
+          ? FormatPopulation(summary)
+          : fmt::format(
+                "Rates: intervals {}.\n"
+                "Means of successes: +- Monte-Carlo standard error. Medians: distribution-free\n"
+                "95 % intervals; of an even n the lower of the two middle numbers.\n"
+                "auc and maa: {}.\n",
+                IntervalKindsIn(summary), DescribeIntervalKind(IntervalKind::kBetting));
   if (summary.repeats_per_scene > 1) {
     text += fmt::format(
         "n counts scenes: rates, scores and means are of the means over a scene's\n"
@@ -228,6 +227,23 @@ std::string SummaryAsTable(const Summary& summary) {
         summary.repeats_per_scene, DescribeIntervalKind(IntervalKind::kLogStudent),
         DescribeIntervalKind(IntervalKind::kExact));
   }
+  return text;
+}
+
+}  // namespace
+
+std::string QuantitiesAsTable(const Summary& summary, const std::vector<std::string>& quantities) {
+  CheckAreQuantities(summary, quantities);
+  return FormatQuantities(summary, quantities) + DescribeIntervals(summary);
+}
+
+std::string SummaryAsTable(const Summary& summary) {
+  std::string text = summary.preregistration ? PreregistrationAsText(*summary.preregistration) + "\n" : "";
+  text += FormatQuantities(
+      summary, {"failure", "failure_or_refusal", "no_candidate", "other_refusal", "kappa_flag",
+                "nees_coverage", "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"});
+  text +=
+      FormatAccuracy(summary) + FormatSplit(summary) + FormatSeverity(summary) + DescribeIntervals(summary);
   text +=
       "(n ...): the trials of a number that is not of all of them; without a known\n"
       "truth a motion neither fails nor succeeds.\n"

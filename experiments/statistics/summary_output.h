@@ -8,6 +8,9 @@ namespace rcme {
 
 // For people: one row per condition and estimator with the main quantities, intervals and n.
 std::string SummaryAsTable(const Summary& summary);
+// For people: these quantities of the estimators alone. Throws InputError for one that the summary does not
+// have.
+std::string QuantitiesAsTable(const Summary& summary, const std::vector<std::string>& quantities);
 
 // For programs: every quantity in a row of its own (tidy), the columns study, condition, one per factor,
 // estimator, quantity, kind, value, lower, upper, standard_error, n, interval (its kind), verdict and

@@ -9,6 +9,7 @@
 #include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -33,25 +34,38 @@ class TrialDecisions {
       trace_ = group.tracer->Trace(data_.problem, rng);
     }
     for (const size_t s : group.settings) {
-      const TrialOutcome outcome = OutcomeUnder(*plan.estimators[s]);
-      const MotionEstimator* without = plan.without_limits[s].get();
-      const auto known = decided_.find(without);
-      visit(s, outcome, known == decided_.end() ? decided_[without] = OutcomeUnder(*without) : known->second);
+      const Decided without = DecideOnce(*plan.without_limits[s]);
+      const std::optional<double>& limit = plan.greatest_probability[s];
+      const bool is_refused = limit && without.failure_probability > *limit;
+      visit(s,
+            is_refused ? TrialOutcome::kRefusal
+            : limit    ? without.outcome
+                       : OutcomeUnder(*plan.estimators[s]).outcome,
+            without.outcome);
     }
   }
 
  private:
+  struct Decided {
+    TrialOutcome outcome = TrialOutcome::kRefusal;
+    double failure_probability = kNaN;  // as stated
+  };
   // What follows from a loop depends on the candidates it hands over, and on the share they have to explain.
   using Handover = std::pair<std::vector<HypothesisId>, double>;
 
-  TrialOutcome OutcomeUnder(const MotionEstimator& estimator) {
+  Decided DecideOnce(const MotionEstimator& estimator) {
+    const auto known = decided_.find(&estimator);
+    return known != decided_.end() ? known->second : decided_[&estimator] = OutcomeUnder(estimator);
+  }
+
+  Decided OutcomeUnder(const MotionEstimator& estimator) {
     const LoopInspection* parts = FindInspection(estimator);
     if (!parts) {
       RandomStream rng = StreamFor(name_, StreamPurpose::kSampling);
       return JudgedOutcome(estimator.Estimate(data_.problem, rng));
     }
     const LoopResult loop = parts->Decide(trace_);
-    if (!loop.winner) return TrialOutcome::kRefusal;
+    if (!loop.winner) return {};
     Handover handover{{loop.winner->id}, parts->options().least_explained_share};
     for (const Candidate& candidate : loop.runners_up) handover.first.push_back(candidate.id);
     const auto known = outcomes_.find(handover);
@@ -59,8 +73,8 @@ class TrialDecisions {
     return outcomes_[handover] = JudgedOutcome(parts->Finish(data_.problem, loop, &refinements_));
   }
 
-  TrialOutcome JudgedOutcome(const MotionEstimate& estimate) const {
-    return OutcomeOf(Score(estimate, data_, 0.0), bounds_);
+  Decided JudgedOutcome(const MotionEstimate& estimate) const {
+    return {OutcomeOf(Score(estimate, data_, 0.0), bounds_), estimate.failure_probability};
   }
 
   StreamName name_;
@@ -68,8 +82,8 @@ class TrialDecisions {
   TrialData data_;
   HypothesisTrace trace_;
   Refinements refinements_;
-  std::map<Handover, TrialOutcome> outcomes_;
-  std::map<const MotionEstimator*, TrialOutcome> decided_;
+  std::map<Handover, Decided> outcomes_;
+  std::map<const MotionEstimator*, Decided> decided_;
 };
 
 void AddOutcome(TrialOutcome outcome, TrialOutcome without_limits, SettingCount* count) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "experiments/study/command_permission.h"
 #include "experiments/study/tuning_file.h"
@@ -42,6 +43,21 @@ std::shared_ptr<const LoopInspection> MakeTracer(const SettingPlan& plan,
   return first.With(options);
 }
 
+// The value of kProbabilityLimit where the options differ from those without limits in it alone.
+std::optional<double> FindProbabilityLimit(const Settings& options, const Settings& without_limits) {
+  std::optional<double> limit;
+  for (size_t i = 0; i < options.size(); ++i) {
+    const auto& [name, value] = options[i];
+    double number = 0.0;
+    if (name == kProbabilityLimit && ParseReal(value, &number)) {
+      limit = number;
+    } else if (options[i] != without_limits[i]) {
+      return std::nullopt;
+    }
+  }
+  return limit;
+}
+
 // Returns whether any setting has a limit to lift.
 bool AddEstimators(SettingPlan* plan) {
   bool has_limits = false;
@@ -52,6 +68,7 @@ bool AddEstimators(SettingPlan* plan) {
     model->LiftLimits();
     const Settings without_limits = ValuesOf(model->Parameters());
     has_limits = has_limits || without_limits != setting.spec.options;
+    plan->greatest_probability.push_back(FindProbabilityLimit(setting.spec.options, without_limits));
     std::shared_ptr<const MotionEstimator>& estimator = shared[KeyOf(without_limits)];
     if (!estimator) estimator = model->Make();
     plan->without_limits.push_back(estimator);
@@ -61,13 +78,15 @@ bool AddEstimators(SettingPlan* plan) {
 
 void AddGroups(SettingPlan* plan) {
   std::map<std::string, std::vector<size_t>> groups;
+  std::map<const MotionEstimator*, std::vector<size_t>> in_one_piece;  // by the estimator without limits
   for (size_t s = 0; s < plan->settings.size(); ++s) {
     if (FindInspection(*plan->estimators[s])) {
       groups[TraceKey(plan->settings[s].spec.options)].push_back(s);
     } else {
-      plan->groups.push_back({nullptr, {s}});
+      in_one_piece[plan->without_limits[s].get()].push_back(s);
     }
   }
+  for (const auto& [estimator, settings] : in_one_piece) plan->groups.push_back({nullptr, settings});
   for (const auto& [key, settings] : groups) plan->groups.push_back({MakeTracer(*plan, settings), settings});
 }
 

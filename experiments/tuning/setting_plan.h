@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,24 @@ struct TunedSetting {
   EstimatorSpec spec;               // the study's estimator with these levels
 };
 
-// Settings that share a trace, or one whose estimator cannot be inspected: null.
+// Settings that share a trace; or, where the estimator cannot be inspected (null), the estimator without its
+// limits.
 struct TraceGroup {
   std::shared_ptr<const LoopInspection> tracer;
   std::vector<size_t> settings;
 };
+
+// An option of this name refuses the motions whose stated probability of failure is greater, and changes
+// nothing else: settings that differ in it alone share one call.
+inline constexpr const char* kProbabilityLimit = "max_failure_probability";
 
 struct SettingPlan {
   std::vector<TunedSetting> settings;                              // the first option slowest
   std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // of each setting
   // The same with its limits lifted (EstimatorModel). Settings that differ in limits alone share one.
   std::vector<std::shared_ptr<const MotionEstimator>> without_limits;
+  // Of each setting the kProbabilityLimit that is all that its limits are; nothing: they are something else.
+  std::vector<std::optional<double>> greatest_probability;
   std::vector<TraceGroup> groups;
 };
 

@@ -78,7 +78,7 @@ def reliability(run: str, *, by: Optional[str] = None) -> dict[str, Any]:
     return json.loads(_rcme.reliability_json(path, "" if by is None else _check.plain("by", by)))
 
 
-def audit(study: Optional[Study] = None, *, estimators: Optional[Mapping[str, Estimator]] = None,
+def audit(study: Optional[Study] = None, estimators: Optional[Mapping[str, Estimator]] = None, *,
           only: Union[str, Sequence[str], None] = None, budget: str = "quick", seed: Optional[int] = None,
           overrides: Optional[Mapping[str, Any]] = None, threads: int = 0, allow_process: bool = False) -> pandas.DataFrame:
     """Checks claims: without a study every claim of the paper on built-in scenes (minutes), with one the claims about

@@ -1,4 +1,4 @@
-"""The tables of docs/reference: see scripts/reference.
+"""The tables of docs/reference and the schema of studies: see scripts/reference.
 
 A page holds a table between the lines `<!-- begin list: NAME -->` and `<!-- end list: NAME -->`, NAME one of `rcme list`."""
 
@@ -9,8 +9,11 @@ import re
 import subprocess
 import sys
 
+from study_schema import study_schema_text
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ROOT / "docs" / "reference"
+SCHEMA = ROOT / "docs" / "study.schema.json"
 TABLE = re.compile(r"(<!-- begin list: (\S+) -->\n).*?(<!-- end list: \2 -->)", re.DOTALL)
 
 
@@ -22,15 +25,21 @@ def list_as_markdown(program, name):
     return "\n".join(re.sub(r"\b(OpenCV|OpenGV) [\d.]+\b", r"\1", line) for line in lines) + "\n"
 
 
+def written_files(program):
+    """(path, what it should be) of each page and of the schema."""
+    for page in sorted(PAGES.glob("*.md")):
+        yield page, TABLE.sub(lambda m: m[1] + list_as_markdown(program, m[2]) + m[3], page.read_text())
+    yield SCHEMA, study_schema_text(program)
+
+
 def main():
     parser = argparse.ArgumentParser(prog="scripts/reference", description=__doc__.split("\n\n")[0])
     parser.add_argument("--check", action="store_true", help="only compare; exit code 1 where a page is out of date")
     parser.add_argument("--program", default="build/release/bin/rcme", help="default: %(default)s")
     arguments = parser.parse_args()
     is_stale = False
-    for page in sorted(PAGES.glob("*.md")):
-        old = page.read_text()
-        new = TABLE.sub(lambda m: m[1] + list_as_markdown(arguments.program, m[2]) + m[3], old)
+    for page, new in written_files(arguments.program):
+        old = page.read_text() if page.exists() else ""
         if new == old:
             continue
         if not arguments.check:

@@ -28,7 +28,7 @@ ALLOWED = {
 # The folders of a room from below: a file includes files of its own folder and of those before it. "." is the room
 # itself, where the program begins.
 FOLDERS = {
-    "experiments": ["core", "data", "study", "trial", "run", "statistics", "gate", "conform", "integrity", "audit", "tuning", "rare", "search", "real", "commands", "."],
+    "experiments": ["core", "data", "study", "trial", "run", "statistics", "ask", "gate", "conform", "integrity", "audit", "tuning", "rare", "search", "real", "commands", "."],
     "plots": ["common", "page", "rates", "audit_figures", "tuning_figures", "reliability_figure", "stanford_figure", "report_page", "surface", "worst_search", "trial_sheet", "."],
 }
 PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)

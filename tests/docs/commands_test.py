@@ -53,6 +53,7 @@ SHORTER = [
     (r"^rcme audit --budget full (--shard|--merge)", r"rcme audit --only sample_test.size.joint \1"),
     (r"^rcme audit --out", "rcme audit --only sampson.determinant --out"),
     (r"^rcme audit (\S+yaml) (.*?)(--only estimator )?--out", r"rcme audit \1 \2--only inlier.true_pose.rank_aware --set outlier_ratio=0 --out"),
+    (r"^rcme ask (.*)--within 1m", r"rcme ask \1--trials 10"),
     (r"^rcme integrity (.*)--trials 500", r"rcme integrity \1--trials 4"),
     (r"^rcme solve (.*)$", r"rcme solve \1 --trials 200"),
     (r"^rcme map (.*)$", r"rcme map \1 --trials 4"),

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,10 @@ TEST_F(Habits, StudiesHaveNamesInEveryFolder) {
   EXPECT_THAT(list.out, HasSubstr("\nfailure_vs_outliers  "));
   const std::string run = "\"$RCME\" run no_outliers_low_noise --trials 1 --threads 1 --out ";
   EXPECT_EQ(RunHere(run + "by_name.sqlite").exit_code, 0);
-  EXPECT_EQ(
-      RunHere("\"$RCME\" run '" + SourceFolder() +
-              "/studies/no_outliers_low_noise.yaml' --trials 1 --threads 1 --out by_name.sqlite")
-          .exit_code,
-      0)
+  EXPECT_EQ(RunHere("\"$RCME\" run '" + SourceFolder() +
+                    "/studies/no_outliers_low_noise.yaml' --trials 1 --threads 1 --out by_name.sqlite")
+                .exit_code,
+            0)
       << "the same study by its path";
   EXPECT_EQ(RunHere(run + "other.sqlite --set sigma_px=0.2").exit_code, 0);
   EXPECT_TRUE(IsRefused(RunHere("\"$RCME\" run no_outlier_low_noise --out x.sqlite"),
@@ -103,7 +103,18 @@ TEST_F(Habits, PathsInAStudyAreSeenFromItsFolder) {
             0);
 }
 
+TEST_F(Habits, EveryCommandShowsExamples) {
+  std::istringstream names(
+      RunShell("\"$RCME\" completion bash | sed -n \"s/^    \\([a-z-]*\\))\\$/\\1/p\"").out);
+  int num_commands = 0;
+  for (std::string name; names >> name; ++num_commands)
+    EXPECT_THAT(RunRcme({name, "--help"}).out, HasSubstr("Examples:\n")) << name;
+  EXPECT_GT(num_commands, 35);
+}
+
 TEST_F(Habits, ASlipOfThePenIsUnderstood) {
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"sumarize", "run.sqlite", "more"}), {"not expected: sumarize run.sqlite more\n"}));
   EXPECT_TRUE(IsRefused(RunRcme({"sumarize", out_}), {"'sumarize' (did you mean 'summarize'?)"}));
   EXPECT_TRUE(IsRefused(Run({"--out", out_, "--trails", "3"}), {"'--trails' (did you mean '--trials'?)"}));
   EXPECT_TRUE(
@@ -177,6 +188,15 @@ TEST(Completion, OffersCommandsOptionsAndNames) {
   EXPECT_THAT(Completed({"rcme", "list", "est"}), ElementsAre("estimators", "estimator_files"));
   EXPECT_THAT(Completed({"rcme", "help", "ru"}), ElementsAre("run"));
   EXPECT_THAT(Completed({"rcme", "run", "c.b"}), Contains("c.bash")) << "files, too";
+  EXPECT_THAT(Completed({"rcme", "plot", "heat"}), ElementsAre("heat_map"));
+  EXPECT_THAT(Completed({"rcme", "plot", "heat_map", "x.csv", "--quan"}), ElementsAre("--quantities"));
+  EXPECT_THAT(Completed({"rcme", "plot", "heat_map", "x.csv", "--format", "ti"}), ElementsAre("tikz"));
+  EXPECT_THAT(Completed({"rcme", "run", "x", "--set", "outlier_ra"}), ElementsAre("outlier_ratio="));
+  EXPECT_THAT(Completed({"rcme", "run", "x", "--set", "max_failure"}),
+              ElementsAre("max_failure_probability="));
+  EXPECT_THAT(Completed({"rcme", "run", "x", "--shard", "au"}), ElementsAre("auto", "auto/8"));
+  EXPECT_THAT(Completed({"rcme", "failures", "x", "--estimators", "opengv"}), ElementsAre("opengv_ransac"));
+  EXPECT_THAT(Completed({"rcme", "summarize", "x", "--quantities", "kappa"}), ElementsAre("kappa_flag"));
 }
 
 // Each shell that is here reads its script.

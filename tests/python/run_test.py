@@ -186,7 +186,7 @@ class Tables(unittest.TestCase):
             pose, info = estimate_again(*arguments)
             return pose, {**info, "pose_cov": info["pose_cov"] / 1e4} if pose else info
 
-        frame = rcme.audit({**STUDY, "factors": {"outlier_ratio": [0.0]}}, estimators={"too_sure": too_sure},
+        frame = rcme.audit({**STUDY, "factors": {"outlier_ratio": [0.0]}}, {"too_sure": too_sure},
                            only="estimator")
         own = frame[frame.claim.str.contains("too_sure")]
         self.assertGreater(len(own), 0)

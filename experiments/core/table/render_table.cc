@@ -50,13 +50,15 @@ std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format,
   if (std::isnan(estimate.value)) return signs.unknown;
   const bool has_error = !std::isnan(estimate.standard_error);
   const bool is_weighted = has_error && !std::isnan(estimate.interval.lower);
-  std::string text = FormatNumber(format.scale * estimate.value, is_weighted ? ".3g" : format.value, signs);
+  const std::string digits =
+      estimate.decimals < 0 ? format.value : fmt::format(".{}f", estimate.decimals);
+  std::string text = FormatNumber(format.scale * estimate.value, is_weighted ? ".3g" : digits, signs);
   if (signs.has_units && !format.unit.empty()) text += " " + format.unit;
   if (has_error)
     text += fmt::format(" {} {}", signs.plus_minus,
                         FormatNumber(format.scale * estimate.standard_error, format.spread, signs));
   const std::string interval =
-      FormatInterval(estimate.interval, format.scale, is_weighted ? format.spread : format.value, signs);
+      FormatInterval(estimate.interval, format.scale, is_weighted ? format.spread : digits, signs);
   if (!interval.empty()) text += " " + interval;
   if (estimate.n) text += fmt::format("{}{}{}", signs.n_begin, *estimate.n, signs.n_end);
   return estimate.note.empty() || !signs.has_notes ? text : text + ": " + estimate.note;

@@ -22,6 +22,7 @@ struct Estimate {
   double standard_error = std::numeric_limits<double>::quiet_NaN();
   std::optional<std::int64_t> n = std::nullopt;  // where it is not that of the row
   std::string note = {};                         // a verdict or a flag
+  int decimals = -1;                             // for people; negative: those of the column
 };
 
 // Nothing: the row has no such value. It is an empty cell, and no key of a row in JSON.

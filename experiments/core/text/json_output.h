@@ -8,6 +8,7 @@ namespace rcme {
 
 // A program that reads one of these refuses a format that it does not know; the number rises whenever a key
 // goes or changes its meaning. docs/output_formats.md has the same list.
+inline constexpr const char* kAnswerFormat = "rcme answer 1";
 inline constexpr const char* kAuditFormat = "rcme audit 1";
 inline constexpr const char* kPartFormat = "rcme part 2";
 inline constexpr const char* kComparisonFormat = "rcme comparison 1";
@@ -16,6 +17,8 @@ inline constexpr const char* kCrossingsFormat = "rcme crossings 1";
 inline constexpr const char* kEstimateFormat = "rcme estimate 2";
 inline constexpr const char* kGateFormat = "rcme gate 1";
 inline constexpr const char* kIntegrityFormat = "rcme integrity 1";
+inline constexpr const char* kFailuresFormat = "rcme failures 1";
+inline constexpr const char* kListFormat = "rcme list 1";
 inline constexpr const char* kMarginalsFormat = "rcme marginals 1";
 inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
 inline constexpr const char* kPaperTableFormat = "rcme paper table 1";

@@ -29,6 +29,9 @@ constexpr CellQuantity kQuantities[] = {
 };
 const NumberFormat kPercentOfHeading{100.0, "", ".2f"};
 
+// Of a rate of n pairs in per cent: as many as tell one pair from none.
+int DecimalsOf(std::int64_t n) { return n <= 100 ? 0 : n <= 1000 ? 1 : 2; }
+
 Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
   Table table{
       {Column::Key(paper_table.estimators[estimator]), Column::Count("pairs"), Column::Count("apart")}};
@@ -41,8 +44,10 @@ Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
     for (const CellQuantity& quantity : kQuantities) {
       const SharedMemberRate& rate = cell.*quantity.rate;
       const std::string counts = fmt::format("{} of {}", rate.num_events, rate.n);
-      table.rows.back().emplace_back(Estimate{
-          .value = rate.rate, .interval = rate.interval, .note = quantity.is_of_subset ? counts : ""});
+      table.rows.back().emplace_back(Estimate{.value = rate.rate,
+                                              .interval = rate.interval,
+                                              .note = quantity.is_of_subset ? counts : "",
+                                              .decimals = DecimalsOf(rate.n)});
     }
   }
   return table;

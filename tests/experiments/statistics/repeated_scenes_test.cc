@@ -99,7 +99,8 @@ TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
   const std::string table = SummaryAsTable(SummaryOf("repeated"));
   for (const std::string part :
        {"3 trials per scene", "failure_between_scenes", "depends on the sampler's seed",
-        "standard: 38.89 % [23.14, 56.54] of the scenes at outlier_ratio 0", "n counts scenes"})
+        "standard: 38.89 % [23.14, 56.54] of the scenes at outlier_ratio 0", "n counts scenes",
+        "estimator  scenes  failure"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
   EXPECT_EQ(nlohmann::json::parse(SummaryAsJson(SummaryOf("repeated")))["repeats_per_scene"], 3);
 }

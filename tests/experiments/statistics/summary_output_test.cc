@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summary_latex.h"
 #include "parameters/input_error.h"
 #include "tests/test_support/summarized_run.h"
@@ -111,6 +112,18 @@ TEST_F(SummaryOutputTest, TableShowsIntervalsAndCounts) {
   EXPECT_NE(table.find("Study small: 10 of 12 trials done"), std::string::npos) << table;
   EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;  // failure, 2 of 10
   EXPECT_NE(table.find("Clopper-Pearson"), std::string::npos) << table;
+}
+
+TEST_F(SummaryOutputTest, TableOfChosenQuantities) {
+  const std::string table = QuantitiesAsTable(SummaryOf("run"), {"kappa_flag", "failure"});
+  EXPECT_NE(table.find("kappa_flag"), std::string::npos) << table;
+  EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;
+  EXPECT_EQ(table.find("auc_5_deg"), std::string::npos) << table;
+  EXPECT_THROW(QuantitiesAsTable(SummaryOf("run"), {"failures"}), InputError);
+  Summary kept = SummaryOf("run");
+  KeepQuantities({"failure"}, &kept);
+  EXPECT_EQ(kept.rows.size(), 2u) << "one per condition";
+  EXPECT_THROW(KeepQuantities({"failures"}, &kept), InputError);
 }
 
 TEST_F(SummaryOutputTest, LatexHasARowPerConditionAndEstimatorAndIntervals) {

@@ -137,9 +137,38 @@ TEST(SettingCounts, AreThoseOfAnEstimatorInOnePiece) {
       "  - {name: whole, options: {num_iterations: 20, reading: rank_aware}}\n"
       "  - {name: counted, options: {num_iterations: 20, reading: rank_aware}}\n";
   const StudyPlan whole = TunedPlan(options, "whole", both), parts = TunedPlan(options, "counted", both);
-  EXPECT_EQ(SettingsOf(whole).groups.size(), 6u);
+  EXPECT_EQ(SettingsOf(whole).groups.size(), 2u) << "by what they are without their limits: mu";
   ExpectPlainCounts(whole, {0, 10});
   EXPECT_EQ(Text(Count(whole, 1, {0, 10})), Text(Count(parts, 1, {0, 10})));
+}
+
+// Of rcme_calibrated: the limit is decided from one call, whatever its levels are.
+TEST(SettingCounts, LevelsOfTheProbabilityLimitShareOneCall) {
+  const StudyPlan plan =
+      TunedPlan("  options: {max_failure_probability: [0.01, 0.05, 0.2, 1], max_samples: [70, 100]}\n",
+                "rcme_calibrated", "  - {name: rcme_calibrated, options: {max_samples: 100}}\n");
+  const SettingPlan settings = SettingsOf(plan);
+  EXPECT_EQ(settings.groups.size(), 2u) << "one for each number of samples";
+  std::set<std::int64_t> refusals;
+  for (const size_t condition : {0, 1}) {
+    const std::vector<SettingCount> counts = Count(plan, condition, {0, 12});
+    for (size_t s = 0; s < counts.size(); ++s) {
+      Study alone = plan.study;
+      alone.tuning.reset();
+      alone.estimators = {settings.settings[s].spec};
+      const StudyPlan plain = MakePlan(alone);
+      SettingCount count;
+      for (std::uint32_t trial = 0; trial < 12; ++trial) {
+        const TrialRecord record = RunTrial(plain, plain.conditions[condition], trial).records[0];
+        count.failures += HasFailed(record, alone.failure);
+        count.refusals += HasRefused(record);
+      }
+      EXPECT_EQ(counts[s].failures, count.failures) << condition << " " << s;
+      EXPECT_EQ(counts[s].refusals, count.refusals) << condition << " " << s;
+      refusals.insert(count.refusals);
+    }
+  }
+  EXPECT_GT(refusals.size(), 1u) << "the limit matters";
 }
 
 TEST(SettingCounts, ManyLevelsOfMuTakeNoFurtherTrace) {
@@ -190,7 +219,11 @@ TEST(SettingCounts, WeightedTrialsAreRefused) {
   Study study = TunedPlan("  options: {mu: [3]}\n").study;
   study.data.emplace_back("outlier_count", "bernoulli");
   study.data.emplace_back("tilted_to", "0.6");
-  EXPECT_TRUE(ThrowsInputError([&] { Count(MakePlan(study), 0, {0, 20}); }, {"tilted_to", "weighted trials"}));
+  EXPECT_TRUE(ThrowsInputError(
+      [&] {
+        Count(MakePlan(study), 0, {0, 20});
+      },
+      {"tilted_to", "weighted trials"}));
 }
 
 TEST(SettingCounts, RealPairsAreRefused) {

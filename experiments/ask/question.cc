@@ -1,0 +1,137 @@
+#include "experiments/ask/question.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <istream>
+#include <ostream>
+
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
+#include "simulator/scene_registry.h"
+
+namespace rcme {
+namespace {
+
+struct AskedText {
+  const char *option, *question;
+  std::string AskedTexts::*text;
+};
+constexpr AskedText kAskedTexts[] = {
+    {"--image", "Size of an image in px, such as 1280x720", &AskedTexts::image},
+    {"--focal", "Focal length in px, such as 900", &AskedTexts::focal_px},
+    {"--noise", "Noise of a point in px, per coordinate, such as 0.7", &AskedTexts::sigma_px},
+    {"--scene", "Scene, such as corridor, room, street, plane or uniform_volume", &AskedTexts::scene},
+    {"--wrong", "Share of wrong matches, such as 0.4", &AskedTexts::wrong}};
+
+double ReadNumber(const char* option, const std::string& text, double least, double greatest) {
+  double value = 0.0;
+  if (ParseReal(text, &value) && value >= least && value <= greatest) return value;
+  throw InputError(fmt::format("{}: {} is not allowed; give a number in [{:g}, {:g}]", option, Quoted(text),
+                               least, greatest));
+}
+
+int ReadPixels(const std::string& text, const std::string& image) {
+  long long value = 0;
+  if (ParseInteger(text, &value) && value >= 16 && value <= 100'000) return static_cast<int>(value);
+  throw InputError(fmt::format(
+      "--image: {} is not allowed; give WIDTHxHEIGHT in px, each in [16, 100000], such as 1280x720",
+      Quoted(image)));
+}
+
+// A line without its end; false: there is none.
+bool ReadTypedLine(std::istream& in, std::string* line) {
+  bool is_there = false;
+  for (char c = 0; in.get(c); *line += c) {
+    is_there = true;
+    if (c == '\n') break;
+  }
+  return is_there;
+}
+
+}  // namespace
+
+std::vector<std::string> MissingOptions(const AskedTexts& texts) {
+  std::vector<std::string> missing;
+  for (const AskedText& asked : kAskedTexts) {
+    if ((texts.*asked.text).empty()) missing.emplace_back(asked.option);
+  }
+  return missing;
+}
+
+void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts) {
+  for (const AskedText& asked : kAskedTexts) {
+    std::string& text = texts->*asked.text;
+    while (text.empty()) {
+      out << asked.question << ": " << std::flush;
+      if (!ReadTypedLine(in, &text)) {
+        throw InputError(
+            fmt::format("ask: give {}, or answer at a terminal", fmt::join(MissingOptions(*texts), ", ")));
+      }
+      const size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
+      text = begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
+    }
+  }
+}
+
+void ReadTexts(const AskedTexts& texts, Question* question) {
+  const size_t times = texts.image.find('x');
+  const bool has_both = times != std::string::npos;
+  question->image_width = ReadPixels(texts.image.substr(0, times), texts.image);
+  question->image_height = ReadPixels(has_both ? texts.image.substr(times + 1) : "", texts.image);
+  question->focal_px = ReadNumber("--focal", texts.focal_px, 1.0, 1e6);
+  question->sigma_px = ReadNumber("--noise", texts.sigma_px, 0.001, 100.0);
+  question->outlier_ratio = ReadNumber("--wrong", texts.wrong, 0.0, 0.95);
+  std::vector<std::string> scenes;
+  for (const SceneEntry& entry : SceneRegistry()) scenes.push_back(entry.name);
+  if (std::ranges::count(scenes, texts.scene) == 0) {
+    throw InputError(fmt::format("--scene: {} is not a scene{}; give one of: {}", Quoted(texts.scene),
+                                 DidYouMean(texts.scene, scenes), fmt::join(scenes, ", ")));
+  }
+  question->scene = texts.scene;
+}
+
+std::string DescribeQuestion(const Question& q) {
+  return fmt::format("{} x {} px, f {:g} px, noise {:g} px; {}{}; {:g} % wrong ({}) of {} matches",
+                     q.image_width, q.image_height, q.focal_px, q.sigma_px, q.scene,
+                     q.motion.empty() ? "" : ", motion " + q.motion, 100.0 * q.outlier_ratio, q.outliers,
+                     q.num_matches);
+}
+
+std::string MakeStudyText(const Question& q) {
+  return fmt::format(
+      R"(# Written by `rcme ask`. Change it as you like: rcme list settings, rcme list estimators.
+name: asked
+description: >-
+  {}.
+seed: {}
+trials: 20
+data:
+  scene: {}
+  cameras: pinhole
+  image_width: {}
+  image_height: {}
+  focal_px: {}
+  num_matches: {}
+  sigma_px: {}
+  outliers: {}
+{}factors:
+  outlier_ratio: [{}]
+estimators:
+  - {{name: rcme_calibrated}}
+  - {{file: rcme_tuned}}
+  - {{name: msac, label: msac_five_point, options: {{solver: five_point}}}}
+  - {{file: opencv_magsac}}
+  - {{name: opengv_ransac}}
+failure:
+  max_rotation_error_deg: {}
+  max_direction_error_deg: {}
+)",
+      DescribeQuestion(q), q.seed, q.scene, q.image_width, q.image_height, q.focal_px, q.num_matches,
+      q.sigma_px, q.outliers, q.motion.empty() ? "" : "  motion: " + q.motion + "\n", q.outlier_ratio,
+      q.max_rotation_error_deg, q.max_direction_error_deg);
+}
+
+}  // namespace rcme

@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "experiments/ask/answer.h"
+#include "experiments/ask/question.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/duration.h"
+#include "experiments/core/text/message.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/run/run_study.h"
+#include "experiments/study/study_file.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+#include "simulator/motion_registry.h"
+#include "simulator/outlier_registry.h"
+
+namespace rcme {
+namespace {
+
+struct AskArguments {
+  AskedTexts texts;
+  Question question;
+  std::string within = "2m", out = "answer", format = "table";
+  double at_most = 0.05;
+  int trials = 0;  // 0: as many as the time allows
+  int threads = 0;
+};
+
+template <typename Entry>
+std::vector<std::string> NamesOf(const std::vector<Entry>& registry) {
+  std::vector<std::string> names;
+  for (const Entry& entry : registry) names.push_back(entry.name);
+  return names;
+}
+
+std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
+
+// Runs so many trials of the study into the file; those that are there already are kept.
+RunReport RunTrialsOf(const AskArguments& arguments, int trials, Study study) {
+  study.trials = trials;
+  const StudyPlan plan = MakePlan(study, arguments.out + "/study.yaml");
+  ResultStore store = ResultStore::OpenForRun(ResultPath(arguments), plan);
+  return RunStudy(plan, arguments.threads, &store);
+}
+
+// The greatest of a few round numbers that the time is enough for, judged by the first trials; their number,
+// if these were there already. It depends on no outcome, so that the intervals hold.
+int ChooseTrials(const RunReport& pilot, double seconds) {
+  if (pilot.num_run_now == 0) return static_cast<int>(pilot.num_trials);
+  const double seconds_per_trial = pilot.seconds / static_cast<double>(pilot.num_run_now);
+  int chosen = 50;
+  for (const int trials : {100, 200, 500, 1000, 2000, 5000}) {
+    if (seconds_per_trial * trials <= 0.8 * seconds) chosen = trials;
+  }
+  return chosen;
+}
+
+void RunAsk(AskArguments arguments) {
+  const StopOnSignals stop;
+  const std::vector<std::string> missing = MissingOptions(arguments.texts);
+  if (!missing.empty() && isatty(STDIN_FILENO) == 0) {
+    throw InputError(fmt::format("ask: {}: missing; give {}, or answer at a terminal",
+                                 fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them"));
+  }
+  AskForMissing(std::cin, std::cerr, &arguments.texts);
+  ReadTexts(arguments.texts, &arguments.question);
+  MakeResultFolder(arguments.out);
+  const std::string path = arguments.out + "/study.yaml";
+  const std::string text = MakeStudyText(arguments.question);
+  const Study study = ParseStudy(text, path);
+  WriteFileWhole(path, text);
+  if (arguments.trials > 0) {
+    RunTrialsOf(arguments, arguments.trials, study);
+  } else {
+    const int trials =
+        ChooseTrials(RunTrialsOf(arguments, study.trials, study), ParseDuration(arguments.within).value());
+    PrintMessage("{} trials of each estimator, within about {}\n", trials, arguments.within);
+    RunTrialsOf(arguments, trials, study);
+  }
+  const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most);
+  const std::string question = DescribeQuestion(arguments.question);
+  PrintOrWrite("", arguments.format == "json" ? AnswerAsJson(answer, question)
+                                              : AnswerAsText(answer, question, arguments.out));
+}
+
+}  // namespace
+
+void AddAskCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "ask", "Answer for your camera: which estimator, how far to trust it, how many trials");
+  command->footer(R"(Writes a study of one condition, runs as many trials as the time allows, and answers in
+about ten lines: the estimator that succeeds most often among rcme_calibrated, tuned
+RCME, MSAC, OpenCV's MAGSAC and OpenGV's RANSAC; whether its lead is more than chance;
+from which stated probability of failure on to refuse its answers; whether its
+probabilities and covariances are right; and how many trials would tell the first two
+apart. Without the first five options it asks for them at a terminal.
+
+The study, the result file and what you can do next are named at the end. The same
+command again goes on with the trials that are there.
+
+Examples:
+  rcme ask
+  rcme ask --image 1280x720 --focal 900 --noise 0.7 --scene corridor --motion forward \
+           --wrong 0.4 --outliers clustered_both --out corridor
+  rcme ask --image 640x480 --focal 525 --noise 1 --scene room --wrong 0.2 --within 30s)");
+  auto arguments = std::make_shared<AskArguments>();
+  AskedTexts& texts = arguments->texts;
+  Question& question = arguments->question;
+  command->add_option("--image", texts.image, "size of an image, WIDTHxHEIGHT, px");
+  command->add_option("--focal", texts.focal_px, "focal length, px");
+  command->add_option("--noise", texts.sigma_px, "standard deviation of a point's noise per coordinate, px");
+  command->add_option("--scene", texts.scene, "kind of scene (`rcme list scenes`)");
+  command->add_option("--wrong", texts.wrong, "share of wrong matches, 0 to 0.95");
+  command
+      ->add_option("--motion", question.motion, "kind of motion (`rcme list motions`); default: the scene's")
+      ->check(IsOneOf(NamesOf(MotionRegistry())));
+  command->add_option("--outliers", question.outliers, "kind of wrong matches (`rcme list outliers`)")
+      ->check(IsOneOf(NamesOf(OutlierRegistry())))
+      ->capture_default_str();
+  command->add_option("--matches", question.num_matches, "matches of a pair, wrong ones included")
+      ->transform(WholeNumberIn(8, 100'000))
+      ->capture_default_str();
+  command
+      ->add_option("--max-rotation-error", question.max_rotation_error_deg,
+                   "a motion with a greater rotation error has failed, deg")
+      ->transform(NumberIn({0.0, 180.0}))
+      ->capture_default_str();
+  command
+      ->add_option("--max-direction-error", question.max_direction_error_deg,
+                   "a motion with a greater error of the direction has failed, deg")
+      ->transform(NumberIn({0.0, 180.0}))
+      ->capture_default_str();
+  command->add_option("--at-most", arguments->at_most, "rate of failure among the answers that you accept")
+      ->transform(NumberIn({1e-6, 0.5}))
+      ->capture_default_str();
+  command
+      ->add_option("--within", arguments->within, "time that it may take (30s, 2m, 1h); at least 50 trials")
+      ->check([](const std::string& text) {
+        return ParseDuration(text) ? std::string()
+                                   : Quoted(text) + " is not allowed; give a time as 55m, 1h30m or 90s";
+      })
+      ->capture_default_str();
+  command->add_option("--trials", arguments->trials, "so many trials, whatever time they take")
+      ->transform(WholeNumberIn(1, 1'000'000));
+  command->add_option("--seed", question.seed, "seed of all random streams")
+      ->transform(WholeNumberIn(0))
+      ->capture_default_str();
+  command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
+      ->check(IsOneOf({"table", "json"}))
+      ->capture_default_str();
+  command->add_option("-o,--out", arguments->out, "folder for study.yaml and run.sqlite, created if missing")
+      ->capture_default_str();
+  command
+      ->add_option("--threads", arguments->threads,
+                   "threads; 0: one per core. The answer depends on them by the "
+                   "number of trials alone")
+      ->transform(WholeNumberIn(0, 1024));
+  command->callback([arguments] { RunAsk(*arguments); });
+}
+
+}  // namespace rcme

@@ -1,0 +1,88 @@
+// `rcme ask` and `rcme failures` as a user runs them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/test_support/run_program.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+
+class AskProgram : public testing::Test {
+ protected:
+  ProgramResult Ask(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "ask",     "--focal",   "500",     "--noise",  "0.5",
+        "--wrong", "0.2",       "--scene", "corridor", "--matches",
+        "80",      "--threads", "1",       "--out",    folder_.Path("asked")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunRcme(arguments);
+  }
+  TempFolder folder_;
+};
+
+TEST_F(AskProgram, AnswersWithStudyAndResultFile) {
+  const ProgramResult result = Ask({"--image", "640x480", "--trials", "12"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (const std::string part :
+       {"640 x 480 px, f 500 px, noise 0.5 px; corridor; 20 % wrong (uniform) of 80 matches", "Estimator",
+        "Next best", "Difference", "Threshold", "Covariance", "Time", "Trials", "Study, report",
+        "Next question"})
+    EXPECT_THAT(result.out, HasSubstr(part));
+  EXPECT_TRUE(std::filesystem::exists(folder_.Path("asked/study.yaml")));
+  const ProgramResult again = RunRcme({"run", folder_.Path("asked/study.yaml"), "--trials", "12", "--threads",
+                                       "1", "--out", folder_.Path("asked/run.sqlite")});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("12 were there already")) << "it is the study that was run";
+  const auto json =
+      nlohmann::json::parse(Ask({"--image", "640x480", "--trials", "12", "--format", "json"}).out);
+  EXPECT_EQ(json["format"], "rcme answer 1");
+  EXPECT_EQ(json["trials"], 12);
+}
+
+TEST_F(AskProgram, WithoutATerminalItNamesWhatIsMissing) {
+  const ProgramResult result = Ask({});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--image: missing"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
+}
+
+TEST_F(AskProgram, RefusesWhatIsNoCamera) {
+  const ProgramResult result = Ask({"--image", "640"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("give WIDTHxHEIGHT"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
+}
+
+// Every failure that the list has is a failure of the replay, and the program of one of them is written.
+TEST(Failures, AreThoseOfReplay) {
+  TempFolder folder;
+  const std::string study = folder.Write("small.yaml", SmallStudyYaml()), run = folder.Path("run.sqlite");
+  ASSERT_EQ(RunRcme({"run", study, "--set", "sigma_px=8", "--threads", "1", "--out", run}).exit_code, 0);
+  const auto json = nlohmann::json::parse(RunRcme({"failures", run, "--format", "json", "--limit", "2"}).out);
+  ASSERT_EQ(json["rows"].size(), 2u);
+  for (const auto& row : json["rows"]) {
+    const std::string label = row["estimator"], cpp = folder.Path("trial.cc");
+    const ProgramResult replay =
+        RunRcme({"replay", run, "--condition", std::to_string(row["condition"].get<int>()), "--trial",
+                 std::to_string(row["trial"].get<int>()), "--emit-cpp", cpp, "--estimator", label});
+    EXPECT_EQ(replay.exit_code, 0) << replay.err;
+    EXPECT_THAT(replay.out, HasSubstr("\n" + label + ": "));
+    EXPECT_THAT(replay.out, HasSubstr("(failure)"));
+    EXPECT_THAT(ReadBytes(cpp), HasSubstr("rcme::MakeEstimator("));
+  }
+  const ProgramResult beyond = RunRcme({"replay", run, "--condition", "0", "--trial", "9999"});
+  EXPECT_EQ(beyond.exit_code, 0);
+  EXPECT_THAT(beyond.err, HasSubstr("no trial 9999 of condition 0 is in the file"));
+}
+
+}  // namespace
+}  // namespace rcme
