@@ -15,31 +15,6 @@
 namespace rcme {
 namespace {
 
-constexpr int kMostLookedAt = 128;
-
-// Upright rectangle in whitened coordinates of image 2.
-struct Box {
-  double low[2], high[2];
-  double Area() const { return (high[0] - low[0]) * (high[1] - low[1]); }
-};
-
-Box BoxOfSecondPoints(const MotionProblem& problem) {
-  Eigen::Array2d low(kInfinity, kInfinity), high(-kInfinity, -kInfinity);
-  for (const Correspondence& match : problem.matches) {
-    if (!problem.camera2.IsInImage(match.x2_px)) continue;
-    low = low.min(match.x2_px.array());
-    high = high.max(match.x2_px.array());
-  }
-  if (!(low < high).all()) {  // no two points in the image
-    low = Eigen::Array2d(-0.5, -0.5);
-    high = Eigen::Array2d(problem.camera2.width - 0.5, problem.camera2.height - 0.5);
-  }
-  const Eigen::Array2d center(problem.camera2.cx, problem.camera2.cy);
-  low = (low - center) / problem.sigma_px;
-  high = (high - center) / problem.sigma_px;
-  return {{low.x(), low.y()}, {high.x(), high.y()}};
-}
-
 struct Chord {
   Eigen::Vector2d start, end;
 };
@@ -89,6 +64,25 @@ double LogUpperTail(int n, int k, double p) {
 }
 
 }  // namespace
+
+Box BoxOfSecondPoints(const MotionProblem& problem) {
+  const Camera& camera = problem.camera2;
+  double low_x = kInfinity, low_y = kInfinity, high_x = -kInfinity, high_y = -kInfinity;
+  for (const Correspondence& match : problem.matches) {
+    if (!camera.IsInImage(match.x2_px)) continue;
+    low_x = std::min(low_x, match.x2_px.x());
+    low_y = std::min(low_y, match.x2_px.y());
+    high_x = std::max(high_x, match.x2_px.x());
+    high_y = std::max(high_y, match.x2_px.y());
+  }
+  if (!(low_x < high_x && low_y < high_y)) {  // no two points in the image
+    low_x = low_y = -0.5;
+    high_x = camera.width - 0.5;
+    high_y = camera.height - 0.5;
+  }
+  return {{(low_x - camera.cx) / problem.sigma_px, (low_y - camera.cy) / problem.sigma_px},
+          {(high_x - camera.cx) / problem.sigma_px, (high_y - camera.cy) / problem.sigma_px}};
+}
 
 double ChanceOfAgreement(const MotionProblem& problem, const RelativePose& pose, double threshold) {
   const MatchWhitening whitening(problem);

@@ -23,10 +23,20 @@
 
 namespace rcme {
 
+// Upright rectangle in whitened coordinates of image 2.
+struct Box {
+  double low[2], high[2];
+  double Area() const { return (high[0] - low[0]) * (high[1] - low[1]); }
+};
+// The least one around the second points in the image; the image where there are no two.
+Box BoxOfSecondPoints(const MotionProblem& problem);
+
+inline constexpr int kMostLookedAt = 128;  // matches
+
 // Mean over the matches of the probability that the squared Sampson distance from x1 to a point uniform in
 // image 2 is at most threshold sigma^2. "Image 2" is the least upright rectangle around the second points in
 // it, as random matches lie where points are. At most 128 matches, evenly spaced in their order, are looked
-// at.
+// at. The twin that the fast implementation takes is kernels/agreement_chance.h.
 double ChanceOfAgreement(const MotionProblem& problem, const RelativePose& pose, double threshold);
 
 // The same for a rotation without a translation, and d2 <= threshold (refinement/rotation_equations.h): the

@@ -26,13 +26,9 @@ double ConsistencyThreshold(double significance_level) {
   return ChiSquareQuantile(2, 1.0 - significance_level);
 }
 
-void RefuseByChance(const MotionProblem& problem, const RansacOptions& options, MotionEstimate* estimate) {
-  const int num_matches = static_cast<int>(problem.matches.size());
-  const double level = options.ChanceLevelOrDefault();
-  if (level == 1.0) return;
-  const double chance =
-      ChanceOfAgreement(problem, estimate->cam2_from_cam1, ConsistencyThreshold(options.significance_level));
-  if (LogFalseAlarms(kMotions, num_matches, estimate->num_explained, chance) <= std::log(level)) return;
+void RefuseByChance(int num_matches, double chance, double significance_level, MotionEstimate* estimate) {
+  if (LogFalseAlarms(kMotions, num_matches, estimate->num_explained, chance) <= std::log(significance_level))
+    return;
   estimate->status = MotionStatus::kNotBetterThanChance;
   estimate->message = fmt::format(
       "{} of {} matches agree with the motion, no more than chance explains: of random matches, {:.1f} agree "
@@ -53,9 +49,7 @@ void KeepRotationAlone(const RotationTest& test, MotionEstimate* estimate) {
       num_fitted, test.num_agreeing, test.rotation.energy, 2 * num_fitted - 3);
 }
 
-void RefuseNoisyDirection(const MotionProblem& problem, MotionEstimate* estimate) {
-  const double share = NoiseShareOfDirection(problem, estimate->inliers, estimate->cam2_from_cam1,
-                                             estimate->pose_cov.bottomRightCorner<2, 2>());
+void RefuseNoisyDirection(double share, MotionEstimate* estimate) {
   if (share <= kMostNoiseInDirection) return;
   DropDirection(estimate);
   estimate->message = fmt::format(

@@ -14,11 +14,13 @@ namespace rcme {
 // long as its corner lies at or beyond the threshold.
 double ConsistencyThreshold(double significance_level);
 
-// Refuses a motion that no more of the matches agree with, `num_explained`, than chance gives.
-void RefuseByChance(const MotionProblem& problem, const RansacOptions& options, MotionEstimate* estimate);
+// Refuses a motion that no more of the matches agree with, `num_explained`, than chance gives. `chance`: that
+// a random match does.
+void RefuseByChance(int num_matches, double chance, double significance_level, MotionEstimate* estimate);
 
-// Refuses a direction whose parallax is too small against its noise: direction and its covariance are NaN.
-void RefuseNoisyDirection(const MotionProblem& problem, MotionEstimate* estimate);
+// Refuses a direction whose parallax is too small against its noise, `share` of its information: direction
+// and its covariance are NaN.
+void RefuseNoisyDirection(double share, MotionEstimate* estimate);
 
 // Refuses the direction and puts the rotation of the best rotation alone in the place of the motion's.
 void KeepRotationAlone(const RotationTest& test, MotionEstimate* estimate);
@@ -26,15 +28,23 @@ void KeepRotationAlone(const RotationTest& test, MotionEstimate* estimate);
 // All three. `num_explained` is known. `Matches`: see refine_winner.h.
 template <typename Matches>
 void RefuseByMotionTests(const Matches& matches, const RansacOptions& options, MotionEstimate* estimate) {
-  RefuseByChance(matches.problem(), options, estimate);
+  const RelativePose pose = estimate->cam2_from_cam1;
+  const double chance_level = options.ChanceLevelOrDefault();
+  if (chance_level != 1.0) {
+    const double chance = matches.ChanceOfAgreement(pose, ConsistencyThreshold(options.significance_level));
+    RefuseByChance(static_cast<int>(matches.problem().matches.size()), chance, chance_level, estimate);
+  }
   const double level = options.ObservabilityLevelOrDefault();
   if (level == 1.0 || estimate->status != MotionStatus::kOk) return;
-  const RotationTest test = TestRotationAlone(matches, estimate->cam2_from_cam1, level);
-  if (test.explains_matches) {
-    KeepRotationAlone(test, estimate);
-  } else {
-    RefuseNoisyDirection(matches.problem(), estimate);
+  if (MayRotationExplain(matches, pose, level)) {
+    const RotationTest test = TestRotationAlone(matches, pose, level);
+    if (test.explains_matches) return KeepRotationAlone(test, estimate);
   }
+  const Eigen::Matrix2d direction_cov = estimate->pose_cov.bottomRightCorner<2, 2>();
+  const auto inliers = matches.SetOf(estimate->inliers);
+  RefuseNoisyDirection(
+      NoiseShareOfDirection(direction_cov, matches.SumDirectionNoise(inliers, pose, direction_cov)),
+      estimate);
 }
 
 // After a refinement that diverged from `start` and its matches: the rotation alone, if too little parallax

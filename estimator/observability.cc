@@ -14,6 +14,19 @@
 namespace rcme {
 namespace {
 
+// Of a rotation that explains so many matches.
+double LogFalseAlarmsOfRotation(const MotionProblem& problem, double significance_level, int num_within) {
+  const int n = static_cast<int>(problem.matches.size());
+  const double chance = ChanceOfAgreementWithRotation(problem, TailThreshold(n, significance_level));
+  return LogFalseAlarms(kRotations, n, num_within, chance);
+}
+
+// Beyond this the rotation explains nothing; `chance` that of the motion.
+double MostLogFalseAlarms(int num_matches, int num_agreeing, double chance, double significance_level) {
+  return std::min(std::log(significance_level / 3.0),
+                  LogFalseAlarms(kMotions, num_matches, num_agreeing, chance));
+}
+
 bool HasExcessEnergy(const RotationFit& rotation, double significance_level) {
   return rotation.num_fitted >= 3 &&
          ChiSquareCdf(2 * rotation.num_fitted - 3, rotation.energy) > 1.0 - significance_level;
@@ -27,7 +40,7 @@ double TailThreshold(int num_matches, double significance_level) {
   return -2.0 * std::log(significance_level / 3.0 / num_matches);
 }
 
-void DecideRotationTest(const MotionProblem& problem, const RelativePose& pose, double significance_level,
+void DecideRotationTest(const MotionProblem& problem, double chance, double significance_level,
                         RotationTest* test) {
   const int n = static_cast<int>(problem.matches.size());
   const double third = significance_level / 3.0;
@@ -35,19 +48,26 @@ void DecideRotationTest(const MotionProblem& problem, const RelativePose& pose, 
   test->num_beyond = test->num_agreeing - rotation.num_fitted;
   test->num_unexplained = n - rotation.num_within;
   if (HasExcessEnergy(rotation, third)) return;
-  const double chance = ChanceOfAgreement(problem, pose, AgreementThreshold());
-  const double chance_of_rotation =
-      ChanceOfAgreementWithRotation(problem, TailThreshold(n, significance_level));
-  const double log_nfa_of_rotation = LogFalseAlarms(kRotations, n, rotation.num_within, chance_of_rotation);
-  const double log_nfa_of_motion = LogFalseAlarms(kMotions, n, test->num_agreeing, chance);
-  if (log_nfa_of_rotation > std::min(std::log(third), log_nfa_of_motion)) return;
+  if (LogFalseAlarmsOfRotation(problem, significance_level, rotation.num_within) >
+      MostLogFalseAlarms(n, test->num_agreeing, chance, significance_level))
+    return;
   const ModelFamily& family = rotation.num_fitted >= 10 ? kDirections : kMotions;
   test->explains_matches =
       LogFalseAlarms(family, test->num_unexplained, test->num_beyond, chance) > std::log(third);
 }
 
-double NoiseShareOfDirection(const MotionProblem& problem, const std::vector<int>& fitted,
-                             const RelativePose& pose, const Eigen::Matrix2d& direction_cov) {
+bool MayRotationExplain(const MotionProblem& problem, double chance, double significance_level,
+                        int num_agreeing, int most_within) {
+  const int n = static_cast<int>(problem.matches.size());
+  // Where a tail is too small for a double, LogFalseAlarms takes Chernoff's bound of it, which is at most
+  // log(2 n) / 2 above (Ash 1965, lemma 4.7.2): fewer matches may have fewer false alarms by so much.
+  const double least =
+      LogFalseAlarmsOfRotation(problem, significance_level, most_within) - 0.5 * std::log(2.0 * n);
+  return least <= MostLogFalseAlarms(n, num_agreeing, chance, significance_level);
+}
+
+Eigen::Matrix2d SumDirectionNoise(const MotionProblem& problem, const std::vector<int>& fitted,
+                                  const RelativePose& pose, const Eigen::Matrix2d& direction_cov) {
   const MatchWhitening whitening(problem);
   const RayScale& s = whitening.ray_scale();
   Eigen::Matrix3d axes, axes_in_cam1;  // t, B, column by column
@@ -70,6 +90,10 @@ double NoiseShareOfDirection(const MotionProblem& problem, const std::vector<int
     const Eigen::Matrix2d own = J.bottomRows<2>() * J.bottomRows<2>().transpose();
     if ((direction_cov * own).trace() <= most * variance) noise += own / variance;
   }
+  return noise;
+}
+
+double NoiseShareOfDirection(const Eigen::Matrix2d& direction_cov, const Eigen::Matrix2d& noise) {
   const Eigen::Matrix2d share = direction_cov * noise;  // its eigenvalues are real, as those of a product of
                                                         // two positive definite matrices are
   const double half_trace = 0.5 * share.trace();

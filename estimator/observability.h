@@ -44,9 +44,24 @@ struct RotationTest {
 double AgreementThreshold();
 double TailThreshold(int num_matches, double significance_level);
 
-// The verdict from the fit to the matches that agree with `pose`: fills the other fields.
-void DecideRotationTest(const MotionProblem& problem, const RelativePose& pose, double significance_level,
+// The verdict from the fit to the matches that agree with a motion: fills the other fields. `chance`: that a
+// random match agrees with the motion.
+void DecideRotationTest(const MotionProblem& problem, double chance, double significance_level,
                         RotationTest* test);
+
+// Whether DecideRotationTest can say that a rotation explains the matches, if no rotation explains more than
+// `most_within` of them. Tells without a fit that there is no such rotation, as nearly always.
+bool MayRotationExplain(const MotionProblem& problem, double chance, double significance_level,
+                        int num_agreeing, int most_within);
+
+template <typename Matches>
+bool MayRotationExplain(const Matches& matches, const RelativePose& pose, double significance_level) {
+  const MotionProblem& problem = matches.problem();
+  const double threshold = TailThreshold(static_cast<int>(problem.matches.size()), significance_level);
+  return MayRotationExplain(
+      problem, matches.ChanceOfAgreement(pose, AgreementThreshold()), significance_level,
+      matches.Count(matches.FindConsistent(pose, AgreementThreshold())), matches.BoundRotated(threshold));
+}
 
 // `pose` is the refined motion; alpha is the greatest probability that matches which follow a rotation are
 // taken for a motion with a direction. `Matches`: see refine_winner.h.
@@ -58,7 +73,8 @@ RotationTest TestRotationAlone(const Matches& matches, const RelativePose& pose,
   RotationTest test;
   test.rotation = FitRotation(matches, agreeing, pose.R, threshold);
   test.num_agreeing = matches.Count(agreeing);
-  DecideRotationTest(matches.problem(), pose, significance_level, &test);
+  DecideRotationTest(matches.problem(), matches.ChanceOfAgreement(pose, AgreementThreshold()),
+                     significance_level, &test);
   return test;
 }
 
@@ -82,8 +98,11 @@ RotationTest TestRotationAloneFrom(const Matches& matches, const RelativePose& s
 // pose_cov, returned is the greatest eigenvalue of direction_cov N. A match whose own share is beyond
 // MaxLeverage, next to an epipole, is left out as in the fit set. At share q the reported standard deviation
 // is too small by sqrt(1 - q).
-double NoiseShareOfDirection(const MotionProblem& problem, const std::vector<int>& fitted,
-                             const RelativePose& pose, const Eigen::Matrix2d& direction_cov);
+double NoiseShareOfDirection(const Eigen::Matrix2d& direction_cov, const Eigen::Matrix2d& noise);
+
+// N, one match at a time; the twin that the fast implementation takes is kernels/direction_noise.h.
+Eigen::Matrix2d SumDirectionNoise(const MotionProblem& problem, const std::vector<int>& fitted,
+                                  const RelativePose& pose, const Eigen::Matrix2d& direction_cov);
 
 // More than this is refused: standard deviations would be more than 13 % too small.
 inline constexpr double kMostNoiseInDirection = 0.25;

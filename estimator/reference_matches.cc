@@ -6,6 +6,8 @@
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/geometry/triangulation.h"
+#include "estimator/motion_chance.h"
+#include "estimator/observability.h"
 #include "estimator/refinement/reprojection_mle.h"
 #include "estimator/refinement/sampson_mle.h"
 
@@ -59,6 +61,15 @@ RotationEquations ReferenceMatches::LinearizeRotation(const Set& set, const Eige
 
 ReferenceMatches::Set ReferenceMatches::FindRotated(const Eigen::Matrix3d& R, double threshold) const {
   return rcme::FindRotated(problem_, R, threshold);
+}
+
+double ReferenceMatches::ChanceOfAgreement(const RelativePose& pose, double threshold) const {
+  return rcme::ChanceOfAgreement(problem_, pose, threshold);
+}
+
+Eigen::Matrix2d ReferenceMatches::SumDirectionNoise(const Set& set, const RelativePose& pose,
+                                                    const Eigen::Matrix2d& direction_cov) const {
+  return rcme::SumDirectionNoise(problem_, set, pose, direction_cov);
 }
 
 ReferenceMatches::Set ReferenceMatches::Intersect(const Set& a, const Set& b) const {

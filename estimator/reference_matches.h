@@ -24,6 +24,11 @@ class ReferenceMatches {
   int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
   RotationEquations LinearizeRotation(const Set& set, const Eigen::Matrix3d& R, Loss loss) const;
   Set FindRotated(const Eigen::Matrix3d& R, double threshold) const;
+  // All: the reference fits a rotation always.
+  int BoundRotated(double) const { return static_cast<int>(problem_.matches.size()); }
+  double ChanceOfAgreement(const RelativePose& pose, double threshold) const;
+  Eigen::Matrix2d SumDirectionNoise(const Set& set, const RelativePose& pose,
+                                    const Eigen::Matrix2d& direction_cov) const;
   Set Intersect(const Set& a, const Set& b) const;
   Set SetOf(const std::vector<int>& indices) const { return indices; }
   Set All() const;

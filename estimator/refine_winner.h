@@ -27,7 +27,8 @@ template <typename T>
 concept MatchSets = requires(const T matches, const typename T::Set& set, const RelativePose& pose,
                              const RefinedMotion& motion, const EssentialProjection& projection,
                              const std::vector<int>& sorted_indices, const Eigen::Matrix3d& R, Loss loss,
-                             double threshold, double significance_level) {
+                             const Eigen::Matrix2d& direction_cov, double threshold,
+                             double significance_level) {
   { matches.problem() } -> std::same_as<const MotionProblem&>;
   { matches.SelectPose(projection, set) } -> std::same_as<RelativePose>;  // cheirality
   { matches.Refine(set, pose, loss) } -> std::same_as<RefinedMotion>;
@@ -40,6 +41,10 @@ concept MatchSets = requires(const T matches, const typename T::Set& set, const 
   // refinement/rotation_equations.h
   { matches.LinearizeRotation(set, R, loss) } -> std::same_as<RotationEquations>;
   { matches.FindRotated(R, threshold) } -> std::same_as<typename T::Set>;
+  { matches.BoundRotated(threshold) } -> std::same_as<int>;  // at least the number for any R
+  // motion_chance.h, observability.h
+  { matches.ChanceOfAgreement(pose, threshold) } -> std::same_as<double>;
+  { matches.SumDirectionNoise(set, pose, direction_cov) } -> std::same_as<Eigen::Matrix2d>;
   { matches.SetOf(sorted_indices) } -> std::convertible_to<typename T::Set>;
   { matches.All() } -> std::convertible_to<typename T::Set>;
   { matches.Intersect(set, set) } -> std::same_as<typename T::Set>;

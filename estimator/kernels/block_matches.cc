@@ -4,6 +4,9 @@
 #include <utility>
 
 #include "estimator/kernels/agreement.h"
+#include "estimator/kernels/agreement_chance.h"
+#include "estimator/kernels/direction_noise.h"
+#include "estimator/kernels/rotation_bound.h"
 #include "estimator/kernels/rotation_equations.h"
 #include "estimator/kernels/sampson_equations.h"
 #include "estimator/refinement/fit_set.h"
@@ -68,6 +71,17 @@ MatchMask BlockMatches::FindRotated(const Eigen::Matrix3d& R, double threshold) 
   InlierScan scan(matches_);
   ScanRotation(matches_, R, threshold, &scan);
   return std::move(scan.inliers);
+}
+
+double BlockMatches::ChanceOfAgreement(const RelativePose& pose, double threshold) const {
+  return rcme::ChanceOfAgreement(matches_, pose, BoxOfSecondPoints(problem_), threshold);
+}
+
+int BlockMatches::BoundRotated(double threshold) const { return rcme::BoundRotated(matches_, threshold); }
+
+Eigen::Matrix2d BlockMatches::SumDirectionNoise(const Set& set, const RelativePose& pose,
+                                                const Eigen::Matrix2d& direction_cov) const {
+  return rcme::SumDirectionNoise(matches_, set, pose, direction_cov);
 }
 
 }  // namespace rcme

@@ -25,6 +25,10 @@ class BlockMatches {
   int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
   RotationEquations LinearizeRotation(const Set& set, const Eigen::Matrix3d& R, Loss loss) const;
   Set FindRotated(const Eigen::Matrix3d& R, double threshold) const;
+  int BoundRotated(double threshold) const;
+  double ChanceOfAgreement(const RelativePose& pose, double threshold) const;
+  Eigen::Matrix2d SumDirectionNoise(const Set& set, const RelativePose& pose,
+                                    const Eigen::Matrix2d& direction_cov) const;
   Set Intersect(const Set& a, const Set& b) const { return Intersection(a, b); }
   Set SetOf(const std::vector<int>& indices) const { return MaskOf(indices, matches_); }
   Set All() const { return matches_.All(); }

@@ -92,59 +92,88 @@ void ScanUncertain(const MatchBlock* blocks, int num_matches, const double* F, c
   });
 }
 
+// The vectors of a block.
+constexpr int kVectors = kBlockSize / kLanes;
+
+// sum over the first `count` of numbers. visit(first, values) writes those of the block that starts there;
+// those beyond are left out.
+template <typename Visit>
+HWY_INLINE double SumOverBlocks(int count, const Visit& visit) {
+  Vec sums[kVectors], values[kVectors];
+  for (Vec& sum : sums) sum = Set(0.0);
+  int first = 0;
+  for (; first + kBlockSize <= count; first += kBlockSize) {
+    visit(first, values);
+    for (int v = 0; v < kVectors; ++v) sums[v] = sums[v] + values[v];
+  }
+  if (first < count) {
+    visit(first, values);
+    for (int v = 0; v < kVectors; ++v)
+      sums[v] = sums[v] + hn::IfThenElseZero(AreMatches(first + v * kLanes, count), values[v]);
+  }
+  HWY_ALIGN double eight[kBlockSize];
+  for (int v = 0; v < kVectors; ++v) Store(sums[v], eight + v * kLanes);
+  return SumOfEight(eight);
+}
+
+constexpr int kMatchesAtOnce = 128;
+
+// d2 and s2 / sigma^2 of up to kMatchesAtOnce matches, in whole blocks.
+struct Predictions {
+  HWY_ALIGN double d2[kMatchesAtOnce], s2[kMatchesAtOnce];
+
+  HWY_INLINE void Fill(const MatchBlock* blocks, int num_matches, const double* F,
+                       const double* coefficients) {
+    const int num_whole = (num_matches + kBlockSize - 1) / kBlockSize * kBlockSize;
+    for (int i = 0; i < num_whole && i < kMatchesAtOnce; i += kLanes) {
+      const RankAwareTerms terms =
+          EvaluateRankAware(F, coefficients, LoadMatches(blocks[i / kBlockSize], i % kBlockSize));
+      const Vec total = terms.n2 + terms.variance;
+      Store(terms.g2 / total, d2 + i);
+      Store(total / terms.n2, s2 + i);
+    }
+  }
+};
+
+// In two steps: polynomial and logarithm are long chains, and one after the other they would fill the window
+// in which a processor finds work for its units.
 double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const double* F,
                                 const double* coefficients, double outlier_cost) {
   const Vec half = Set(0.5), log_two_pi = Set(1.8378770664093454836), limit = Set(outlier_cost);
-  HWY_ALIGN double sums[kBlockSize];
-  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-    Vec sum = Set(0.0);
-    for (int first = lane; first < num_matches; first += kBlockSize) {
-      const Matches matches = LoadMatches(blocks[first / kBlockSize], lane);
-      const RankAwareTerms terms = EvaluateRankAware(F, coefficients, matches);
-      const Vec total = terms.n2 + terms.variance;
-      const Vec d2 = terms.g2 / total, log_s2 = LogOf(Tag(), total / terms.n2);
-      const Vec cost = Lesser(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
-      sum = sum + hn::IfThenElseZero(AreMatches(first, num_matches), cost);
+  Predictions of;
+  return SumOverBlocks(num_matches, [&](int first, Vec* costs) {
+    if (first % kMatchesAtOnce == 0)
+      of.Fill(blocks + first / kBlockSize, num_matches - first, F, coefficients);
+    for (int v = 0; v < kVectors; ++v) {
+      const int i = first % kMatchesAtOnce + v * kLanes;
+      const Vec d2 = Load(of.d2 + i), log_s2 = LogOf(Tag(), Load(of.s2 + i));
+      costs[v] = Lesser(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
     }
-    Store(sum, sums + lane);
-  }
-  return SumOfEight(sums);
-}
-
-// sum visit(i, are_inliers) over vectors of inliers that start at i.
-template <typename Visit>
-HWY_INLINE double SumOverInliers(int count, const Visit& visit) {
-  HWY_ALIGN double sums[kBlockSize];
-  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-    Vec sum = Set(0.0);
-    for (int i = lane; i < count; i += kBlockSize) {
-      const Mask are_inliers = AreMatches(i, count);
-      sum = sum + hn::IfThenElseZero(are_inliers, visit(i, are_inliers));
-    }
-    Store(sum, sums + lane);
-  }
-  return SumOfEight(sums);
+  });
 }
 
 // Entropies (eq. 15), their mean and the sum of squares about it (eq. 16). Two passes: the sum loses no
 // digits. `spreads` may be read beyond count, up to a block.
 void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
   const Vec half = Set(0.5), shift = Set(offset);
-  const auto entropy = [&](int i, Mask are_inliers) {
-    const Vec spread = hn::IfThenElse(are_inliers, hn::LoadU(Tag(), spreads + i), Set(1.0));
-    return FusedMulAdd(half, LogOf(Tag(), spread), shift);
+  const auto entropy = [&](int i) {
+    return FusedMulAdd(half, LogOf(Tag(), hn::LoadU(Tag(), spreads + i)), shift);
   };
   HWY_ALIGN double
       stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice
-  const double sum = SumOverInliers(count, [&](int i, Mask are_inliers) {
-    const Vec h = entropy(i, are_inliers);
-    if (i < 512) Store(h, stored + i);
-    return h;
+  const double sum = SumOverBlocks(count, [&](int first, Vec* values) {
+    for (int v = 0; v < kVectors; ++v) {
+      values[v] = entropy(first + v * kLanes);
+      if (first < 512) Store(values[v], stored + first + v * kLanes);
+    }
   });
   *mean = sum / count;
   const Vec center = Set(*mean);
-  *sum_squares = SumOverInliers(count, [&](int i, Mask are_inliers) {
-    return Square((i < 512 ? Load(stored + i) : entropy(i, are_inliers)) - center);
+  *sum_squares = SumOverBlocks(count, [&](int first, Vec* values) {
+    for (int v = 0; v < kVectors; ++v) {
+      const int i = first + v * kLanes;
+      values[v] = Square((first < 512 ? Load(stored + i) : entropy(i)) - center);
+    }
   });
 }
 

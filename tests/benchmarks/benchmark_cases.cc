@@ -219,6 +219,27 @@ void RefineWinnerReference(const Trial& trial) {
   RefineWinnerIn(ReferenceMatches(trial.data.problem, RefinementError::kReprojection), trial);
 }
 
+// Of a motion that passes them, as nearly all do.
+template <typename Matches>
+void TestMotionIn(const Matches& matches, const Trial& trial) {
+  MotionEstimate estimate;
+  estimate.status = MotionStatus::kOk;
+  estimate.cam2_from_cam1 = trial.refined.cam2_from_cam1;
+  estimate.pose_cov = trial.refined.pose_cov;
+  estimate.inliers = trial.inliers;
+  estimate.num_explained = static_cast<int>(trial.inliers.size());
+  RansacOptions options;
+  options.reading = Reading::kRankAware;  // as printed there are no such tests
+  RefuseByMotionTests(matches, options, &estimate);
+  DoNotOptimize(estimate);
+}
+void TestMotionFast(const Trial& trial) {
+  TestMotionIn(BlockMatches(trial.data.problem, trial.blocks, RefinementError::kSampson), trial);
+}
+void TestMotionReference(const Trial& trial) {
+  TestMotionIn(ReferenceMatches(trial.data.problem, RefinementError::kSampson), trial);
+}
+
 void FindThresholds(const Trial& trial) { DoNotOptimize(Thresholds::For(trial.data.problem, {}, 3)); }
 
 std::vector<BenchmarkCase> StageCases() {
@@ -255,6 +276,8 @@ std::vector<BenchmarkCase> StageCases() {
           {stage, "find_agreeing/reference", FindAgreeingReference},
           {stage, "refine/fast", RefineSampson},
           {stage, "refine/reference", RefineReprojection},
+          {stage, "test_motion/fast", TestMotionFast},
+          {stage, "test_motion/reference", TestMotionReference},
           {stage, "refine_winner/fast", RefineWinnerFast},
           {stage, "refine_winner/reference", RefineWinnerReference}};
 }

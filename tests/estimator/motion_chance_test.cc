@@ -6,6 +6,8 @@
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/sampson.h"
+#include "estimator/kernels/agreement_chance.h"
+#include "tests/test_support/every_target.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -40,6 +42,28 @@ TEST(MotionChance, IsTheShareOfRandomPointsThatAgree) {
       }
       const double share = static_cast<double>(count) / n;
       EXPECT_NEAR(chance, share, 5.0 * std::sqrt(share / n) + 0.04 * share) << sigma_px << ", " << trial;
+    }
+  }
+}
+
+class ChanceKernel : public OnEveryTarget {};
+
+// Of motions that see most lines and few, of few matches and many.
+TEST_F(ChanceKernel, IsTheReference) {
+  RandomStream rng({.seed = 1, .purpose = 1415});
+  for (const int n : {1, 2, 7, 64, 130, 500}) {
+    for (int trial = 0; trial < 8; ++trial) {
+      RandomProblem random = MakeRandomProblem(rng, {.num_matches = n});
+      AddNoise(0.5, rng, &random.problem);
+      const RelativePose pose = trial % 2 == 0 ? random.pose_true : RandomPose(rng, 90.0);
+      for (const double threshold : {0.5, 5.99, 1e4}) {
+        const double expected = ChanceOfAgreement(random.problem, pose, threshold);
+        Run([&] {
+          const MatchBlocks matches(random.problem);
+          const Box box = BoxOfSecondPoints(random.problem);
+          EXPECT_NEAR(ChanceOfAgreement(matches, pose, box, threshold), expected, 1e-9) << n << ", " << trial;
+        });
+      }
     }
   }
 }

@@ -213,6 +213,11 @@ TEST(DirectionNotObservable, TheSameFromTheReferenceAndFromPieces) {
   EXPECT_GE(num, 5);
 }
 
+double ShareOf(const MotionProblem& problem, const std::vector<int>& fitted, const RelativePose& pose,
+               const Eigen::Matrix2d& direction_cov) {
+  return NoiseShareOfDirection(direction_cov, SumDirectionNoise(problem, fitted, pose, direction_cov));
+}
+
 // Noise alone is all of it; with a parallax of sixty standard deviations it is next to nothing.
 TEST(NoiseShareOfDirection, IsOneWithoutParallaxAndNothingWithMuch) {
   RandomStream rng({.seed = 1, .purpose = 1408});
@@ -225,7 +230,7 @@ TEST(NoiseShareOfDirection, IsOneWithoutParallaxAndNothingWithMuch) {
     const std::vector<int> all = ReferenceMatches(random.problem, RefinementError::kSampson).All();
     const Matrix5d information = SampsonInformation(random.problem, all, random.pose_true);
     const Eigen::Matrix2d direction_cov = information.bottomRightCorner<2, 2>().inverse();
-    sum += NoiseShareOfDirection(random.problem, all, random.pose_true, direction_cov) / 40.0;
+    sum += ShareOf(random.problem, all, random.pose_true, direction_cov) / 40.0;
   }
   EXPECT_GT(
       sum,
@@ -235,7 +240,54 @@ TEST(NoiseShareOfDirection, IsOneWithoutParallaxAndNothingWithMuch) {
   AddNoise(0.5, rng, &near.problem);
   const std::vector<int> all = ReferenceMatches(near.problem, RefinementError::kSampson).All();
   const Matrix5d cov = SampsonInformation(near.problem, all, near.pose_true).inverse();
-  EXPECT_LT(NoiseShareOfDirection(near.problem, all, near.pose_true, cov.bottomRightCorner<2, 2>()), 0.02);
+  EXPECT_LT(ShareOf(near.problem, all, near.pose_true, cov.bottomRightCorner<2, 2>()), 0.02);
+}
+
+class DirectionNoise : public OnEveryTarget {};
+
+// As one match at a time gives it, for a covariance that leaves matches next to an epipole out, and one that
+// does not.
+TEST_F(DirectionNoise, IsThatOfTheReference) {
+  RandomStream rng({.seed = 1, .purpose = 1409});
+  for (const int n : {1, 8, 61}) {
+    RandomProblem random = MakeRandomProblem(rng, {.num_matches = n});
+    AddNoise(0.5, rng, &random.problem);
+    std::vector<int> fitted;
+    for (int i = 0; i < n; i += 1 + i % 3) fitted.push_back(i);
+    for (const double variance : {1e-9, 1e-2, 3e-1}) {
+      Eigen::Matrix2d cov;
+      cov << variance, 0.3 * variance, 0.3 * variance, 0.5 * variance;
+      const Eigen::Matrix2d expected = SumDirectionNoise(random.problem, fitted, random.pose_true, cov);
+      Run([&] {
+        const MatchBlocks blocks(random.problem);
+        const BlockMatches matches(random.problem, blocks, RefinementError::kSampson);
+        const Eigen::Matrix2d noise = matches.SumDirectionNoise(matches.SetOf(fitted), random.pose_true, cov);
+        EXPECT_LE((noise - expected).norm(), 1e-9 * expected.norm()) << n << ", " << variance;
+      });
+    }
+  }
+}
+
+// The test without a fit says the same as the test with one, wherever a rotation is one of many matches, of
+// half, or of nearly all; and it is spared the fit where there is much parallax.
+TEST(RotationTest, TheBoundChangesNoVerdict) {
+  RandomStream rng({.seed = 1, .purpose = 1412});
+  int num_spared = 0, num_explained = 0;
+  for (int trial = 0; trial < 120; ++trial) {
+    const double depth = std::pow(10.0, trial % 12 / 4.0 - 0.5);
+    RandomProblem random = MakeRandomProblem(
+        rng, {.num_matches = 20 + 4 * trial, .min_depth = 4.0 * depth, .max_depth = 16.0 * depth});
+    AddNoise(0.5, rng, &random.problem);
+    const MatchBlocks blocks(random.problem);
+    const BlockMatches matches(random.problem, blocks, RefinementError::kSampson);
+    const bool may = MayRotationExplain(matches, random.pose_true, 0.05);
+    const bool does = TestRotationAlone(matches, random.pose_true, 0.05).explains_matches;
+    EXPECT_TRUE(may || !does) << trial;
+    num_spared += !may;
+    num_explained += does;
+  }
+  EXPECT_GT(num_spared, 40);
+  EXPECT_GT(num_explained, 10);
 }
 
 }  // namespace

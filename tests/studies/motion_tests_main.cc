@@ -87,8 +87,9 @@ void PrintCoverage(int num_trials) {
       RandomStream rng({1, 14, index, 4});
       const MotionEstimate e = MakeEstimator("standard", false)->Estimate(trial.problem, rng);
       if (e.status != MotionStatus::kOk || !IsRight(e, trial.pose_true)) continue;
-      const double share = NoiseShareOfDirection(trial.problem, e.inliers, e.cam2_from_cam1,
-                                                 e.pose_cov.bottomRightCorner<2, 2>());
+      const Eigen::Matrix2d direction_cov = e.pose_cov.bottomRightCorner<2, 2>();
+      const double share = NoiseShareOfDirection(
+          direction_cov, SumDirectionNoise(trial.problem, e.inliers, e.cam2_from_cam1, direction_cov));
       const Vector5d error = LocalCoordinates(e.cam2_from_cam1, trial.pose_true);
       const auto bin = static_cast<size_t>(std::ranges::lower_bound(kEdges, share) - kEdges);
       ++num[bin];

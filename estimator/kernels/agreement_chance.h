@@ -1,0 +1,14 @@
+// The many-at-a-time twin of ChanceOfAgreement (motion_chance.h).
+#pragma once
+
+#include "estimator/geometry/pose.h"
+#include "estimator/kernels/match_blocks.h"
+#include "estimator/motion_chance.h"
+
+namespace rcme {
+
+// `box`: that of the second points.
+double ChanceOfAgreement(const MatchBlocks& matches, const RelativePose& pose, const Box& box,
+                         double threshold);
+
+}  // namespace rcme

@@ -1,0 +1,13 @@
+// The many-at-a-time twin of SumDirectionNoise (observability.h).
+#pragma once
+
+#include "estimator/geometry/pose.h"
+#include "estimator/kernels/match_blocks.h"
+
+namespace rcme {
+
+// Over the matches of the mask.
+Eigen::Matrix2d SumDirectionNoise(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
+                                  const Eigen::Matrix2d& direction_cov);
+
+}  // namespace rcme
