@@ -8,6 +8,7 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/study/find_estimator.h"
 #include "experiments/trial/trial_event.h"
 #include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
@@ -25,18 +26,10 @@ const TrialEvent& FindListedEvent(const std::string& name) {
 }
 
 // Of each estimator of the run whether it is asked for.
-std::vector<bool> ChooseEstimators(const RunDescription& run, const std::vector<std::string>& labels) {
-  std::vector<std::string> known;
-  for (const DescribedEstimator& estimator : run.estimators) known.push_back(estimator.label);
-  std::vector<bool> is_chosen(known.size(), labels.empty());
-  for (const std::string& label : labels) {
-    const auto found = std::ranges::find(known, label);
-    if (found == known.end()) {
-      throw InputError(fmt::format("--estimators: {} is not an estimator of the run{}; it has: {}",
-                                   Quoted(label), DidYouMean(label, known), fmt::join(known, ", ")));
-    }
-    is_chosen[static_cast<size_t>(found - known.begin())] = true;
-  }
+std::vector<bool> MarkEstimators(const RunDescription& run, const std::vector<std::string>& labels) {
+  std::vector<bool> is_chosen(run.estimators.size(), labels.empty());
+  for (const std::string& label : labels)
+    is_chosen[FindEstimator(run.estimators, label, "--estimators: the run")] = true;
   return is_chosen;
 }
 
@@ -69,7 +62,7 @@ Table MakeFailingTable(const FailingTrials& trials, bool with_probability = true
 FailingTrials ListFailingTrials(const ResultStore& store, const FailureQuery& query) {
   const RunDescription run = store.Description();
   const TrialEvent& event = FindListedEvent(query.event);
-  const std::vector<bool> is_chosen = ChooseEstimators(run, query.estimators);
+  const std::vector<bool> is_chosen = MarkEstimators(run, query.estimators);
   if (query.condition && *query.condition >= run.conditions.size()) {
     throw InputError(fmt::format("--condition: {} is not allowed; the study has conditions 0 to {}",
                                  *query.condition, run.conditions.size() - 1));
