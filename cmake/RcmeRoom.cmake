@@ -8,8 +8,8 @@ target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconver
 #
 # Most of a build goes into reading the same headers again. PRECOMPILED: headers of libraries that much of the room includes,
 # compiled once beside those of the language. TOGETHER: folders whose sources are compiled several at a time, so that names in
-# their anonymous namespaces differ, and in those of all small folders. A source includes what it uses all the same: where CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as
-# in the preset `dev`, each is compiled by itself.
+# their anonymous namespaces differ, and in those of all small folders. A source includes what it uses all the same: where
+# CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as in the preset `dev`, each is compiled by itself.
 function(rcme_add_room name)
   cmake_parse_arguments(ROOM "" "" "LINKS;PRIVATE_LINKS;APART;PRECOMPILED;TOGETHER" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cc)

@@ -78,15 +78,17 @@ bool AddEstimators(SettingPlan* plan) {
 
 void AddGroups(SettingPlan* plan) {
   std::map<std::string, std::vector<size_t>> groups;
-  std::map<const MotionEstimator*, std::vector<size_t>> in_one_piece;  // by the estimator without limits
+  std::map<const MotionEstimator*, size_t> in_one_piece;  // the group of each estimator without limits
   for (size_t s = 0; s < plan->settings.size(); ++s) {
     if (FindInspection(*plan->estimators[s])) {
       groups[TraceKey(plan->settings[s].spec.options)].push_back(s);
     } else {
-      in_one_piece[plan->without_limits[s].get()].push_back(s);
+      const auto [group, is_new] =
+          in_one_piece.try_emplace(plan->without_limits[s].get(), plan->groups.size());
+      if (is_new) plan->groups.push_back({nullptr, {}});
+      plan->groups[group->second].settings.push_back(s);
     }
   }
-  for (const auto& [estimator, settings] : in_one_piece) plan->groups.push_back({nullptr, settings});
   for (const auto& [key, settings] : groups) plan->groups.push_back({MakeTracer(*plan, settings), settings});
 }
 
