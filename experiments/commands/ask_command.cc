@@ -5,7 +5,7 @@
 #include <iostream>
 #include <memory>
 
-#include "experiments/ask/answer.h"
+#include "experiments/ask/answer_output.h"
 #include "experiments/ask/question.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"

@@ -84,7 +84,7 @@ Json ErrorAsJson(const ForecastMeasures& m) {
 
 Json RateAsJson(std::int64_t count, std::int64_t n, const Interval& interval) {
   const double value = n > 0 ? static_cast<double>(count) / static_cast<double>(n) : std::nan("");
-  return {{"value", JsonNumber(value)}, {"interval", AsJson(interval)}, {"n", n}};
+  return RenderJson(Estimate{.value = value, .interval = interval, .n = n});
 }
 
 Json CurveAsJson(const ForecastMeasures& m) {

@@ -290,6 +290,12 @@ Json RenderJson(const Table& table) {
   return rows;
 }
 
+Json RenderJson(const Estimate& estimate) {
+  Json json = {{"value", JsonNumber(estimate.value)}, {"interval", RenderJsonValue(estimate.interval)}};
+  if (estimate.n) json["n"] = *estimate.n;
+  return json;
+}
+
 std::string RenderLatex(const Table& table) {
   std::string alignment, body;
   std::vector<std::string> headings;

@@ -26,6 +26,8 @@ std::string RenderCsv(const Table& table);
 // An array with an object per row. Numbers have all digits; null: not known, or infinite. An interval is a
 // list of its ends.
 nlohmann::ordered_json RenderJson(const Table& table);
+// One estimate outside of a table: value, interval, and n where it has one.
+nlohmann::ordered_json RenderJson(const Estimate& estimate);
 
 // A tabular with the rules of the package booktabs, in which every text is escaped. The columns of the group
 // `levels` are printed only where one of them changes, with space between. Notes are left out.

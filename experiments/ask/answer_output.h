@@ -1,0 +1,14 @@
+// An answer (answer.h) for people and for programs.
+#pragma once
+
+#include <string>
+
+#include "experiments/ask/answer.h"
+
+namespace rcme {
+
+// For people: a line per part of the answer; `folder` holds study.yaml and run.sqlite.
+std::string AnswerAsText(const Answer& answer, const std::string& question, const std::string& folder);
+std::string AnswerAsJson(const Answer& answer, const std::string& question);
+
+}  // namespace rcme
