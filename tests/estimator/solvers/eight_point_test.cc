@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 
 #include "estimator/geometry/sampson.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/random_problem.h"
 
@@ -37,14 +36,19 @@ double DistanceOfNullVectors(const Vector9d& a, const Vector9d& b) {
   return std::min((a - b).norm(), (a + b).norm());
 }
 
-// Smallest over largest singular value of M: the sample's conditioning.
-double ReciprocalCondition(const EightRays& rays) {
-  Eigen::Matrix<double, 8, 9> M;
+// M (8 x 9), row k = kron(x2, x1)'.
+Eigen::MatrixXd MakeConstraintRows(const EightRays& rays) {
+  Eigen::MatrixXd M(8, 9);
   for (int k = 0; k < 8; ++k) {
     M.row(k) =
         Vectorize(rays.second[static_cast<size_t>(k)] * rays.first[static_cast<size_t>(k)].transpose());
   }
-  const Eigen::VectorXd s = M.jacobiSvd().singularValues();
+  return M;
+}
+
+// Smallest over largest singular value of M: the sample's conditioning.
+double ReciprocalCondition(const EightRays& rays) {
+  const Eigen::VectorXd s = SingularValues(MakeConstraintRows(rays));
   return s(7) / s(0);
 }
 
@@ -62,14 +66,13 @@ Vector9d NullVectorInHartleyCoordinates(const EightRays& rays) {
     return T;
   };
   const Eigen::Matrix3d T1 = normalization(rays.first), T2 = normalization(rays.second);
-  Eigen::Matrix<double, 8, 9> M;
+  Eigen::MatrixXd M(8, 9);
   for (int k = 0; k < 8; ++k) {
     const Eigen::Vector3d a = T1 * rays.first[static_cast<size_t>(k)];
     const Eigen::Vector3d b = T2 * rays.second[static_cast<size_t>(k)];
     for (int row = 0; row < 3; ++row) M.block<1, 3>(k, 3 * row) = b(row) * a.transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 8, 9>> svd(M, Eigen::ComputeFullV);
-  const Vector9d null_vector = svd.matrixV().col(8);
+  const Vector9d null_vector = NullVector(M);
   Eigen::Matrix3d F_normalized;
   for (int row = 0; row < 3; ++row) F_normalized.row(row) = null_vector.segment<3>(3 * row).transpose();
   const Eigen::Matrix3d F = T2.transpose() * F_normalized * T1;
@@ -112,9 +115,10 @@ TEST(EightPoint, AIsAnOrthonormalBasisOfTheComplementOfF) {
     AddNoise(1.0, rng, &random.problem);
     const std::optional<LinearModel> model = Solve(random.problem);
     ASSERT_TRUE(model);
-    EXPECT_LT((model->A.transpose() * model->f).norm(), 1e-14);
-    EXPECT_LT((model->A.transpose() * model->A - Eigen::Matrix<double, 8, 8>::Identity()).norm(), 1e-13);
-    EXPECT_LT((model->f.transpose() * model->G).norm(), 1e-13 * model->G.norm());
+    const Eigen::MatrixXd A = model->A, f = model->f;
+    EXPECT_LT(Multiply(A.transpose(), f).norm(), 1e-14);
+    EXPECT_LT((Multiply(A.transpose(), A) - Eigen::MatrixXd::Identity(8, 8)).norm(), 1e-13);
+    EXPECT_LT(Multiply(f.transpose(), model->G).norm(), 1e-13 * model->G.norm());
   }
 }
 
@@ -127,14 +131,10 @@ TEST(EightPoint, GInvertsTheConstraintsOnTheComplement) {
     const EightRays rays = ComputeEightRays(random.problem);
     const std::optional<LinearModel> model = EightPoint::Solve(rays.first, rays.second);
     ASSERT_TRUE(model);
-    Eigen::Matrix<double, 8, 9> M;
-    for (int k = 0; k < 8; ++k) {
-      M.row(k) =
-          Vectorize(rays.second[static_cast<size_t>(k)] * rays.first[static_cast<size_t>(k)].transpose());
-    }
+    const Eigen::MatrixXd M = MakeConstraintRows(rays), A = model->A;
     const double tolerance = 1e-14 / ReciprocalCondition(rays);
-    EXPECT_LT((M * model->G - Eigen::Matrix<double, 8, 8>::Identity()).norm(), tolerance);
-    const Eigen::Matrix<double, 9, 8> G = model->A * (M * model->A).fullPivLu().inverse();
+    EXPECT_LT((Multiply(M, model->G) - Eigen::MatrixXd::Identity(8, 8)).norm(), tolerance);
+    const Eigen::MatrixXd G = Multiply(A, Inverse(Multiply(M, A)));
     EXPECT_LT((model->G - G).norm(), tolerance * G.norm());
   }
 }
@@ -167,7 +167,7 @@ TEST(EightPoint, GHasANumericTwin) {
       X.segment<4>(4 * k) << match.x1_px, match.x2_px;
       dg_dX.block<1, 4>(k, 4 * k) = EvaluateConstraint(F, match).gradient.transpose();
     }
-    EXPECT_JACOBIAN_NEAR(-model->G * dg_dX, NumericJacobian(f_of, X, 20.0 * condition), 1e-5);
+    EXPECT_JACOBIAN_NEAR(Multiply(-model->G, dg_dX), NumericJacobian(f_of, X, 20.0 * condition), 1e-5);
     ++num_compared;
   }
   EXPECT_GT(num_compared, 30);

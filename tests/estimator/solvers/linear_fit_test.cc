@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/solvers/eight_point.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/random_problem.h"
 
@@ -66,7 +65,8 @@ TEST(FitLinear, EqualsEightPointAtEight) {
     EXPECT_LT(DistanceOfLines(fit.f, eight.f), tolerance);
     // G does not depend on the sign of f or on the choice of the basis A.
     EXPECT_LT((fit.G - eight.G).norm(), tolerance * eight.G.norm());
-    EXPECT_LT((fit.A * fit.A.transpose() - eight.A * eight.A.transpose()).norm(), tolerance);
+    EXPECT_LT((Multiply(fit.A, fit.A.transpose()) - Multiply(eight.A, eight.A.transpose())).norm(),
+              tolerance);
   }
 }
 
@@ -80,17 +80,17 @@ TEST(FitLinear, IsTheSmallestEigenvectorAndThePseudoInverse) {
       AddNoise(1.0, rng, &random.problem);
       const LinearFit fit = Fit(random.problem).value();
       const Eigen::MatrixXd M = MatrixOf(ComputeRays(random.problem));
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Eigen::MatrixXd(M.transpose() * M));
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Multiply(M.transpose(), M));
       const double tolerance = 1e-13 / (fit.conditioning * fit.conditioning);
       EXPECT_LT(DistanceOfLines(fit.f, eigen.eigenvectors().col(0)), tolerance);
       EXPECT_NEAR(fit.conditioning, std::sqrt(eigen.eigenvalues()(1) / eigen.eigenvalues()(8)),
                   tolerance * fit.conditioning);
-      const Eigen::MatrixXd MA = M * fit.A;
-      const Eigen::MatrixXd G = fit.A * (MA.transpose() * MA).fullPivLu().solve(MA.transpose());
+      const Eigen::MatrixXd A = fit.A, MA = Multiply(M, A);
+      const Eigen::MatrixXd G = Multiply(A, Multiply(Inverse(Multiply(MA.transpose(), MA)), MA.transpose()));
       EXPECT_LT((fit.G - G).norm(), tolerance * G.norm());
       EXPECT_NEAR(fit.f.norm(), 1.0, 1e-14);
-      EXPECT_LT((fit.A.transpose() * fit.f).norm(), 1e-14);
-      EXPECT_LT((fit.A.transpose() * fit.A - Matrix8d::Identity()).norm(), 1e-13);
+      EXPECT_LT(Multiply(A.transpose(), fit.f).norm(), 1e-14);
+      EXPECT_LT((Multiply(A.transpose(), A) - Eigen::MatrixXd::Identity(8, 8)).norm(), 1e-13);
     }
   }
 }
@@ -131,7 +131,7 @@ Jacobians JacobiansOf(const MotionProblem& problem, double step_px) {
     X.segment<4>(4 * k) << match.x1_px, match.x2_px;
     dg_dX.block<1, 4>(k, 4 * k) = EvaluateConstraint(F, match).gradient.transpose();
   }
-  return {-fit.G * dg_dX, NumericJacobian(f_of, X, step_px)};
+  return {Multiply(-fit.G, dg_dX), NumericJacobian(f_of, X, step_px)};
 }
 
 TEST(FitLinear, GHasANumericTwinWhereThereIsNoResidual) {

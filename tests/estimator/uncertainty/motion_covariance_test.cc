@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -16,6 +13,7 @@
 #include "estimator/solvers/five_point.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/random_problem.h"
 
@@ -73,14 +71,14 @@ TEST(CovarianceOfF, EqualsTheTextbookForm) {
       const Eigen::Vector3d ray2 = random.problem.camera2.Ray(match.x2_px);
       const Eigen::RowVector4d dg_dX = EvaluateConstraint(F, match).gradient.transpose();
       const Eigen::Vector4d pseudo_inverse = dg_dX.transpose() / dg_dX.squaredNorm();
-      const Eigen::Matrix<double, 4, 9> J_omega =
-          -pseudo_inverse * Vectorize(ray2 * ray1.transpose()).transpose();
-      information += J_omega.transpose() * J_omega / (random.problem.sigma_px * random.problem.sigma_px);
+      const Eigen::MatrixXd J_omega =
+          Multiply(-pseudo_inverse, Vectorize(ray2 * ray1.transpose()).transpose());
+      information +=
+          Multiply(J_omega.transpose(), J_omega) / (random.problem.sigma_px * random.problem.sigma_px);
     }
     largest_term = information.norm();
-    const Eigen::Matrix<double, 9, 8>& A = hypothesis.model.A;
-    const Eigen::Matrix<double, 8, 8> reduced = A.transpose() * information * A;
-    const Matrix9d textbook = A * reduced.ldlt().solve(A.transpose());
+    const Eigen::MatrixXd A = hypothesis.model.A;
+    const Matrix9d textbook = Propagate(A, Inverse(Propagate(A.transpose(), information)));
     // The textbook form squares the condition number; ours does not.
     const double condition = largest_term * hypothesis.f_cov.norm();
     EXPECT_LT((hypothesis.f_cov - textbook).norm(), 1e-13 * condition * textbook.norm());
@@ -95,9 +93,7 @@ TEST(CovarianceOfF, HasRankEightAndNullVectorF) {
   const Hypothesis<EightPoint> hypothesis = SolveEight(random.problem);
   EXPECT_LT((hypothesis.f_cov * hypothesis.model.f).norm(), 1e-13 * hypothesis.f_cov.norm());
   EXPECT_LT((hypothesis.f_cov - hypothesis.f_cov.transpose()).norm(), 1e-15 * hypothesis.f_cov.norm());
-  const Eigen::Matrix<double, 8, 8> inside =
-      hypothesis.model.A.transpose() * hypothesis.f_cov * hypothesis.model.A;
-  EXPECT_EQ(inside.llt().info(), Eigen::Success);
+  EXPECT_TRUE(IsPositiveDefinite(Propagate(hypothesis.model.A.transpose(), hypothesis.f_cov)));
 }
 
 TEST(MotionJacobian, HasANumericTwin) {
@@ -121,9 +117,9 @@ TEST(MotionJacobian, InvertsTheUnitTangent) {
   for (int i = 0; i < 20; ++i) {
     const RelativePose pose = RandomPose(rng, 180.0);
     const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(pose);
-    Eigen::Matrix<double, 9, 5> tangent;
+    Eigen::MatrixXd tangent(9, 5);
     for (int k = 0; k < 5; ++k) tangent.col(k) = Vectorize(dE_dp[static_cast<size_t>(k)]) / std::sqrt(2.0);
-    EXPECT_LT((MotionJacobian(pose) * tangent - Matrix5d::Identity()).norm(), 1e-13);
+    EXPECT_LT((Multiply(MotionJacobian(pose), tangent) - Eigen::MatrixXd::Identity(5, 5)).norm(), 1e-13);
   }
 }
 
@@ -160,11 +156,11 @@ TEST(CovarianceOfQuaternionAndTranslation, HasRankFive) {
     EXPECT_LT(std::abs(eigenvalues(1)), 1e-14 * eigenvalues(6));
     EXPECT_GT(eigenvalues(2), 1e-4 * eigenvalues(6));
     // The null directions are q and t themselves, whose lengths are fixed.
-    const Eigen::Matrix<double, 7, 1> p = QuaternionAndTranslation(pose);
-    Eigen::Matrix<double, 7, 2> lengths = Eigen::Matrix<double, 7, 2>::Zero();
-    lengths.block<4, 1>(0, 0) = p.head<4>();
-    lengths.block<3, 1>(4, 1) = p.tail<3>();
-    EXPECT_LT((cov * lengths).norm(), 1e-14 * cov.norm());
+    const Eigen::VectorXd p = QuaternionAndTranslation(pose);
+    Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(7, 2);
+    lengths.col(0).head(4) = p.head(4);
+    lengths.col(1).tail(3) = p.tail(3);
+    EXPECT_LT(Multiply(cov, lengths).norm(), 1e-14 * cov.norm());
   }
 }
 
@@ -185,14 +181,12 @@ MeasuredErrors MeasureErrors(double sigma_px, int num_trials, std::uint32_t purp
     const RelativePose estimate = NearestTo(random.pose_true, PosesFromEssential(hypothesis.projection));
     const Matrix5d pose_cov = CovarianceOfMotion(estimate, hypothesis.f_cov);
     const Vector5d pose_error = LocalCoordinates(estimate, random.pose_true);
-    errors.pose.push_back(pose_error.dot(pose_cov.llt().solve(pose_error)));
+    errors.pose.push_back(SquaredMahalanobis(pose_error, pose_cov));
 
     Vector9d f_true = Vectorize(EssentialFromPose(random.pose_true)) / std::sqrt(2.0);
     if (f_true.dot(hypothesis.model.f) < 0.0) f_true = -f_true;
-    const Eigen::Matrix<double, 9, 8>& A = hypothesis.model.A;
-    const Eigen::Matrix<double, 8, 1> f_error = A.transpose() * f_true;
-    const Eigen::Matrix<double, 8, 8> f_cov = A.transpose() * hypothesis.f_cov * A;
-    errors.f.push_back(f_error.dot(f_cov.llt().solve(f_error)));
+    const Eigen::MatrixXd from_f = hypothesis.model.A.transpose();
+    errors.f.push_back(SquaredMahalanobis(Multiply(from_f, f_true), Propagate(from_f, hypothesis.f_cov)));
   }
   return errors;
 }
@@ -265,8 +259,8 @@ TEST(FirstOrderMotionCovariance, ExactCaseIsTheTextbookForm) {
       }
       return values;
     };
-    const Matrix5d H = NumericJacobian(g_of_pose, Eigen::VectorXd::Zero(5), 1e-3);
-    Vector5d D;
+    const Eigen::MatrixXd H = NumericJacobian(g_of_pose, Eigen::VectorXd::Zero(5), 1e-3);
+    Eigen::VectorXd D(5);
     for (int k = 0; k < 5; ++k) {
       const Correspondence& match = problem.matches[static_cast<size_t>(k)];
       const auto g_of_X = [&](const Eigen::VectorXd& X) {
@@ -276,13 +270,13 @@ TEST(FirstOrderMotionCovariance, ExactCaseIsTheTextbookForm) {
       X << match.x1_px, match.x2_px;
       D(k) = 0.25 * NumericJacobian(g_of_X, X, 1.0).squaredNorm();
     }
-    const Matrix5d H_inverse = H.fullPivLu().inverse();
+    const Eigen::MatrixXd H_inverse = Inverse(H);
     const double condition = H.norm() * H_inverse.norm();
     if (condition > 1e5) continue;  // no digits to compare
     ++num_compared;
     const std::optional<Matrix5d> pose_cov = FirstOrder(*pose, problem);
     ASSERT_TRUE(pose_cov);
-    EXPECT_JACOBIAN_NEAR(*pose_cov, H_inverse * D.asDiagonal() * H_inverse.transpose(), 1e-11 * condition);
+    EXPECT_JACOBIAN_NEAR(*pose_cov, Propagate(H_inverse, D.asDiagonal()), 1e-11 * condition);
   }
   EXPECT_GT(num_compared, 90);
 }
@@ -311,8 +305,9 @@ TEST(FirstOrderMotionCovariance, AtTheTruthIsTheCramerRaoBound) {
         parameters.segment<3>(5 + 3 * k) = random.points_in_cam1[static_cast<size_t>(k)];
       }
       const Eigen::MatrixXd jacobian = NumericJacobian(projections, parameters, 1e-3) / 0.7;
-      const Eigen::MatrixXd inverse_root = jacobian.completeOrthogonalDecomposition().pseudoInverse();
-      const Matrix5d bound = inverse_root.topRows<5>() * inverse_root.topRows<5>().transpose();
+      const Eigen::MatrixXd inverse_root = PseudoInverse(jacobian);
+      const Eigen::MatrixXd of_motion = inverse_root.topRows(5);
+      const Matrix5d bound = Multiply(of_motion, of_motion.transpose());
       const std::optional<Matrix5d> pose_cov = FirstOrder(random.pose_true, random.problem);
       ASSERT_TRUE(pose_cov);
       EXPECT_JACOBIAN_NEAR(*pose_cov, bound, 1e-12 * jacobian.norm() * inverse_root.norm());
@@ -360,7 +355,7 @@ TEST(FirstOrderMotionCovariance, CoversTheExactCaseInTheLimitOfSmallNoise) {
     ASSERT_TRUE(estimate);
     const Matrix5d pose_cov = FirstOrder(*estimate, random.problem).value();
     const Vector5d error = LocalCoordinates(*estimate, random.pose_true);
-    const double nees = error.dot(pose_cov.llt().solve(error));
+    const double nees = SquaredMahalanobis(error, pose_cov);
     covers.Add(nees <= limit);
     covers_if_smaller.Add(nees / 0.8 <= limit);
     covers_if_larger.Add(nees / 1.25 <= limit);
