@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +10,7 @@
 #include "stats/distributions.h"
 #include "stats/goodness_of_fit.h"
 #include "tests/test_support/coverage_count.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -27,16 +26,14 @@ std::optional<Hypothesis<EightPoint>> Solve(const MotionProblem& problem) {
 
 // T from a complement that is found numerically: the null space of [tangent, vec E]'.
 double StatisticByNullSpace(const Hypothesis<EightPoint>& hypothesis) {
-  Eigen::Matrix<double, 6, 9> spanned;
+  Eigen::MatrixXd spanned(6, 9);
   const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(hypothesis.pose);
   for (int k = 0; k < 5; ++k) spanned.row(k) = Vectorize(dE_dp[static_cast<size_t>(k)]);
   spanned.row(5) = Vectorize(EssentialFromPose(hypothesis.pose));
-  const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 9>> svd(spanned, Eigen::ComputeFullV);
-  EXPECT_GT(svd.singularValues()(5), 0.1);
-  const Eigen::Matrix<double, 9, 3> N = svd.matrixV().rightCols<3>();
-  const Eigen::Vector3d misfit = N.transpose() * hypothesis.model.f;
-  const Eigen::Matrix3d misfit_cov = N.transpose() * hypothesis.f_cov * N;
-  return misfit.dot(misfit_cov.inverse() * misfit);
+  EXPECT_GT(SingularValues(spanned)(5), 0.1);
+  const Eigen::MatrixXd onto_complement = NullSpace(spanned).transpose();
+  return SquaredMahalanobis(Multiply(onto_complement, hypothesis.model.f),
+                            Propagate(onto_complement, hypothesis.f_cov));
 }
 
 TEST(JointSampleStatistic, UsesTheComplementOfTheTangentAndE) {

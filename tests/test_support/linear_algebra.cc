@@ -32,6 +32,10 @@ double SquaredMahalanobis(const Eigen::VectorXd& error, const Eigen::MatrixXd& c
 
 Eigen::VectorXd SingularValues(const Eigen::MatrixXd& matrix) { return matrix.jacobiSvd().singularValues(); }
 
+Eigen::MatrixXd NullSpace(const Eigen::MatrixXd& a) {
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(a, Eigen::ComputeFullV).matrixV().rightCols(a.cols() - a.rows());
+}
+
 Eigen::VectorXd NullVector(const Eigen::MatrixXd& a) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(a, Eigen::ComputeFullV).matrixV().rightCols(1);
 }

@@ -30,5 +30,7 @@ Eigen::VectorXd SingularValues(const Eigen::MatrixXd& matrix);
 
 // The unit vector x of the least |a x|.
 Eigen::VectorXd NullVector(const Eigen::MatrixXd& a);
+// Orthonormal columns: those of a (m x n), m < n, of rank m.
+Eigen::MatrixXd NullSpace(const Eigen::MatrixXd& a);
 
 }  // namespace rcme

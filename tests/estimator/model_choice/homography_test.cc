@@ -13,6 +13,7 @@
 #include "stats/constants.h"
 #include "stats/distributions.h"
 #include "tests/test_support/family_problem.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -46,15 +47,14 @@ FourMatches FirstFour(const PlaneCase& plane) {
 
 // The direct linear transform: two rows of ray2 x (H ray1) = 0 for each match, null vector by SVD.
 Eigen::Matrix3d DirectLinearTransform(const FourMatches& sample) {
-  Eigen::Matrix<double, 8, 9> rows;
+  Eigen::MatrixXd rows(8, 9);
   for (int k = 0; k < 4; ++k) {
     const RayMatch& match = sample[static_cast<size_t>(k)];
     const Eigen::RowVector3d x1 = match.ray1.transpose(), zero = Eigen::RowVector3d::Zero();
     rows.row(2 * k) << zero, -x1, match.ray2.y() * x1;
     rows.row(2 * k + 1) << x1, zero, -match.ray2.x() * x1;
   }
-  const Eigen::Matrix3d H =
-      Matricize(Eigen::JacobiSVD<Eigen::Matrix<double, 8, 9>>(rows, Eigen::ComputeFullV).matrixV().col(8));
+  const Eigen::Matrix3d H = Matricize(NullSpace(rows).col(0));
   return (H * sample[0].ray1).z() > 0.0 ? H : Eigen::Matrix3d(-H);
 }
 
@@ -66,9 +66,10 @@ TEST(HomographyOfFour, IsThePlanesAndTheDirectLinearTransforms) {
     FourMatches sample = FirstFour(plane);
     const std::optional<Eigen::Matrix3d> exact = HomographyOfFour(sample);
     ASSERT_TRUE(exact.has_value());
-    const Eigen::JacobiSVD<Eigen::Matrix3d> spread(
-        (Eigen::Matrix3d() << sample[0].ray1, sample[1].ray1, sample[2].ray1).finished());
-    if (spread.singularValues()(2) > 0.02) {
+    Eigen::Matrix3d three;
+    three << sample[0].ray1, sample[1].ray1, sample[2].ray1;
+    const bool is_well_spread = SingularValues(three)(2) > 0.02;
+    if (is_well_spread) {
       ++num_well_spread;
       EXPECT_LT((*exact - plane.H_true).norm(), 1e-9);
     }
@@ -79,7 +80,7 @@ TEST(HomographyOfFour, IsThePlanesAndTheDirectLinearTransforms) {
     for (const RayMatch& match : sample) {
       EXPECT_LT(((*noisy * match.ray1).hnormalized() - match.ray2.head<2>()).norm(), 1e-7);
     }
-    if (spread.singularValues()(2) > 0.02) {
+    if (is_well_spread) {
       EXPECT_LT((*noisy - DirectLinearTransform(sample)).norm(), 1e-7);
     }
   }

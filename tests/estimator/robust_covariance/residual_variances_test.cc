@@ -3,12 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 
 #include "stats/random.h"
+#include "tests/test_support/linear_algebra.h"
 
 namespace rcme {
 namespace {
@@ -84,25 +83,25 @@ ResidualVariances VariancesByHand(const DrawnResiduals& sample) {
     J.row(i) = sample.scores.rows[static_cast<size_t>(i)].transpose();
     r(i) = sample.scores.residuals[static_cast<size_t>(i)];
   }
-  const Matrix5d inverse = sample.scores.information.inverse();
-  const Eigen::MatrixXd P = Eigen::MatrixXd::Identity(n, n) - J * inverse * J.transpose();
+  const Matrix5d inverse = Inverse(sample.scores.information);
+  const Eigen::MatrixXd P = Eigen::MatrixXd::Identity(n, n) - Propagate(J, inverse);
   const auto K = KernelsOf(sample);
   const auto W = WeightsOf(K);
   Eigen::VectorXd q(5);
   Eigen::MatrixXd T(5, 5), M(5, 5);
   for (int a = 0; a < 5; ++a) {
     const Eigen::MatrixXd& Wa = W[static_cast<size_t>(a)];
-    q(a) = r.dot(Wa * r);
+    q(a) = Propagate(r.transpose(), Wa)(0, 0);
     for (int b = 0; b < 5; ++b) {
-      T(a, b) = (Wa * P * K[static_cast<size_t>(b)] * P).trace();
-      M(a, b) = (Wa * W[static_cast<size_t>(b)]).trace();
+      T(a, b) = Multiply(Wa, Propagate(P, K[static_cast<size_t>(b)])).trace();
+      M(a, b) = Multiply(Wa, W[static_cast<size_t>(b)]).trace();
     }
   }
   std::vector<int> known;
   for (int a = 0; a < 5; ++a) {
     if (a == 0 || M(a, a) >= 1.0) known.push_back(a);
   }
-  const Eigen::MatrixXd M_inverse = Eigen::MatrixXd(M(known, known)).inverse();
+  const Eigen::MatrixXd M_inverse = Inverse(M(known, known));
   const Eigen::VectorXd q_known = q(known);
   // The misfit (q - T v)' M^-1 (q - T v) of the parts of `chosen`, a bit for each.
   const auto fit = [&](unsigned chosen, Eigen::VectorXd* v) {
@@ -111,13 +110,13 @@ ResidualVariances VariancesByHand(const DrawnResiduals& sample) {
       if ((chosen >> k & 1u) != 0) active.push_back(known[k]);
     }
     const Eigen::MatrixXd T_active = T(known, active);
-    const Eigen::MatrixXd normal = T_active.transpose() * M_inverse * T_active;
-    const Eigen::VectorXd right = T_active.transpose() * M_inverse * q_known;
-    const Eigen::VectorXd solved = normal.ldlt().solve(right);
+    const Eigen::MatrixXd normal = Propagate(T_active.transpose(), M_inverse);
+    const Eigen::MatrixXd right = Multiply(T_active.transpose(), Multiply(M_inverse, q_known));
+    const Eigen::VectorXd solved = Multiply(Inverse(normal), right);
     v->setZero(5);
     (*v)(active) = solved;
-    const Eigen::VectorXd left = q_known - T_active * solved;
-    return left.dot(M_inverse * left);
+    const Eigen::VectorXd left = q_known - Multiply(T_active, solved);
+    return Propagate(left.transpose(), M_inverse)(0, 0);
   };
   Eigen::VectorXd best, v;
   const double alone = fit(1u, &best), variance = best(0);
@@ -133,9 +132,9 @@ ResidualVariances VariancesByHand(const DrawnResiduals& sample) {
   Matrix5d middle = Matrix5d::Zero();
   for (int b = 1; b < 5; ++b) {
     if (b > 1) variances.of_neighbours.push_back(best(b));
-    middle += best(b) * J.transpose() * K[static_cast<size_t>(b)] * J;
+    middle += best(b) * Propagate(J.transpose(), K[static_cast<size_t>(b)]);
   }
-  variances.shared = inverse * middle * inverse;
+  variances.shared = Propagate(inverse, middle);
   return variances;
 }
 
@@ -161,11 +160,11 @@ DrawnResiduals DrawSample(bool is_repeated, double own, double of_key_point, dou
   const Eigen::MatrixXd V = own * K[0] + of_key_point * K[1] + of_neighbours * K[3];
   Eigen::VectorXd z(kNumMatches);
   for (double& x : z) x = rng.Normal();
-  const Eigen::VectorXd errors = V.llt().matrixL() * z;
+  const Eigen::VectorXd errors = Multiply(CholeskyFactor(V), z);
   Vector5d moment = Vector5d::Zero();
   for (size_t i = 0; i < kNumMatches; ++i)
     moment += errors(static_cast<Eigen::Index>(i)) * sample.scores.rows[i];
-  const Vector5d solved = sample.scores.information.ldlt().solve(moment);
+  const Vector5d solved = Multiply(Inverse(sample.scores.information), moment);
   for (size_t i = 0; i < kNumMatches; ++i)
     sample.scores.residuals.push_back(errors(static_cast<Eigen::Index>(i)) -
                                       sample.scores.rows[i].dot(solved));

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-#include <Eigen/QR>
-
 #include "estimator/estimator_registry.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "estimator/robust_covariance/clustered_covariance.h"
@@ -14,6 +10,7 @@
 #include "tests/simulator/noise/noise_sample.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -30,12 +27,12 @@ struct Regression {
     for (double& x : y) x = rng.Normal();
   }
   Eigen::VectorXd Solve(const std::vector<int>& rows) const {
-    return Eigen::MatrixXd(X(rows, Eigen::all)).colPivHouseholderQr().solve(Eigen::VectorXd(y(rows)));
+    return Multiply(PseudoInverse(X(rows, Eigen::all)), y(rows));
   }
   MatchScores Scores() const {
-    const Eigen::VectorXd r = X * Solve(Separate(static_cast<size_t>(y.size()))) - y;
+    const Eigen::VectorXd r = Multiply(X, Solve(Separate(static_cast<size_t>(y.size())))) - y;
     MatchScores scores;
-    scores.information = X.transpose() * X;
+    scores.information = Multiply(X.transpose(), X);
     for (Eigen::Index i = 0; i < y.size(); ++i) {
       scores.rows.emplace_back(X.row(i).transpose());
       scores.residuals.push_back(r(i));
@@ -43,6 +40,11 @@ struct Regression {
     return scores;
   }
 };
+
+// The variance of `cov` over that of `reference`, averaged over the five directions.
+double MeanVarianceRatio(const Matrix5d& cov, const Matrix5d& reference) {
+  return Multiply(Inverse(reference), cov).trace() / 5.0;
+}
 
 // Of a linear regression the jackknife is exact: each group's part is the move of the solution without it.
 TEST(ClusteredCovariance, IsTheSumOverSolutionsWithoutEachGroup) {
@@ -65,14 +67,14 @@ TEST(ClusteredCovariance, IsTheSumOverSolutionsWithoutEachGroup) {
 // MacKinnon and White's formula, written out.
 TEST(ClusteredCovariance, OfSingleMatchesItIsHc3) {
   const MatchScores scores = Regression(30).Scores();
-  const Matrix5d inverse = scores.information.inverse();
+  const Matrix5d inverse = Inverse(scores.information);
   Matrix5d middle = Matrix5d::Zero();
   for (size_t i = 0; i < 30; ++i) {
     const Vector5d& x = scores.rows[i];
     const double left_out = scores.residuals[i] / (1.0 - x.dot(inverse * x));
     middle += left_out * left_out * x * x.transpose();
   }
-  const Matrix5d expected = inverse * middle * inverse;
+  const Matrix5d expected = Propagate(inverse, middle);
   EXPECT_LT((ClusteredCovariance(scores, Separate(30)) - expected).norm(), 1e-10 * expected.norm());
 }
 
@@ -133,15 +135,16 @@ ResidualsByKeyPoint DrawResiduals(double own, double of_key_point, double of_nei
   }
   Eigen::VectorXd z(kNum);
   for (double& value : z) value = rng.Normal();
-  const Eigen::VectorXd errors = V.llt().matrixL() * z;
-  const Matrix5d A = X.transpose() * X;
-  const Eigen::VectorXd r = errors - X * (A.inverse() * (X.transpose() * errors));
+  const Eigen::VectorXd errors = Multiply(CholeskyFactor(V), z);
+  const Eigen::MatrixXd A = Multiply(X.transpose(), X), A_inverse = Inverse(A);
+  const Eigen::VectorXd fitted = Multiply(A_inverse, Multiply(X.transpose(), errors));
+  const Eigen::VectorXd r = errors - Multiply(X, fitted);
   drawn.scores.information = A;
   for (int i = 0; i < kNum; ++i) {
     drawn.scores.rows.emplace_back(X.row(i).transpose());
     drawn.scores.residuals.push_back(r(i));
   }
-  drawn.covariance_true = A.inverse() * (X.transpose() * V * X) * A.inverse();
+  drawn.covariance_true = Propagate(A_inverse, Propagate(X.transpose(), V));
   return drawn;
 }
 
@@ -156,11 +159,11 @@ TEST(ResidualVariances, GiveTheCovarianceOfASharedError) {
     for (std::uint32_t trial = 0; trial < kNumDraws; ++trial) {
       const ResidualsByKeyPoint drawn = DrawResiduals(own, of_key_point, of_neighbours, trial);
       const ResidualVariances variances = FitResidualVariances(drawn.scores, drawn.groups);
-      const Matrix5d inverse = drawn.scores.information.inverse();
-      const auto true_llt = drawn.covariance_true.llt();
-      const double ratio = true_llt.solve(variances.own * inverse + variances.shared).trace() / 5.0;
+      const Matrix5d inverse = Inverse(drawn.scores.information);
+      const double ratio =
+          MeanVarianceRatio(variances.own * inverse + variances.shared, drawn.covariance_true);
       sum += ratio, sum_squares += ratio * ratio;
-      sum_without += true_llt.solve(inverse).trace() / 5.0;
+      sum_without += MeanVarianceRatio(inverse, drawn.covariance_true);
     }
     const double mean = sum / kNumDraws;
     const double error = std::sqrt((sum_squares / kNumDraws - mean * mean) / kNumDraws);
@@ -180,7 +183,7 @@ TEST(ResidualVariances, OfIndependentErrorsAreMostlyOwn) {
     EXPECT_NEAR(variances.Sum(), 1.0, 0.8) << trial;
     EXPECT_EQ(variances.deviance > 0.0, variances.shared.trace() > 0.0) << trial;
     found.Add(variances.deviance > 0.0);
-    sum_shared += drawn.covariance_true.llt().solve(variances.shared).trace() / 5.0 / 300.0;
+    sum_shared += MeanVarianceRatio(variances.shared, drawn.covariance_true) / 300.0;
   }
   EXPECT_LT(found.interval().lower, 0.33) << found;
   EXPECT_LT(sum_shared, 0.25);
@@ -326,7 +329,7 @@ TEST(RobustCovariance, HoldsTheDistanceToTheOptimum) {
   const RelativePose& optimum = fit.cam2_from_cam1;
   const Vector5d back = LocalCoordinates(optimum, FitAgreeing(problem, optimum, fit.fitted).cam2_from_cam1);
   const Matrix5d at_optimum = *RobustCovariance(problem, optimum, fit.fitted, {});
-  EXPECT_LT(back.dot(at_optimum.llt().solve(back)), 1e-4);
+  EXPECT_LT(SquaredMahalanobis(back, at_optimum), 1e-4);
   Vector5d step = Vector5d::Zero();
   step(3) = 5.0 * std::sqrt(at_optimum(3, 3));
   const Matrix5d beside = *RobustCovariance(problem, Retract(optimum, step), all, {});
@@ -362,7 +365,7 @@ TEST(RobustCovariance, AsAnOptionChangesTheCovarianceAlone) {
     EXPECT_EQ(robust.cam2_from_cam1.R, own.cam2_from_cam1.R) << name;
     EXPECT_EQ(robust.cam2_from_cam1.t, own.cam2_from_cam1.t) << name;
     EXPECT_EQ(robust.inliers, own.inliers) << name;
-    const double ratio = (own.pose_cov.llt().solve(robust.pose_cov)).trace() / 5.0;
+    const double ratio = MeanVarianceRatio(robust.pose_cov, own.pose_cov);
     EXPECT_GT(ratio, 1.0) << name;
     EXPECT_LT(ratio, 4.0) << name;
   }
@@ -378,14 +381,14 @@ Matrix5d CovarianceByHand(const MotionProblem& problem, const RelativePose& pose
   double squares = 0.0;
   for (const double r : scores.residuals) squares += r * r;
   const Matrix5d hc3 = ClusteredCovariance(scores, Separate(scores.residuals.size()));
-  const Matrix5d of_equal = squares / (n - 5.0) * scores.information.inverse();
+  const Matrix5d of_equal = squares / (n - 5.0) * Inverse(scores.information);
   const ResidualVariances parts = FitResidualVariances(scores, KeyPointGroups(scores.matches, 1.0));
   const double own_share = parts.own / parts.Sum();
   const Matrix5d C = own_share * (own_cov ? *own_cov : Matrix5d(0.5 * (hc3 + of_equal))) + parts.shared;
   const auto of_blocks = [&](int per_side) {
     return ClusteredCovariance(scores, BlockGroups(problem.camera1, scores.matches, per_side));
   };
-  const double effect = (C.inverse() * of_blocks(8)).trace() / 5.0;
+  const double effect = MeanVarianceRatio(of_blocks(8), C);
   *design_effect = effect > 1.25 ? effect : 1.0;
   Matrix5d covariance = options.factor * *design_effect * C;
   const Vector5d away = LocalCoordinates(pose, fit.cam2_from_cam1);

@@ -10,6 +10,7 @@
 #include "stats/goodness_of_fit.h"
 #include "tests/simulator/outliers/wrong_matches.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/linear_algebra.h"
 
 namespace rcme {
 namespace {
@@ -31,10 +32,9 @@ OwnMotion FitMotion(const Scene& scene, const WrongMatches& wrong, size_t num_wr
       rows.block<1, 3>(static_cast<Eigen::Index>(i), 3 * j) = ray2(j) * ray1.transpose();
     }
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows, Eigen::ComputeFullV);
+  const Eigen::VectorXd singular_values = SingularValues(rows), f = NullVector(rows);
   OwnMotion motion;
-  motion.relative_residual = svd.singularValues()(8) / svd.singularValues()(0);
-  const Eigen::Matrix<double, 9, 1> f = svd.matrixV().col(8);
+  motion.relative_residual = singular_values(8) / singular_values(0);
   motion.E << f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7), f(8);
   return motion;
 }
@@ -68,7 +68,7 @@ TEST(MovingObject, ItsMatchesHaveOneRigidMotionOfTheirOwn) {
     const WrongMatches wrong = MakeWrong(*law, scene, 40, 0.0, trial);
     const OwnMotion own = FitMotion(scene, wrong, 40);
     EXPECT_LT(own.relative_residual, 1e-12);
-    const Eigen::Vector3d sv = own.E.jacobiSvd().singularValues();
+    const Eigen::Vector3d sv = SingularValues(own.E);
     EXPECT_NEAR(sv(1) / sv(0), 1.0, 1e-6);
     EXPECT_LT(sv(2) / sv(0), 1e-6);
     double farthest = 0.0;
@@ -113,9 +113,8 @@ TEST(MovingObject, ShiftsInAUniformDirection) {
   for (std::uint32_t trial = 0; trial < 300; ++trial) {
     const Scene scene = SceneForOutliers(60, trial, "pure_rotation");
     const OwnMotion own = FitMotion(scene, MakeWrong(*law, scene, 40, 0.0, trial), 40);
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(own.E, Eigen::ComputeFullU);
-    const Eigen::Vector3d direction_in_cam1 =
-        scene.cam2_from_cam1_true.R.transpose() * Eigen::Vector3d(svd.matrixU().col(2));
+    const Eigen::Vector3d direction_in_cam2 = NullVector(own.E.transpose());
+    const Eigen::Vector3d direction_in_cam1 = scene.cam2_from_cam1_true.R.transpose() * direction_in_cam2;
     heights.push_back(std::abs(direction_in_cam1.z()));
   }
   EXPECT_GT(TestKolmogorovSmirnov(heights, UniformObjectCdf).p_value, 1e-4);

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include "estimator/geometry/sampson.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -75,8 +76,9 @@ TEST(RotationInformation, IsThatOfTheFullProblemWithoutTranslation) {
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
       const Eigen::MatrixXd J = PixelJacobian(scene, point) / sigma_px;
       const Eigen::MatrixXd Jr = J.leftCols(3), Jx = J.block(0, 5, 4, 2);  // x and y at a fixed depth
+      const Eigen::MatrixXd cross = Multiply(Jr.transpose(), Jx);
       const Eigen::MatrixXd expected =
-          Jr.transpose() * Jr - Jr.transpose() * Jx * (Jx.transpose() * Jx).inverse() * Jx.transpose() * Jr;
+          Multiply(Jr.transpose(), Jr) - Propagate(cross, Inverse(Multiply(Jx.transpose(), Jx)));
       EXPECT_LT((RotationInformationOf(scene, point, sigma_px) - expected).norm(), 1e-6 * expected.norm());
     }
   }
