@@ -55,7 +55,7 @@ TEST_P(Peers, FindTheMotionOfExactMatches) {
 
 // More than half, by an exact bound of false alarm rate .001, of trials with noise and a fifth of the matches
 // wrong.
-TEST_P(Peers, FindMostMotionsAmongWrongMatches) {
+TEST_P(PeerLibraries, FindMostMotionsAmongWrongMatches) {
   constexpr int kNumTrials = 100;
   int num_near = 0;
   for (std::uint32_t trial = 0; trial < kNumTrials; ++trial) {
@@ -117,7 +117,7 @@ TEST_P(Peers, GiveTheCovarianceOfTheirInliers) {
   EXPECT_LE(estimate.num_explained, 100);
 }
 
-TEST_P(Peers, GiveTheSameBytesOnEveryThread) {
+TEST_P(PeerLibraries, GiveTheSameBytesOnEveryThread) {
   const std::unique_ptr<MotionEstimator> estimator = GetParam().Make();
   std::vector<MotionProblem> problems;
   std::vector<MotionEstimate> alone;
