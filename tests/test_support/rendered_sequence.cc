@@ -114,9 +114,9 @@ std::ofstream Open(const fs::path& path) {
   return file;
 }
 
-void Render(const fs::path& path, const RenderedCamera& camera, int frame) {
+void Render(const fs::path& path, const RenderedCamera& camera, int frame, std::uint32_t texture = 0) {
   fs::create_directories(path.parent_path());
-  WriteImage(path.string(), camera.camera, RenderHall(camera, PoseOnWalk(frame)));
+  WriteImage(path.string(), camera.camera, RenderHall(camera, PoseOnWalk(frame), texture));
 }
 
 // [R t] row by row.
@@ -145,10 +145,13 @@ RenderedPose PoseOnWalk(double u) {
 
 RelativePose TrueMotion(const RenderedPose& pose1, const RenderedPose& pose2) {
   const Eigen::Matrix3d& R2 = pose2.R_world_from_cam;
-  return {R2.transpose() * pose1.R_world_from_cam, (R2.transpose() * (pose1.center - pose2.center)).normalized()};
+  return {R2.transpose() * pose1.R_world_from_cam,
+          (R2.transpose() * (pose1.center - pose2.center)).normalized()};
 }
 
-std::vector<std::uint8_t> RenderHall(const RenderedCamera& camera, const RenderedPose& pose) {
+std::vector<std::uint8_t> RenderHall(const RenderedCamera& camera, const RenderedPose& pose,
+                                     std::uint32_t texture) {
+  constexpr auto kNumFaces = static_cast<std::uint32_t>(6 * (kPillars.size() + 1));
   const Camera& c = camera.camera;
   std::vector<cv::Point2d> points;
   for (int y = 0; y < c.height; ++y) {
@@ -167,6 +170,7 @@ std::vector<std::uint8_t> RenderHall(const RenderedCamera& camera, const Rendere
       Meet(kHall, true, 0, pose.center, ray, &hit);
       for (std::uint32_t p = 0; p < kPillars.size(); ++p)
         Meet(kPillars[p], false, 6 * (p + 1), pose.center, ray, &hit);
+      hit.face += kNumFaces * texture;
       sum += Texture(hit, hit.distance / c.fx);
     }
     grey[pixel] = static_cast<std::uint8_t>(std::clamp(std::lround(sum / 2.0), 0L, 255L));
@@ -180,7 +184,7 @@ void WriteImage(const std::string& path, const Camera& camera, std::vector<std::
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
-void WriteKittiSequence(const std::string& folder, const std::string& name, int num_frames,
+void WriteKittiSequence(const std::string& folder, const std::string& name, const RenderedWalk& walk,
                         const RenderedCamera& camera) {
   const fs::path sequence = fs::path(folder) / "sequences" / name;
   std::ofstream calib = Open(sequence / "calib.txt"), times = Open(sequence / "times.txt");
@@ -189,12 +193,12 @@ void WriteKittiSequence(const std::string& folder, const std::string& name, int 
   for (int i = 0; i < 4; ++i)
     calib << fmt::format("P{}: {}\n", i, AsRows(K, Eigen::Vector3d(-50.0 * i, 0.0, 0.0), " "));
   // The world is the first camera's frame, as in the data set.
-  const RenderedPose first = PoseOnWalk(0);
+  const RenderedPose first = PoseOnWalk(walk.first_frame);
   const Eigen::Matrix3d R_inverse = first.R_world_from_cam.transpose();
-  for (int i = 0; i < num_frames; ++i) {
-    Render(sequence / "image_0" / fmt::format("{:06}.png", i), camera, i);
+  for (int i = 0; i < walk.num_frames; ++i) {
+    Render(sequence / "image_0" / fmt::format("{:06}.png", i), camera, walk.first_frame + i, walk.texture);
     times << fmt::format("{:e}\n", 0.1 * i);
-    const RenderedPose pose = PoseOnWalk(i);
+    const RenderedPose pose = PoseOnWalk(walk.first_frame + i);
     poses << AsRows(R_inverse * pose.R_world_from_cam, R_inverse * (pose.center - first.center), " ") << '\n';
   }
 }

@@ -29,17 +29,27 @@ struct RenderedPose {
 RenderedPose PoseOnWalk(double u);
 RelativePose TrueMotion(const RenderedPose& pose1, const RenderedPose& pose2);
 
-// Grey values row by row. Two rays a pixel, a quarter of it off its centre; the texture's finest waves fade where a
-// pixel covers them.
-std::vector<std::uint8_t> RenderHall(const RenderedCamera& camera, const RenderedPose& pose);
+// Grey values row by row. Two rays a pixel, a quarter of it off its centre; the texture's finest waves fade
+// where a pixel covers them. Another number is another texture.
+std::vector<std::uint8_t> RenderHall(const RenderedCamera& camera, const RenderedPose& pose,
+                                     std::uint32_t texture = 0);
 void WriteImage(const std::string& path, const Camera& camera,
                 std::vector<std::uint8_t> grey);  // by its ending
+
+// A part of the walk, in a hall of a texture.
+struct RenderedWalk {
+  int first_frame = 0, num_frames = 0;
+  std::uint32_t texture = 0;
+};
 
 // Frames 0, ..., n - 1 of the walk as each data set has them. All make `folder` and what is in it.
 // sequences/NAME/{image_0/*.png, calib.txt, times.txt} and poses/NAME.txt, 10 Hz; the camera must not
 // distort.
-void WriteKittiSequence(const std::string& folder, const std::string& name, int num_frames,
+void WriteKittiSequence(const std::string& folder, const std::string& name, const RenderedWalk& walk,
                         const RenderedCamera& camera = {});
+inline void WriteKittiSequence(const std::string& folder, const std::string& name, int num_frames) {
+  WriteKittiSequence(folder, name, RenderedWalk{.num_frames = num_frames});
+}
 // mav0/{cam0/{data/*.png, data.csv, sensor.yaml}, state_groundtruth_estimate0/data.csv}, 20 Hz; the truth is
 // that of a body that the camera sits on askew, at 200 Hz and between the images' times.
 void WriteEurocSequence(const std::string& folder, int num_frames, const RenderedCamera& camera);

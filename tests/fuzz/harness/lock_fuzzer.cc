@@ -43,7 +43,7 @@ void Say(const std::string& lock, const std::string& study_yaml) {
 }
 
 // A lock that is read is written and read again as it is.
-void ReadTwice(const std::string& yaml) {
+void ReadLockTwice(const std::string& yaml) {
   const StudyLock lock = ParseLock(yaml, "study.lock");
   const StudyLock again = ParseLock(ToYaml(lock), "again.lock");
   if (again.text != lock.text || again.sha256 != lock.sha256) std::abort();
@@ -59,8 +59,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, size_t size) {
   using namespace rcme;
   const std::string text = AsText(data, size);
   DescribeLock(text);
-  OnlyInputError([&] { ReadTwice(text); });
-  OnlyInputError([&] { ReadTwice(MakeLockFile(text)); });
+  OnlyInputError([&] { ReadLockTwice(text); });
+  OnlyInputError([&] { ReadLockTwice(MakeLockFile(text)); });
   static const std::string own_lock = MakeLockFile(OwnRun().study_yaml);
   OnlyInputError([&] { Say(own_lock, text); });
   OnlyInputError([&] { Say("", text); });
