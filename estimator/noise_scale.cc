@@ -5,7 +5,7 @@
 namespace rcme {
 
 std::vector<double> NoiseScaleOf(std::vector<double> sigmas) {
-  const double median = MedianOf(sigmas);
+  const double median = ComputeMedian(sigmas);
   for (double& sigma : sigmas) sigma /= median;
   return sigmas;
 }

@@ -29,7 +29,7 @@ struct WeightedShares {
   size_t size() const { return shares.size(); }
 };
 
-WeightedShares SharesOf(std::span<const ConditionCount> conditions, ConditionWeights kind) {
+WeightedShares ComputeShares(std::span<const ConditionCount> conditions, ConditionWeights kind) {
   WeightedShares of;
   for (const ConditionCount& condition : conditions) {
     if (condition.num_events < 0 || condition.num_events > condition.num_trials)
@@ -157,7 +157,7 @@ double KishEffectiveNumber(std::span<const double> weights) {
 PopulationRate MeasurePopulationRate(std::span<const ConditionCount> conditions, ConditionWeights weights,
                                      double confidence) {
   PopulationRate rate;
-  const WeightedShares of = SharesOf(conditions, weights);
+  const WeightedShares of = ComputeShares(conditions, weights);
   for (const ConditionCount& condition : conditions) {
     rate.num_events += condition.num_events;
     rate.n += condition.num_trials;
@@ -193,7 +193,8 @@ PopulationDifference MeasurePopulationDifference(std::span<const ConditionPair> 
   difference.value = a.value - b.value;
   difference.interval = {-1.0, 1.0};
   if (a.num_conditions < 2) return difference;
-  const double r = Correlation(SharesOf(first, weights), SharesOf(second, weights), a.value, b.value);
+  const double r =
+      Correlation(ComputeShares(first, weights), ComputeShares(second, weights), a.value, b.value);
   difference.interval = {
       std::max(-1.0, difference.value - Distance(a.value - a.interval.lower, b.interval.upper - b.value, r)),
       std::min(1.0, difference.value + Distance(a.interval.upper - a.value, b.value - b.interval.lower, r))};

@@ -40,7 +40,7 @@ double ResidualScale(const MotionProblem& problem, const Eigen::Matrix3d& F,
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
     distances.push_back(std::sqrt(SquaredSampsonDistance(F, match)));
   }
-  return MedianOf(std::move(distances)) / (kMedianOfNormal * problem.sigma_px);
+  return ComputeMedian(std::move(distances)) / (kMedianOfNormal * problem.sigma_px);
 }
 
 // |x2 - h(x1)| of the rotation's homography, over sqrt(2) sigma; infinite behind camera 2.
@@ -56,7 +56,7 @@ double MedianParallax(const std::vector<RayMatch>& matches, const RayScale& nois
     const double y = (match.ray2.y() - turned.y() / turned.z()) / noise.y2;
     parallax.push_back(std::hypot(x, y) / std::sqrt(2.0));
   }
-  return MedianOf(std::move(parallax));
+  return ComputeMedian(std::move(parallax));
 }
 
 // The most of these matches that the homography of one of some samples explains, refined.

@@ -119,7 +119,7 @@ void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const Mix
     for (Vec& sum : sums) sum = zero;
     for (int b = 0; b < matches.num_blocks(); ++b) {
       if (b % 8 == 0) {
-        sums[0] = sums[0] + LogOf(Tag(), product);
+        sums[0] = sums[0] + ComputeLog(Tag(), product);
         product = one;
       }
       const unsigned bits = mask[static_cast<size_t>(b)];
@@ -152,7 +152,7 @@ void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const Mix
         for (int col = 0; col <= row; ++col, ++i) sums[i] = FusedMulAdd(weighted, slopes[col], sums[i]);
       }
     }
-    sums[0] = sums[0] + LogOf(Tag(), product);
+    sums[0] = sums[0] + ComputeLog(Tag(), product);
     for (int i = 0; i < kNumMixtureSums; ++i) Store(sums[i], partial[i] + lane);
   }
   for (int i = 0; i < kNumMixtureSums; ++i) totals[i] = SumOfEight(partial[i]);

@@ -146,7 +146,7 @@ double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const
       of.Fill(blocks + first / kBlockSize, num_matches - first, F, coefficients);
     for (int v = 0; v < kVectors; ++v) {
       const int i = first % kMatchesAtOnce + v * kLanes;
-      const Vec d2 = Load(of.d2 + i), log_s2 = LogOf(Tag(), Load(of.s2 + i));
+      const Vec d2 = Load(of.d2 + i), log_s2 = ComputeLog(Tag(), Load(of.s2 + i));
       costs[v] = Lesser(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
     }
   });
@@ -157,7 +157,7 @@ double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const
 void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
   const Vec half = Set(0.5), shift = Set(offset);
   const auto entropy = [&](int i) {
-    return FusedMulAdd(half, LogOf(Tag(), hn::LoadU(Tag(), spreads + i)), shift);
+    return FusedMulAdd(half, ComputeLog(Tag(), hn::LoadU(Tag(), spreads + i)), shift);
   };
   HWY_ALIGN double
       stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice

@@ -81,7 +81,7 @@ Estimate MeasureShare(const Judged& judged, const std::function<bool(const Judge
 double MedianSize(const Judged& judged, const RegionKind& kind) {
   std::vector<double> sizes;
   for (const JudgedAnswer& answer : judged) sizes.push_back(kind.size_deg(answer));
-  return MedianOf(std::move(sizes));
+  return ComputeMedian(std::move(sizes));
 }
 
 // The quarter of the answers that looks hardest at run time: by difficulty, where the rule has none by the

@@ -145,7 +145,7 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> no
 TrialData SimulatedData::Give(const Scene& scene, Observation observation) const {
   TrialData data;
   // sigma_px is that of the median match where single ones are told apart.
-  const double median = observation.noise_scale.empty() ? 1.0 : MedianOf(observation.noise_scale);
+  const double median = observation.noise_scale.empty() ? 1.0 : ComputeMedian(observation.noise_scale);
   data.problem = {std::move(observation.matches), assumed_.AssumedCamera(scene.camera1),
                   assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(median * noise_->sigma_px()),
                   NoiseScaleOf(std::move(observation.noise_scale))};

@@ -151,7 +151,7 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
                 cells[place.group - num_cells].replicates.push_back(
                     ReplicateFrom(ParsePiece(json), effort.splitting));
               });
-  for (RareCell& cell : cells) cell.rate = RateOf(cell.pilot, cell.replicates);
+  for (RareCell& cell : cells) cell.rate = EstimateSplittingRate(cell.pilot, cell.replicates);
   return cells;
 }
 

@@ -21,7 +21,7 @@ void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec
       FindOption(spec->name, parameters, option).SetFromText(Scalar(place, text, option));
     });
   }
-  spec->options = ValuesOf(parameters);
+  spec->options = ListValues(parameters);
 }
 
 // {process: COMMAND} is short for the estimator `process` with that command, {answers: FILE} for `answers`

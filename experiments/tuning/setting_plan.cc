@@ -66,7 +66,7 @@ bool AddEstimators(SettingPlan* plan) {
     const std::unique_ptr<EstimatorModel> model = Configure(setting.spec);
     plan->estimators.push_back(model->Make());
     model->LiftLimits();
-    const Settings without_limits = ValuesOf(model->Parameters());
+    const Settings without_limits = ListValues(model->Parameters());
     has_limits = has_limits || without_limits != setting.spec.options;
     plan->greatest_probability.push_back(FindProbabilityLimit(setting.spec.options, without_limits));
     std::shared_ptr<const MotionEstimator>& estimator = shared[KeyOf(without_limits)];

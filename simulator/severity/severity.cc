@@ -39,8 +39,8 @@ void MeasureImages(const Scene& scene, const Observation& observation, Severity*
 
 void MeasureParallax(const Scene& scene, const Points& points, Severity* severity) {
   std::vector<double> angles_deg = ParallaxesDeg(scene, points);
-  severity->parallax_median_deg = QuantileOf(angles_deg, 0.5);
-  severity->parallax_p10_deg = QuantileOf(angles_deg, 0.1);
+  severity->parallax_median_deg = ComputeQuantile(angles_deg, 0.5);
+  severity->parallax_p10_deg = ComputeQuantile(angles_deg, 0.1);
 }
 
 double Planarity(const Points& points) {

@@ -158,7 +158,7 @@ inline void ExpectEveryOptionHasAnEffect(const EstimatorEntry& entry) {
 
 inline void ExpectTextsGoRound(const EstimatorEntry& entry) {
   const std::unique_ptr<EstimatorModel> model = entry.make();
-  const Settings defaults = ValuesOf(model->Parameters());
+  const Settings defaults = ListValues(model->Parameters());
   for (const Parameter& option : model->Parameters()) {
     EXPECT_FALSE(option.doc().empty()) << entry.name << ": " << option.name();
     for (const std::string& value : ValuesFor(option)) {
@@ -168,13 +168,13 @@ inline void ExpectTextsGoRound(const EstimatorEntry& entry) {
       EXPECT_EQ(option.Value(), text) << entry.name << ": " << option.name();
     }
   }
-  EXPECT_EQ(ValuesOf(ConfigureEstimator(entry.name, defaults)->Parameters()), defaults);
+  EXPECT_EQ(ListValues(ConfigureEstimator(entry.name, defaults)->Parameters()), defaults);
 }
 
 inline void ExpectAllowedWithoutLimits(const EstimatorEntry& entry) {
   const std::unique_ptr<EstimatorModel> model = entry.make();
   model->LiftLimits();
-  EXPECT_NO_THROW(MakeEstimator(entry.name, ValuesOf(model->Parameters()))) << entry.name;
+  EXPECT_NO_THROW(MakeEstimator(entry.name, ListValues(model->Parameters()))) << entry.name;
 }
 
 }  // namespace rcme

@@ -28,8 +28,8 @@ void MeasureParallax(const MotionProblem& inliers, const RelativePose& pose, Mot
     angles_deg.push_back(kDegPerRad * AngleBetween(pose.R * ray1, ray2));
     to_noise.push_back(EvaluateMatch(inliers, pose, match, NoiseScaleAt(inliers, i)).mean_depth);
   }
-  evidence->parallax_median_deg = MedianOf(std::move(angles_deg));
-  evidence->parallax_to_noise = MedianOf(std::move(to_noise));
+  evidence->parallax_median_deg = ComputeMedian(std::move(angles_deg));
+  evidence->parallax_to_noise = ComputeMedian(std::move(to_noise));
 }
 
 double ShareOf(const ModelFit& fit, TwoViewModel model) {

@@ -158,7 +158,7 @@ void NameNothing(std::string why, CalibrationReport* report) {
 std::vector<double> ReadoutScales(const std::vector<PairAnswers>& answers) {
   std::vector<double> seconds, scales;
   for (const PairAnswers& each : answers) seconds.push_back(each.whole.pair.seconds_between);
-  const double median = MedianOf(seconds);
+  const double median = ComputeMedian(seconds);
   for (const double own : seconds) scales.push_back(std::isfinite(median / own) ? median / own : 1.0);
   return scales;
 }

@@ -53,7 +53,7 @@ double FarthestAccepted(const std::vector<const AnsweredTrial*>& used) {
     farthest.push_back(*std::ranges::max_element(sizes) *
                        NoiseOf(answered->pair.problem, answered->estimate) / answered->noise_level);
   }
-  return MedianOf(std::move(farthest));
+  return ComputeMedian(std::move(farthest));
 }
 
 // Longer and longer tails, each with the size that the estimator then finds as observed, up to the first that

@@ -32,8 +32,8 @@ void PatternSum::Add(const MotionProblem& problem, const MotionEstimate& estimat
 
 ResidualPattern PatternSum::Take() const {
   std::vector<double> sizes = sizes_;
-  const double far = QuantileOf(sizes, 0.95);
-  return {std::exp(sum_log_sigma_ / num_answers_), far / QuantileOf(sizes, 0.5), products_};
+  const double far = ComputeQuantile(sizes, 0.95);
+  return {std::exp(sum_log_sigma_ / num_answers_), far / ComputeQuantile(sizes, 0.5), products_};
 }
 
 }  // namespace rcme

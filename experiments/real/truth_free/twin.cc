@@ -44,7 +44,7 @@ double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate) {
     const auto i = static_cast<size_t>(index);
     sizes.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[i])) / NoiseScaleAt(problem, i));
   }
-  return MedianOf(std::move(sizes)) / kNormalQuartile;
+  return ComputeMedian(std::move(sizes)) / kNormalQuartile;
 }
 
 NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,

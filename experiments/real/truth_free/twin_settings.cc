@@ -85,7 +85,7 @@ double ClarkEvansOf(const Settings& settings) {
       key_points.push_back(scene.camera1.Project(point));
     indices.push_back(ClarkEvansIndex(key_points, scene.camera1.width, scene.camera1.height));
   }
-  return MedianOf(std::move(indices));
+  return ComputeMedian(std::move(indices));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void SetNoiseLevels(TwinSource* source) {
   for (const AnsweredTrial& one : source->pairs) {
     if (one.HasAnsweredTemplate()) sigmas.push_back(NoiseOf(one.pair.problem, one.estimate));
   }
-  const double median = MedianOf(std::move(sigmas));
+  const double median = ComputeMedian(std::move(sigmas));
   for (AnsweredTrial& one : source->pairs) {
     if (one.HasAnsweredTemplate() && median > 0.0)
       one.noise_level = std::max(NoiseOf(one.pair.problem, one.estimate) / median, 1e-3);

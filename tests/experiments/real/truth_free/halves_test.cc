@@ -84,7 +84,7 @@ TEST(DifferenceOfHalves, PartsTheMatches) {
     const Eigen::Index axis = split == Split::kLeftRight ? 0 : 1;
     std::vector<double> places;
     for (const Correspondence& match : problem.matches) places.push_back(match.x1_px(axis));
-    const double border_px = MedianOf(places);
+    const double border_px = ComputeMedian(places);
     for (const Correspondence& match : first) EXPECT_LT(match.x1_px(axis), border_px);
     for (const Correspondence& match : second) EXPECT_GE(match.x1_px(axis), border_px);
   }

@@ -12,9 +12,9 @@
 #include "estimator/geometry/sampson.h"
 #include "experiments/data/make_data.h"
 #include "experiments/data/match_folder.h"
-#include "experiments/study/study_file.h"
 #include "experiments/real/truth_free/twin_output.h"
 #include "experiments/real/truth_free/twin_settings.h"
+#include "experiments/study/study_file.h"
 #include "stats/median_ratio.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
@@ -118,7 +118,7 @@ double MedianSquare(double dof, double within_px = 0.0) {
     const Correspondence &was = exact.problem.matches[i], &is = drawn.problem.matches[i];
     sums.push_back((is.x1_px - was.x1_px).squaredNorm() + (is.x2_px - was.x2_px).squaredNorm());
   }
-  return MedianOf(sums);
+  return ComputeMedian(sums);
 }
 TEST(Redraw, StudentsNoiseIsLargeForAllOfAMatch) {
   EXPECT_NEAR(MedianSquare(0.0), 0.839, 0.24);
