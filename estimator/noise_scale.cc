@@ -4,7 +4,7 @@
 
 namespace rcme {
 
-std::vector<double> NoiseScaleOf(std::vector<double> sigmas) {
+std::vector<double> ComputeNoiseScale(std::vector<double> sigmas) {
   const double median = ComputeMedian(sigmas);
   for (double& sigma : sigmas) sigma /= median;
   return sigmas;

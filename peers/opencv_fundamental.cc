@@ -43,7 +43,7 @@ std::optional<PeerAnswer> AskFindFundamentalMat(const MotionProblem& problem,
   std::vector<int> order(problem.matches.size());
   std::iota(order.begin(), order.end(), 0);
   rng.Shuffle(std::span(order));
-  const MotionProblem reordered = PartOf(problem, order);
+  const MotionProblem reordered = SelectPart(problem, order);
   const CvPoints points = PixelsOf(reordered);
   cv::Mat mask;
   const cv::Mat Fs =

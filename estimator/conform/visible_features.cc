@@ -127,7 +127,7 @@ VisibleFeatures MeasureVisibleFeatures(const MotionProblem& problem, const Motio
   set(VisibleFeature::kAgreeingShare, LogOdds(num_agreeing, static_cast<double>(n) - num_agreeing));
   set(VisibleFeature::kResidual, LogRatio(ResidualScale(problem, F, estimate.inliers)));
 
-  const RayMatches all(PartOf(problem, agreeing));
+  const RayMatches all(SelectPart(problem, agreeing));
   set(VisibleFeature::kParallax, LogRatio(MedianParallax(all.matches, all.noise, pose.R)));
   if (agreeing.size() >= 4) {
     RayMatches some = all;

@@ -34,7 +34,7 @@ HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Vi
                                ? hn::And(visited.is_inlier, AreMatches(lane, num_matches))
                                : visited.is_inlier;
     if constexpr (has_spread) *spread += hn::CompressStore(visited.spread, is_inlier, Tag(), *spread);
-    bits |= BitsOf(is_inlier) << lane;
+    bits |= ReadMaskBits(is_inlier) << lane;
   }
   return bits;
 }
@@ -201,7 +201,7 @@ unsigned TestSamples(const HypothesisBlock& block, double threshold) {
       const PrintedDistance distance = EvaluatePrinted(ModelPerLane{block, lane}, matches);
       are_consistent = hn::And(are_consistent, IsWithin(distance, limit));
     }
-    bits |= BitsOf(are_consistent) << lane;
+    bits |= ReadMaskBits(are_consistent) << lane;
   }
   return bits;
 }

@@ -148,7 +148,7 @@ TrialData SimulatedData::Give(const Scene& scene, Observation observation) const
   const double median = observation.noise_scale.empty() ? 1.0 : ComputeMedian(observation.noise_scale);
   data.problem = {std::move(observation.matches), assumed_.AssumedCamera(scene.camera1),
                   assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(median * noise_->sigma_px()),
-                  NoiseScaleOf(std::move(observation.noise_scale))};
+                  ComputeNoiseScale(std::move(observation.noise_scale))};
   data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
                 std::move(observation.is_undetectable)};
   data.origin = "simulated";

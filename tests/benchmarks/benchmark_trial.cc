@@ -39,7 +39,7 @@ BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
   for (int i = 0; i < num_matches; ++i) {
     if (data.truth.is_inlier_true[static_cast<size_t>(i)]) inliers.push_back(i);
   }
-  inlier_mask = MaskOf(inliers, blocks);
+  inlier_mask = MakeMask(inliers, blocks);
   start = Retract(*data.truth.cam2_from_cam1_true, Vector5d::Constant(0.01));
   refined = RefineBySampson(blocks, inlier_mask, start, Loss::kSquared);
 }

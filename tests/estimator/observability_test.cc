@@ -261,7 +261,8 @@ TEST_F(DirectionNoise, IsThatOfTheReference) {
       Run([&] {
         const MatchBlocks blocks(random.problem);
         const BlockMatches matches(random.problem, blocks, RefinementError::kSampson);
-        const Eigen::Matrix2d noise = matches.SumDirectionNoise(matches.SetOf(fitted), random.pose_true, cov);
+        const Eigen::Matrix2d noise =
+            matches.SumDirectionNoise(matches.MakeSet(fitted), random.pose_true, cov);
         EXPECT_LE((noise - expected).norm(), 1e-9 * expected.norm()) << n << ", " << variance;
       });
     }

@@ -46,7 +46,7 @@ bool MotionEvidence::DoesNoiseDisagree() const {
 }
 
 MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& estimate) {
-  MotionProblem inliers = PartOf(problem, estimate.inliers);
+  MotionProblem inliers = SelectPart(problem, estimate.inliers);
   MotionEvidence evidence;
   evidence.num_matches = static_cast<int>(problem.matches.size());
   evidence.num_inliers = static_cast<int>(inliers.matches.size());

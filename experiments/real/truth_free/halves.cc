@@ -53,7 +53,7 @@ std::optional<double> DifferenceOfHalves(const MotionProblem& problem, const Mot
     for (size_t i = 0; i < is_first.size(); ++i) {
       if (is_first[i] == first) members.push_back(i);
     }
-    const MotionProblem half = PartOf(problem, members);
+    const MotionProblem half = SelectPart(problem, members);
     if (half.matches.size() < kLeastMatches) return std::nullopt;
     RandomStream rng = StreamFor(name, first ? StreamPurpose::kSampling : StreamPurpose::kMonteCarlo);
     answers.push_back(Judged(estimator.Estimate(half, rng), half.matches.size()));

@@ -34,7 +34,7 @@ MotionProblem SceneOf(int num_matches, bool is_plane, std::uint32_t trial, Relat
 
 std::vector<ExplainedMode> Explained(const MotionProblem& problem, const std::vector<RelativePose>& poses) {
   const MatchBlocks matches(problem);
-  const MixturePrior prior = PriorOf(problem);
+  const MixturePrior prior = MakePrior(problem);
   std::vector<Mode> modes;
   for (const RelativePose& pose : poses) {
     Mode mode = StartMode(matches, prior, pose);
@@ -96,7 +96,7 @@ TEST(ExplainMatches, LeavesOutByInfluenceAmongManyMatchesAlone) {
     for (std::uint32_t trial = 0; trial < 40; ++trial) {
       const RandomProblem random = WithNearMatch(num_matches, 4.0, trial);
       const MatchBlocks matches(random.problem);
-      const MixturePrior prior = PriorOf(random.problem);
+      const MixturePrior prior = MakePrior(random.problem);
       Mode mode = StartMode(matches, prior, random.pose_true);
       if (!FitMode(matches, prior, 50, &mode)) continue;
       const std::vector<ExplainedMode> modes =
@@ -116,7 +116,7 @@ TEST(ExplainMatches, KeepsModesOfMoreThanFiveMatches) {
   RelativePose pose;
   const MotionProblem problem = SceneOf(100, false, 3, &pose);
   const MatchBlocks matches(problem);
-  const MixturePrior prior = PriorOf(problem);
+  const MixturePrior prior = MakePrior(problem);
   Mode mode = StartMode(matches, prior, {RotationFromVector({0.5, -0.4, 0.3}), Eigen::Vector3d::UnitX()});
   mode.mixture.scale = 1e-3;  // next to nothing is as near
   mode.inverse_hessian = 1e-12 * Matrix5d::Identity();
@@ -167,7 +167,7 @@ TEST(ExplainMatches, LeavesNothingOutWhereHalfTheMatchesWouldGo) {
       random.problem.matches[i] =
           ProjectToBoth(random.points_in_cam1[i], second, random.problem.camera1, random.problem.camera2);
     const MatchBlocks matches(random.problem);
-    const MixturePrior prior = PriorOf(random.problem);
+    const MixturePrior prior = MakePrior(random.problem);
     Mode mode = StartMode(matches, prior, random.pose_true, 8.0), without = mode;
     std::fill_n(without.used.begin(), 25, std::uint8_t{0});  // the first 200
     mode.used = without.used;

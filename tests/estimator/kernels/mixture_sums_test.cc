@@ -27,7 +27,7 @@ struct MixtureProblem {
   std::vector<int> used;
   MixtureSums Sum(const RelativePose& at) const {
     const MatchBlocks matches(problem);
-    return SumMixture(matches, MaskOf(used, matches), at, parameters);
+    return SumMixture(matches, MakeMask(used, matches), at, parameters);
   }
 };
 
