@@ -57,19 +57,19 @@ using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 // A motion's parts as Python has them: pose_cov is 6x6, of [w, dt] (peers/outside_answer.h).
 py::dict DictOfMotion(const RelativePose& pose, const Matrix5d& pose_cov) {
-  return py::dict("R"_a = ArrayOf(pose.R), "t"_a = ArrayOf(pose.t),
-                  "pose_cov"_a = ArrayOf(CovarianceWithTranslation(pose_cov, pose.t)));
+  return py::dict("R"_a = MakeArray(pose.R), "t"_a = MakeArray(pose.t),
+                  "pose_cov"_a = MakeArray(CovarianceWithTranslation(pose_cov, pose.t)));
 }
 
 // Without a direction: nothing is known of t, in the covariance either.
 py::dict DictOfRotation(const MotionEstimate& estimate) {
   Eigen::MatrixXd pose_cov = Eigen::MatrixXd::Constant(6, 6, kNaN);
   pose_cov.topLeftCorner<3, 3>() = estimate.pose_cov.topLeftCorner<3, 3>();
-  return py::dict("R"_a = ArrayOf(estimate.cam2_from_cam1.R),
-                  "t"_a = ArrayOf(Eigen::Vector3d::Constant(kNaN)), "pose_cov"_a = ArrayOf(pose_cov));
+  return py::dict("R"_a = MakeArray(estimate.cam2_from_cam1.R),
+                  "t"_a = MakeArray(Eigen::Vector3d::Constant(kNaN)), "pose_cov"_a = MakeArray(pose_cov));
 }
 
-py::list ModesOf(const MotionEstimate& estimate) {
+py::list MakeModesList(const MotionEstimate& estimate) {
   py::list modes;
   for (const MotionMode& mode : estimate.other_modes) {
     py::dict dict = DictOfMotion(mode.cam2_from_cam1, mode.pose_cov);
@@ -80,7 +80,7 @@ py::list ModesOf(const MotionEstimate& estimate) {
   return modes;
 }
 
-py::list ListOf(const std::vector<ProbabilityForBounds>& probabilities) {
+py::list MakeProbabilityList(const std::vector<ProbabilityForBounds>& probabilities) {
   py::list list;
   for (const ProbabilityForBounds& each : probabilities)
     list.append(py::dict("rotation_deg"_a = each.bounds.max_rotation_error_deg,
@@ -89,7 +89,7 @@ py::list ListOf(const std::vector<ProbabilityForBounds>& probabilities) {
   return list;
 }
 
-py::dict DictOf(const MotionEstimate& estimate) {
+py::dict MakeDict(const MotionEstimate& estimate) {
   py::dict dict("status"_a = StatusName(estimate.status), "message"_a = estimate.message,
                 "motion"_a = py::none());
   if (estimate.status == MotionStatus::kOk)
@@ -101,7 +101,7 @@ py::dict DictOf(const MotionEstimate& estimate) {
   dict["sigma"] = estimate.sigma_estimated_px;
   dict["sigma_sd"] = estimate.sigma_estimated_sd_px;
   dict["inlier_probabilities"] = estimate.inlier_probabilities;
-  dict["other_motions"] = ModesOf(estimate);
+  dict["other_motions"] = MakeModesList(estimate);
   return dict;
 }
 
@@ -112,7 +112,7 @@ py::object LevelsAt(const MotionEstimate& estimate, double risk) {
   return py::dict("risk"_a = risk, "rotation"_a = levels.rotation_rad, "direction"_a = levels.direction_rad);
 }
 
-Camera CameraOf(const std::array<double, 4>& k, int width, int height) {
+Camera MakeCamera(const std::array<double, 4>& k, int width, int height) {
   return {k[0], k[1], k[2], k[3], width, height};
 }
 
@@ -137,9 +137,9 @@ py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const
     found = EstimateWithBounds(*estimator, problem, failure_bounds, rng);
   }
   const MotionEstimate judged = Judged(std::move(found.estimate), problem.matches.size());
-  py::dict dict = DictOf(judged);
+  py::dict dict = MakeDict(judged);
   dict["protection_levels"] = LevelsAt(judged, integrity_risk);
-  dict["p_failure_for_bounds"] = ListOf(found.probabilities);
+  dict["p_failure_for_bounds"] = MakeProbabilityList(found.probabilities);
   dict["estimator"] = spec.label;
   return dict;
 }
@@ -174,7 +174,7 @@ StudyPlan PlanFrom(const StudySource& source, PlanEstimators estimators) {
   return MakePlan(StudyFrom(source), source.Name(), estimators);
 }
 
-py::dict LevelsOf(const StudyPlan& plan, const Condition& condition) {
+py::dict MakeLevelsDict(const StudyPlan& plan, const Condition& condition) {
   py::dict levels;
   for (size_t f = 0; f < plan.factor_names.size(); ++f)
     levels[py::str(plan.factor_names[f])] = condition.levels[f];
@@ -186,20 +186,20 @@ py::list Conditions(const StudySource& source) {
   py::list rows;
   for (const Condition& condition : plan.conditions) {
     py::dict row("condition"_a = condition.index);
-    for (const auto& [factor, level] : LevelsOf(plan, condition)) row[factor] = level;
+    for (const auto& [factor, level] : MakeLevelsDict(plan, condition)) row[factor] = level;
     row["trials"] = condition.num_trials;
     rows.append(row);
   }
   return rows;
 }
 
-py::dict TruthOf(const TrialData& data) {
+py::dict MakeTruthDict(const TrialData& data) {
   const Truth& truth = data.truth;
   py::dict dict("R"_a = py::none(), "t"_a = py::none(), "inliers"_a = py::none(),
                 "undetectable"_a = py::none());
   if (truth.cam2_from_cam1_true) {
-    dict["R"] = ArrayOf(truth.cam2_from_cam1_true->R);
-    if (truth.is_direction_known) dict["t"] = ArrayOf(truth.cam2_from_cam1_true->t);
+    dict["R"] = MakeArray(truth.cam2_from_cam1_true->R);
+    if (truth.is_direction_known) dict["t"] = MakeArray(truth.cam2_from_cam1_true->t);
   }
   if (!truth.is_inlier_true.empty()) dict["inliers"] = py::array(py::cast(truth.is_inlier_true));
   if (!truth.is_undetectable.empty()) dict["undetectable"] = py::array(py::cast(truth.is_undetectable));
@@ -218,13 +218,13 @@ py::dict Simulate(const StudySource& source, std::int64_t condition_index, std::
   const MotionProblem& problem = data.problem;
   py::dict severity;
   for (const SeverityColumn& column : kSeverityColumns) severity[column.name] = data.severity.*column.field;
-  return py::dict("x1"_a = PointsOf(problem.matches, &Correspondence::x1_px),
-                  "x2"_a = PointsOf(problem.matches, &Correspondence::x2_px),
-                  "camera1"_a = DictOf(problem.camera1), "camera2"_a = DictOf(problem.camera2),
+  return py::dict("x1"_a = MakePoints(problem.matches, &Correspondence::x1_px),
+                  "x2"_a = MakePoints(problem.matches, &Correspondence::x2_px),
+                  "camera1"_a = MakeDict(problem.camera1), "camera2"_a = MakeDict(problem.camera2),
                   "sigma_px"_a = problem.sigma_px, "noise_scale"_a = ScalesOrNone(problem),
-                  "truth"_a = TruthOf(data), "severity"_a = severity, "levels"_a = LevelsOf(plan, condition),
-                  "origin"_a = data.origin, "weight"_a = data.weight, "condition"_a = condition.index,
-                  "trial"_a = trial);
+                  "truth"_a = MakeTruthDict(data), "severity"_a = severity,
+                  "levels"_a = MakeLevelsDict(plan, condition), "origin"_a = data.origin,
+                  "weight"_a = data.weight, "condition"_a = condition.index, "trial"_a = trial);
 }
 
 // Work that may be stopped: Ctrl-C is an exception of Python once what is in hand is kept.
@@ -436,7 +436,7 @@ PYBIND11_MODULE(_rcme, module) {
       PyErr_SetString(PyExc_ValueError, error.what());
     }
   });
-  py::class_<Camera>(module, "Camera").def(py::init(&CameraOf));
+  py::class_<Camera>(module, "Camera").def(py::init(&MakeCamera));
   AddStudySource(module);
   module.def("use_share", &UseShare);
   module.def("estimate", &Estimate);

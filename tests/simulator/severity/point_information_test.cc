@@ -31,7 +31,7 @@ TEST(PointConstraint, DoesNotDependOnThePointAndMovesWithTheMotion) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const Scene scene = TwoCameraScene(30, trial);
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-      const PointConstraint constraint = ConstraintOf(scene, point);
+      const PointConstraint constraint = ComputePointConstraint(scene, point);
       const Eigen::RowVectorXd moved = constraint.gradient_px.transpose() * PixelJacobian(scene, point);
       const double scale = constraint.gradient_motion.norm();
       ASSERT_GT(scale, 0.0);
@@ -52,7 +52,7 @@ TEST(PointConstraint, HasTheInformationOfTheEpipolarConstraint) {
     };
     Matrix5d ours = Matrix5d::Zero(), theirs = Matrix5d::Zero();
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-      const PointConstraint constraint = ConstraintOf(scene, point);
+      const PointConstraint constraint = ComputePointConstraint(scene, point);
       ours += constraint.gradient_motion.transpose() * constraint.gradient_motion /
               constraint.gradient_px.squaredNorm();
       const Correspondence match{scene.camera1.Project(point), scene.camera2.Project(scene.InCamera2(point))};
@@ -77,7 +77,8 @@ TEST(RotationInformation, IsThatOfTheFullProblemWithoutTranslation) {
       const Eigen::MatrixXd Jr = J.leftCols(3), Jx = J.block(0, 5, 4, 2);  // x and y at a fixed depth
       const Eigen::MatrixXd expected =
           Jr.transpose() * Jr - Jr.transpose() * Jx * (Jx.transpose() * Jx).inverse() * Jx.transpose() * Jr;
-      EXPECT_LT((RotationInformationOf(scene, point, sigma_px) - expected).norm(), 1e-6 * expected.norm());
+      EXPECT_LT((ComputeRotationInformation(scene, point, sigma_px) - expected).norm(),
+                1e-6 * expected.norm());
     }
   }
 }
