@@ -375,7 +375,7 @@ py::dict TuneStudy(const StudySource& source, int threads) {
   if (result.choice.setting) {
     EstimatorSpec spec = settings.settings[*result.choice.setting].spec;
     spec.label += "_tuned";
-    file = EstimatorFileText(spec, ProvenanceOf(plan, result));
+    file = EstimatorFileText(spec, DescribeProvenance(plan, result));
   }
   return py::dict("json"_a = TuneAsJson(plan, settings, result, {}), "file"_a = file,
                   "why"_a = result.choice.why);

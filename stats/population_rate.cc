@@ -55,7 +55,7 @@ struct Spread {
   double greatest = 0.0;      // r, not kept to its range
 };
 
-Spread SpreadOf(const WeightedShares& of) {
+Spread ComputeSpread(const WeightedShares& of) {
   Spread spread;
   for (size_t i = 0; i < of.size(); ++i) {
     spread.p += of.weights[i] * of.shares[i];
@@ -90,7 +90,7 @@ double OneMore(const WeightedShares& of, const Spread& spread) {
 
 double UpperEnd(const WeightedShares& of, double tail) {
   const double M = of.effective;
-  const Spread spread = SpreadOf(of);
+  const Spread spread = ComputeSpread(of);
   if (spread.p == 0.0) return 1.0 - std::pow(tail, 1.0 / M);
   const double t = StudentQuantile(std::max(M - 1.0, 1.0), 1.0 - tail), z = NormalQuantile(1.0 - tail);
   const double B = spread.p * (1.0 - spread.p) * of.binomial;
@@ -167,7 +167,7 @@ PopulationRate MeasurePopulationRate(std::span<const ConditionCount> conditions,
   rate.interval = rate.of_these_conditions = {0.0, 1.0};
   rate.value = rate.effective_n = kNaN;
   if (rate.n == 0) return rate;
-  const Spread spread = SpreadOf(of);
+  const Spread spread = ComputeSpread(of);
   const double tail = 0.5 * (1.0 - confidence), n = static_cast<double>(rate.n);
   rate.value = std::min(spread.p, 1.0);
   rate.of_these_conditions = ExactInterval(rate.value, 1.0 / of.binomial, tail);

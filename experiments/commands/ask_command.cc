@@ -119,9 +119,9 @@ Examples:
   command->add_option("--wrong", texts.wrong, "share of wrong matches, 0 to 0.95");
   command
       ->add_option("--motion", question.motion, "kind of motion (`rcme list motions`); default: the scene's")
-      ->check(IsOneOf(NamesOf(MotionRegistry())));
+      ->check(MakeChoiceValidator(NamesOf(MotionRegistry())));
   command->add_option("--outliers", question.outliers, "kind of wrong matches (`rcme list outliers`)")
-      ->check(IsOneOf(NamesOf(OutlierRegistry())))
+      ->check(MakeChoiceValidator(NamesOf(OutlierRegistry())))
       ->capture_default_str();
   command->add_option("--matches", question.num_matches, "matches of a pair, wrong ones included")
       ->transform(WholeNumberIn(8, 100'000))
@@ -152,7 +152,7 @@ Examples:
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
-      ->check(IsOneOf({"table", "json"}))
+      ->check(MakeChoiceValidator({"table", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "folder for study.yaml and run.sqlite, created if missing")
       ->capture_default_str();

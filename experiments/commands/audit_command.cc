@@ -161,7 +161,7 @@ code 75 (docs/many_machines.md):
                    "quick (all claims of the paper: minutes) or full (hours). A study takes longer the more "
                    "conditions "
                    "and slow estimators it has; the greatest time is printed first")
-      ->check(IsOneOf({"quick", "full"}))
+      ->check(MakeChoiceValidator({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,
                       "folder for the results, created if missing; with --shard the file of the part");

@@ -201,13 +201,13 @@ Examples:
       ->add_option("--new", arguments->new_problem,
                    "what a new problem is: another trial of these conditions, one of another condition (or "
                    "scene), or the usual of these for the study")
-      ->check(IsOneOf({"usual", "trial", "condition"}))
+      ->check(MakeChoiceValidator({"usual", "trial", "condition"}))
       ->capture_default_str();
   command->add_flag("--needs", arguments->is_needs, "print how many answers the promises need, and end");
   command->add_option("--trials", arguments->trials, "trials per condition, instead of the study's number")
       ->transform(WholeNumberIn(1, 100'000'000));
   command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
-      ->check(IsOneOf({"table", "json"}))
+      ->check(MakeChoiceValidator({"table", "json"}))
       ->capture_default_str();
   AddStudyOptions(command, &arguments->changes);
   AddShardOptions(command, "trials", &arguments->shards);

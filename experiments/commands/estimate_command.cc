@@ -123,7 +123,7 @@ class Answerer {
     data.origin = file.path;
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.sd = file.truth_sd;
-    data.problem = ProblemOf(std::move(file), arguments_.sigma_px);
+    data.problem = MakeMotionProblem(std::move(file), arguments_.sigma_px);
     return data;
   }
 
@@ -137,7 +137,7 @@ class Answerer {
     answer.record = Score(answer.estimate, data, 0.0);
     answer.has_truth_sd = data.truth.sd.has_value();
     if (answer.estimate.status == MotionStatus::kOk)
-      answer.evidence = EvidenceOf(data.problem, answer.estimate);
+      answer.evidence = ComputeEvidence(data.problem, answer.estimate);
     return answer;
   }
 

@@ -107,7 +107,7 @@ Examples:
           ->add_option(
               "--format", arguments->format,
               "table (for people), csv or json (every quantity), latex (a table of a paper, booktabs)")
-          ->check(IsOneOf({"table", "csv", "json", "latex"}))
+          ->check(MakeChoiceValidator({"table", "csv", "json", "latex"}))
           ->capture_default_str();
   command
       ->add_option("--quantities", arguments->quantities,
@@ -120,7 +120,7 @@ Examples:
       ->allow_extra_args(false)
       ->needs(format);
   command->add_option("--raw", arguments->raw, "csv: a row per trial and estimator, nothing summarized")
-      ->check(IsOneOf({"csv"}))
+      ->check(MakeChoiceValidator({"csv"}))
       ->excludes(format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->add_flag("--times", arguments->with_times,

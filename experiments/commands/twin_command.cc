@@ -194,7 +194,7 @@ Examples:
       ->capture_default_str();
   AddTimeLimit(command, "pairs", &arguments->max_time);
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(IsOneOf({"table", "csv", "json"}))
+      ->check(MakeChoiceValidator({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of samples, halves and twins")
       ->transform(WholeNumberIn(0))

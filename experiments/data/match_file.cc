@@ -332,7 +332,7 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given) {
   return ReadMatches("standard input", GzipLines::OfStandardInput(), given);
 }
 
-MotionProblem ProblemOf(MatchFile file, double sigma_px) {
+MotionProblem MakeMotionProblem(MatchFile file, double sigma_px) {
   return {std::move(file.matches), file.camera1, file.camera2, sigma_px,
           ComputeNoiseScale(std::move(file.sigma_px))};
 }

@@ -106,7 +106,7 @@ Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
   return Simulate([&] { return scenes_.Generate(scene_rng); });
 }
 
-Scene SimulatedData::DrawSceneOf(const Motion& motion, RandomStream& rng) const {
+Scene SimulatedData::DrawSceneWithMotion(const Motion& motion, RandomStream& rng) const {
   FixBaseline();
   return Simulate([&] { return scenes_.GenerateWith(motion, rng); });
 }

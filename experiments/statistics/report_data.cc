@@ -131,7 +131,7 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["is_of_population"] = is_of_population;
   const std::vector<ForecastMeasures> forecasts =
       HasFailureProbabilities(summary) ? MeasureFailureForecasts(store) : std::vector<ForecastMeasures>();
-  json["findings"] = FindingsOf(summary, comparison, forecasts);
+  json["findings"] = ListFindings(summary, comparison, forecasts);
   if (const auto preregistration = DecidePreregistered(store, run))
     json["preregistration"] = PreregistrationAsJson(*preregistration);
   WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));

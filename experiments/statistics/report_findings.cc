@@ -239,8 +239,8 @@ void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::s
 
 }  // namespace
 
-std::vector<std::string> FindingsOf(const Summary& summary, const Comparison& comparison,
-                                    const std::vector<ForecastMeasures>& forecasts) {
+std::vector<std::string> ListFindings(const Summary& summary, const Comparison& comparison,
+                                      const std::vector<ForecastMeasures>& forecasts) {
   std::vector<std::string> sentences;
   AddWrongCoverages(summary, &sentences);
   if (summary.is_of_population) {

@@ -62,7 +62,7 @@ void Places::AddAll(const Places& other) {
   }
 }
 
-bool Places::HasAnyOf(const Places& other) const {
+bool Places::Intersects(const Places& other) const {
   for (std::uint32_t place = 0; place < std::min(has_.size(), other.has_.size()); ++place) {
     if (has_[place] && other.has_[place]) return true;
   }
@@ -122,7 +122,7 @@ std::map<std::uint32_t, StoredTrial> KeptTrials::All() const {
   return all;
 }
 
-const Places& ConditionCounts::PlacesOf(const std::string& shard) const {
+const Places& ConditionCounts::FindPlaces(const std::string& shard) const {
   static const Places none;
   const auto found = places.find(shard);
   return found == places.end() ? none : found->second;

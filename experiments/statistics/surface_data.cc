@@ -105,7 +105,7 @@ Json CandidatesAsJson(Study study, int first, int number) {
   for (const PopulationDraw& draw : DrawPopulation(study)) {
     if (draw.number < first || !draw.outside_of.empty()) continue;
     for (const std::vector<std::string>& row : FactorRows(study))
-      candidates.push_back({{"draw", draw.number}, {"levels", LevelsAsJson(factors, LevelsOf(draw, row))}});
+      candidates.push_back({{"draw", draw.number}, {"levels", LevelsAsJson(factors, JoinLevels(draw, row))}});
   }
   return candidates;
 }

@@ -63,7 +63,7 @@ struct TrueSetting {
   TrueSetting(const StudyPlan& plan, const TrialResult& result)
       : camera1(result.data.problem.camera1), camera2(result.data.problem.camera2) {
     const Condition& condition = ConditionOf(plan, result);
-    scene = condition.source->SceneOf(NameOfScene(plan, condition, result.problem.trial));
+    scene = condition.source->FindScene(NameOfScene(plan, condition, result.problem.trial));
     if (!scene) return;
     camera1 = scene->camera1;
     camera2 = scene->camera2;
@@ -145,7 +145,7 @@ Json EstimateAsJson(const StudyPlan& plan, const TrialResult& result, size_t e, 
   Json json = {{"label", plan.study.estimators[e].label},
                {"status", StatusName(estimate.status)},
                {"message", estimate.message},
-               {"outcome", Name(OutcomeOf(record, plan.study.failure))},
+               {"outcome", Name(ClassifyOutcome(record, plan.study.failure))},
                {"rotation_error_deg", JsonNumber(record.rotation_error_deg)},
                {"direction_error_deg", JsonNumber(record.direction_error_deg)},
                {"inlier_precision", JsonNumber(record.inlier_precision)},
@@ -267,7 +267,7 @@ std::string TrialAsText(const StudyPlan& plan, const TrialResult& result) {
                                                  "direction error", "inliers", "precision", "recall"}};
   for (size_t e = 0; e < result.records.size(); ++e) {
     const TrialRecord& r = result.records[e];
-    rows.push_back({plan.study.estimators[e].label, Name(OutcomeOf(r, plan.study.failure)),
+    rows.push_back({plan.study.estimators[e].label, Name(ClassifyOutcome(r, plan.study.failure)),
                     StatusName(r.status), Degrees(r.rotation_error_deg), Degrees(r.direction_error_deg),
                     fmt::format("{}", r.num_inliers), Percentage(r.inlier_precision),
                     Percentage(r.inlier_recall)});

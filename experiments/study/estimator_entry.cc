@@ -48,7 +48,7 @@ Parameter BudgetParameter(double* budget_ms) {
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller) {
   EstimatorSpec spec;
-  std::set<std::string> known = StudyKeysOf("estimator");
+  std::set<std::string> known = ListStudyKeys("estimator");
   known.insert(keys_of_caller.begin(), keys_of_caller.end());
   for (const auto& [key, value] : Entries(place, node, block, known)) {
     const bool is_short = key == "process" || key == "answers" || key == kConformEstimator;

@@ -167,7 +167,8 @@ int CountDraws(const Population& population) {
   return population.draws.empty() ? population.number : static_cast<int>(population.draws.size());
 }
 
-std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused) {
+std::string DescribePopulationIdentity(const Population& population,
+                                       const std::vector<RefusedDraw>& refused) {
   std::string text =
       fmt::format("{}{}\n", population.draws.empty() ? kDrawsLine : kChosenLine, CountDraws(population));
   for (const RefusedDraw& draw : refused)

@@ -81,7 +81,7 @@ struct RefusedDraw {
 // Lines of a run's identity for them, and what such an identity says, in words: how many draws there were,
 // how many are not among the conditions, and the reasons with an example of each, the most frequent first.
 // Empty: no population.
-std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused);
+std::string DescribePopulationIdentity(const Population& population, const std::vector<RefusedDraw>& refused);
 std::string DescribePopulation(const std::string& identity);
 // Whether such an identity is of draws that are a sample of a population: of neither a grid nor chosen draws.
 bool IsSampleOfPopulation(const std::string& identity);

@@ -48,6 +48,6 @@ RunDescription Describe(const StudyPlan& plan) {
   return run;
 }
 
-Settings TextsOf(FailureBounds bounds) { return ListValues(Parameters(bounds)); }
+Settings ListBounds(FailureBounds bounds) { return ListValues(Parameters(bounds)); }
 
 }  // namespace rcme

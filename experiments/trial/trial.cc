@@ -145,7 +145,7 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   TrialResult result;
   result.data = condition.source->Make(NameOfScene(plan, condition, trial));
   result.problem = Describe(result.data, condition, trial);
-  const auto& estimators = EstimatorsOf(plan, condition);
+  const auto& estimators = FindEstimators(plan, condition);
   result.estimates.resize(estimators.size());
   result.records.resize(estimators.size());
   for (size_t turn = 0; turn < estimators.size(); ++turn) {
@@ -178,7 +178,7 @@ TrialResult RunTrialOfDraw(const StudyPlan& plan, const Condition& condition, st
   TrialRecord record = ScoreJudged(nothing, result.data, 0.0);
   record.condition = condition.index;
   record.trial = trial;
-  for (; record.estimator < EstimatorsOf(plan, condition).size(); ++record.estimator)
+  for (; record.estimator < FindEstimators(plan, condition).size(); ++record.estimator)
     result.records.push_back(record);
   return result;
 }

@@ -145,7 +145,7 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
   return choice;
 }
 
-Verdict VerdictOf(const ErrorCount& count, double at_most) {
+Verdict DecideSetting(const ErrorCount& count, double at_most) {
   return DecideEquivalence(ExactBinomialInterval(count.errors, count.n), {-kInfinity, at_most});
 }
 
@@ -160,9 +160,10 @@ bool HasRefusalLimit(const Tuning& tuning) {
   return LimitsFailures(tuning.target) && tuning.max_refusal < 1.0;
 }
 
-Verdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
-  std::vector<std::optional<Verdict>> verdicts = {VerdictOf(TargetedCount(tuning, count), tuning.at_most)};
-  if (HasRefusalLimit(tuning)) verdicts.emplace_back(VerdictOf(count.Refusal(), tuning.max_refusal));
+Verdict DecideSetting(const Tuning& tuning, const SettingCount& count) {
+  std::vector<std::optional<Verdict>> verdicts = {
+      DecideSetting(TargetedCount(tuning, count), tuning.at_most)};
+  if (HasRefusalLimit(tuning)) verdicts.emplace_back(DecideSetting(count.Refusal(), tuning.max_refusal));
   return *Together(verdicts);
 }
 

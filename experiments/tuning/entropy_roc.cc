@@ -120,7 +120,7 @@ EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials) {
   return entropies;
 }
 
-std::vector<EntropyRoc> RocsOf(const StudyPlan& plan, const EntropiesOfTrials& entropies) {
+std::vector<EntropyRoc> ComputeRocs(const StudyPlan& plan, const EntropiesOfTrials& entropies) {
   const auto num_trials = static_cast<std::int64_t>(entropies.front().size() / plan.conditions.size());
   const std::vector<size_t> scenes = ScenesOf(plan, num_trials);
   std::vector<EntropyRoc> rocs;

@@ -224,7 +224,7 @@ void AddRepetition(const Json& json, const Tuning& tuning, Repetitions* repetiti
   }
   const auto chosen = static_cast<size_t>(CountFrom(json, std::ssize(repetitions->num_chosen) - 1));
   ++repetitions->num_chosen[chosen];
-  const Verdict verdict = VerdictOf(tuning, repetitions->reference[chosen]);
+  const Verdict verdict = DecideSetting(tuning, repetitions->reference[chosen]);
   repetitions->num_violated += verdict == Verdict::kDoesNotHold;
   repetitions->num_undecided += verdict == Verdict::kUndecided;
 }

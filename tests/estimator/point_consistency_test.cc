@@ -87,10 +87,10 @@ TEST(SampsonCovariance, AgreesWithTheEquationsInLongDouble) {
     AddNoise(2.0, rng, &random.problem);
     const Matrix5d pose_cov = RandomPoseCov(0.003, rng);
     const Correspondence& match = random.problem.matches[0];
-    const Eigen::Matrix4d cov =
-        CovarianceOfSampsonVector(FundamentalOf(random), FundamentalTangent(random), pose_cov, 0.5, match);
+    const Eigen::Matrix4d cov = CovarianceOfSampsonVector(ComputeFundamental(random),
+                                                          FundamentalTangent(random), pose_cov, 0.5, match);
     const Textbook textbook =
-        TextbookDistance(FundamentalOf(random), FundamentalTangent(random), pose_cov, 0.5, match);
+        TextbookDistance(ComputeFundamental(random), FundamentalTangent(random), pose_cov, 0.5, match);
     EXPECT_LT((cov - textbook.cov.cast<double>()).norm(), 1e-10 * cov.norm());
     EXPECT_GT(cov.norm(), 0.01);
   }
@@ -108,7 +108,7 @@ void CompareWithTextbook(double max_exponent, std::uint32_t purpose) {
     const double std_dev = std::exp2(-rng.Uniform(4.0, max_exponent));
     const Matrix5d pose_cov = RandomPoseCov(std_dev, rng);
     const Textbook textbook =
-        TextbookDistance(FundamentalOf(random), FundamentalTangent(random), pose_cov, 0.5, match);
+        TextbookDistance(ComputeFundamental(random), FundamentalTangent(random), pose_cov, 0.5, match);
     if (!(textbook.condition < 1e11)) continue;
     ++num_compared;
     const AsPrintedTest test(ModelOf(random, pose_cov), 0.5);
@@ -144,7 +144,7 @@ TEST(AsPrintedTest, KnownMotionMeasuresTheDistanceFromTheEpipoles) {
     const Eigen::Vector2d epipole1 = random.problem.camera1.Project(center2_in_1);
     const Eigen::Vector2d epipole2 = random.problem.camera2.Project(random.pose_true.t);
     const double squared_px = (match.x1_px - epipole1).squaredNorm() + (match.x2_px - epipole2).squaredNorm();
-    const double residual_px = std::sqrt(SquaredSampsonDistance(FundamentalOf(random), match));
+    const double residual_px = std::sqrt(SquaredSampsonDistance(ComputeFundamental(random), match));
     // The statistic is a difference of numbers (distance / residual)^2 times larger.
     const double lost = squared_px / (residual_px * residual_px);
     if (lost > 1e8) continue;
@@ -205,7 +205,7 @@ TEST(RankAwareTest, IsTheResidualOverItsOwnStandardDeviation) {
     AddNoise(2.0, rng, &random.problem);
     const Correspondence& match = random.problem.matches[0];
     const Matrix5d pose_cov = RandomPoseCov(0.003, rng);
-    const Eigen::Matrix3d F = FundamentalOf(random);
+    const Eigen::Matrix3d F = ComputeFundamental(random);
     const std::array<Eigen::Matrix3d, 5> dF_dp = FundamentalTangent(random);
     const EpipolarConstraint c = EvaluateConstraint(F, match);
     Vector5d g_p;
@@ -234,11 +234,11 @@ TEST(RankAwareTest, KnownMotionHasNoExcessEntropyAndTheKnownPoseDistance) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 1});
     AddNoise(2.0, rng, &random.problem);
     const RankAwareTest test(ModelOf(random, Matrix5d::Zero()), 0.5);
-    const KnownPoseTest known(FundamentalOf(random), 0.5);
+    const KnownPoseTest known(ComputeFundamental(random), 0.5);
     EXPECT_NEAR(Entropy(test, random.problem.matches[0]), 0.0, 1e-15);
     const double d2 = Distance(known, random.problem.matches[0]);
     EXPECT_NEAR(Distance(test, random.problem.matches[0]), d2, 1e-12 * d2);
-    EXPECT_NEAR(d2, 4.0 * SquaredSampsonDistance(FundamentalOf(random), random.problem.matches[0]),
+    EXPECT_NEAR(d2, 4.0 * SquaredSampsonDistance(ComputeFundamental(random), random.problem.matches[0]),
                 1e-12 * d2);
   }
 }

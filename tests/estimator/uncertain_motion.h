@@ -10,7 +10,7 @@
 
 namespace rcme {
 
-inline Eigen::Matrix3d FundamentalOf(const RandomProblem& random) {
+inline Eigen::Matrix3d ComputeFundamental(const RandomProblem& random) {
   return FundamentalFromEssential(EssentialFromPose(random.pose_true), random.problem.camera1,
                                   random.problem.camera2);
 }

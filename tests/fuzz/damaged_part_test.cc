@@ -78,7 +78,7 @@ class DamagedParts : public testing::Test {
       RequireWhole(work.items, merged);
       const TuneResult result =
           Tune(plan_, settings_, Unreached::kStop, CountsIn(plan_, settings_, work, merged));
-      const auto rocs = RocsOf(plan_, EntropiesIn(plan_, work, merged));
+      const auto rocs = ComputeRocs(plan_, EntropiesIn(plan_, work, merged));
       return TuneAsTable(plan_, result, rocs) + TuneAsJson(plan_, settings_, result, rocs);
     };
     return {"tuning", paths, tables};

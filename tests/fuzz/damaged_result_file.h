@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/run_study.h"
+#include "experiments/run/store/new_trials.h"
+#include "experiments/run/store/salvage.h"
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/statistics/trial_table.h"
-#include "experiments/run/store/new_trials.h"
-#include "experiments/run/store/salvage.h"
-#include "experiments/run/run_study.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -47,7 +47,7 @@ inline std::string ResultsOf(const std::string& path) {
                       run.origin.program, run.origin.instruction_set);
   for (const DescribedEstimator& estimator : run.estimators) text += fmt::format(" {}", estimator.options);
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
-    for (const TrialRecord& record : store.RecordsOf(trial % 2, trial)) text += RecordText(record);
+    for (const TrialRecord& record : store.ReadTrialRecords(trial % 2, trial)) text += RecordText(record);
   }
   return text;
 }

@@ -15,7 +15,7 @@ const Settings kPair = {{"num_matches", "200"}, {"outlier_ratio", "0.2"}};
 // The inlier set of a good or a contaminated model of one scene.
 template <typename PointTest>
 InlierScore ScoreOf(SampleKind kind, Case& made) {
-  const Sample sample = DrawSampleOf(kind, made);
+  const Sample sample = DrawSampleByKind(kind, made);
   return ScoreSample<PointTest>(made.problem(), sample);
 }
 
@@ -121,7 +121,7 @@ Claim SolverClaim() {
     Case second = cases(name);
     const double eight = MeanEntropyOrInfinity(ScoreOf<RankAwareTest>(SampleKind::kGood, first));
     const double five =
-        MeanEntropyOrInfinity(FivePointScore(second.problem(), DrawSampleOf(SampleKind::kGood, second)));
+        MeanEntropyOrInfinity(FivePointScore(second.problem(), DrawSampleByKind(SampleKind::kGood, second)));
     return {five > eight ? 1.0 : 0.0, eight, five};
   };
   return {"mu.rank_aware.solver",

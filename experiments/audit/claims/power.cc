@@ -161,7 +161,7 @@ TargetPower ComputePower(const Target& target, std::int64_t num_trials, double c
 
 }  // namespace
 
-TargetPower PowerOf(const Target& target, std::int64_t num_trials, double confidence) {
+TargetPower FindPower(const Target& target, std::int64_t num_trials, double confidence) {
   // Everything that the power depends on: a claim's noise levels, and many claims, share theirs.
   using Key = std::pair<std::array<std::int64_t, 3>, std::array<double, 9>>;
   static std::mutex mutex;
@@ -183,7 +183,7 @@ double HoldsAtNominal(const Claim& claim, Budget budget, double confidence) {
     if (check.sigma_px > kAssertedSigmaPx) continue;
     for (const Target& target : check.targets) {
       if (!target.IsClaimed()) continue;
-      misses += 1.0 - PowerOf(target, check.limits.Max(budget), confidence).holds_at_nominal;
+      misses += 1.0 - FindPower(target, check.limits.Max(budget), confidence).holds_at_nominal;
     }
   }
   return std::max(0.0, 1.0 - misses);

@@ -32,7 +32,7 @@ TrueKind KindOfTrial(const Scene& scene, const TrialData& data, const StreamName
   const ModelChoiceOptions options;
   const KindMeasures measures =
       MeasureKind(scene, points, data.problem.sigma_px, options.parallax_significance_level, rng);
-  return KindOf(measures, options.least_parallax_share);
+  return ClassifyKind(measures, options.least_parallax_share);
 }
 
 void CheckCanBeScored(const StudyPlan& plan) {
@@ -92,7 +92,7 @@ Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRan
     const TrialData& data = *simulated.made;
     if (data.weight != 1.0)
       throw InputError("model-choice: tilted_to: weighted trials have no plain rates; leave it out");
-    const auto kind = static_cast<size_t>(KindOfTrial(condition.source->SceneOf(name).value(), data, name));
+    const auto kind = static_cast<size_t>(KindOfTrial(condition.source->FindScene(name).value(), data, name));
     RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
     const std::vector<ModelChoice> choices = ChooseModels(data.problem, criteria, rng);
     for (size_t c = 0; c < choices.size(); ++c) ++matrices[c][kind][AnswerOf(choices[c])];

@@ -89,7 +89,7 @@ MapSampler MakeMapSampler(const Study& study, const Settings& settings, int num_
 
 }  // namespace
 
-std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
+std::vector<MapCondition> ListMapConditions(const StudyPlan& plan) {
   RequireCases(plan.study);
   std::vector<MapCondition> conditions;
   std::set<Settings> seen;
@@ -105,7 +105,7 @@ std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
   return conditions;
 }
 
-std::vector<double> SigmasOf(const StudyPlan& plan) {
+std::vector<double> ListSigmas(const StudyPlan& plan) {
   std::set<double> sigmas_px;
   for (const Condition& condition : plan.conditions) {
     sigmas_px.insert(NumberOf(SimulatedSettings(plan, condition), kSigmaKey));

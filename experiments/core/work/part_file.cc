@@ -50,7 +50,7 @@ std::string DescribeLongPiece() {
 
 // Of a line's text behind its checksum; `of_first`: the first line's checksum, empty for that itself.
 std::string LineChecksum(const std::string& of_first, std::string_view text) {
-  return fmt::format("{:08x}", ChecksumOf({of_first, std::string(text)}));
+  return fmt::format("{:08x}", ComputeChecksum({of_first, std::string(text)}));
 }
 
 // What stands in a text in a fixed order, bit by bit.

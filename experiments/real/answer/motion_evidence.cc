@@ -45,7 +45,7 @@ bool MotionEvidence::DoesNoiseDisagree() const {
   return is_large && difference > 3.0 * sigma_sd_px;
 }
 
-MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& estimate) {
+MotionEvidence ComputeEvidence(const MotionProblem& problem, const MotionEstimate& estimate) {
   MotionProblem inliers = SelectPart(problem, estimate.inliers);
   MotionEvidence evidence;
   evidence.num_matches = static_cast<int>(problem.matches.size());
@@ -55,7 +55,7 @@ MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& es
   evidence.parallax_median_deg = evidence.parallax_to_noise = kNaN;
   evidence.parallax_share = evidence.planar_share = kNaN;
   if (RefuseUnsolvable(inliers, 6)) return evidence;
-  evidence.sigma_px = NoiseOf(problem, estimate);
+  evidence.sigma_px = EstimateNoise(problem, estimate);
   evidence.sigma_sd_px = std::isfinite(estimate.sigma_estimated_sd_px)
                              ? estimate.sigma_estimated_sd_px
                              : SdOfNoise(evidence.sigma_px, inliers.matches.size());

@@ -64,7 +64,7 @@ class Members {
     std::string folder;
     std::vector<std::string> levels = condition.levels;
     levels.resize(FactorNames(plan.study).size());
-    for (const auto& [key, value] : SettingsOf(plan.study, levels)) {
+    for (const auto& [key, value] : CombineSettings(plan.study, levels)) {
       if (key == "folder") folder = value;
     }
     const auto [found, is_new] = names_of_folder_.try_emplace(folder);

@@ -8,8 +8,8 @@
 #include <map>
 #include <optional>
 
-#include "experiments/real/images/features.h"
 #include "experiments/core/files/database.h"
+#include "experiments/real/images/features.h"
 #include "experiments/real/sequences/colmap_camera.h"
 #include "experiments/real/sequences/colmap_model.h"
 #include "experiments/real/sequences/layout_files.h"
@@ -82,7 +82,7 @@ class ColmapPairs : public ListedPairs {
   }
 
   size_t size() const override { return pair_ids_.size(); }
-  std::string IdOf(size_t i) const override {
+  std::string PairId(size_t i) const override {
     return fmt::format("{}_{:06}_{:06}", scene_, pair_ids_.at(i) / kMaxImages, pair_ids_.at(i) % kMaxImages);
   }
   std::string Note() const override { return note_; }

@@ -206,7 +206,7 @@ void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJourna
   for (size_t i = 0; i < pairs.size(); ++i) {
     StopIfRequested(*journal);
     PairRow row;
-    row.pair_id = pairs.IdOf(i);
+    row.pair_id = pairs.PairId(i);
     if (journal->Find(row.pair_id)) continue;
     ListedPair listed = pairs.Read(i);
     warnings.Add(FindPairDoubts(listed.file.camera1, listed.file.camera2, listed.file.matches,

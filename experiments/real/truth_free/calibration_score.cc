@@ -33,7 +33,7 @@ Eigen::Matrix<double, 1, kNumCameraFaults> ResidualByFaults(const Eigen::Matrix3
   const Eigen::RowVector4d r_X = (u - r / norm * ConstraintHessian(F) * u).transpose();
   const auto shifts_at = [&](double step_px) {
     const Correspondence moved{match.x1_px + step_px * u.head<2>(), match.x2_px + step_px * u.tail<2>()};
-    return ShiftsOf(camera1, camera2, cam2_from_cam1, moved);
+    return ComputeShifts(camera1, camera2, cam2_from_cam1, moved);
   };
   const ShiftsByFaults along_u = (shifts_at(kStepPx) - shifts_at(-kStepPx)) / (2.0 * kStepPx);  // d_X u
   return r_X * shifts_at(0.0) - r * u.transpose() * along_u;
@@ -44,8 +44,8 @@ std::optional<CalibrationScore> ScoreCalibration(const MotionProblem& problem,
   if (estimate.inliers.size() < kLeastInliers) return std::nullopt;
   const RelativePose& pose = estimate.cam2_from_cam1;
   const SampsonLinearization model({{}, problem.camera1, problem.camera2, 1.0}, pose);  // px
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
-  const double sigma_px = NoiseOf(problem, estimate);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
+  const double sigma_px = EstimateNoise(problem, estimate);
   Eigen::Matrix<double, kBoth, kBoth> normal = Eigen::Matrix<double, kBoth, kBoth>::Zero();
   Eigen::Matrix<double, kBoth, 1> moments = Eigen::Matrix<double, kBoth, 1>::Zero();
   for (const int index : estimate.inliers) {

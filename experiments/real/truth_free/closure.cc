@@ -124,8 +124,8 @@ std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of,
   return whitened.dot(llt_ratio.solve(whitened));
 }
 
-std::vector<UnitValues> ClosuresOf(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
-                                   LoopErrorOf error_of) {
+std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
+                                        const std::vector<Loop>& loops, LoopErrorOf error_of) {
   std::vector<UnitValues> closures;
   for (const Loop& loop : loops) {
     if (error_of == DirectionClosure && loop.size() != 3) continue;

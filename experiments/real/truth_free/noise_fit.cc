@@ -51,7 +51,7 @@ double FarthestAccepted(const std::vector<const AnsweredTrial*>& used) {
   for (const AnsweredTrial* answered : used) {
     const std::vector<double> sizes = ResidualSizes(answered->pair.problem, answered->estimate);
     farthest.push_back(*std::ranges::max_element(sizes) *
-                       NoiseOf(answered->pair.problem, answered->estimate) / answered->noise_level);
+                       EstimateNoise(answered->pair.problem, answered->estimate) / answered->noise_level);
   }
   return ComputeMedian(std::move(farthest));
 }

@@ -17,7 +17,7 @@ struct PlacedResidual {
 
 // From left to right.
 std::vector<PlacedResidual> ResidualsOf(const MotionProblem& problem, const MotionEstimate& estimate) {
-  const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
   std::vector<PlacedResidual> residuals;
   for (const int i : estimate.inliers) {
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
@@ -39,7 +39,7 @@ ResidualProducts& ResidualProducts::operator+=(const ResidualProducts& other) {
   return *this;
 }
 
-ResidualProducts ProductsOf(const MotionProblem& problem, const MotionEstimate& estimate) {
+ResidualProducts SumProducts(const MotionProblem& problem, const MotionEstimate& estimate) {
   const std::vector<PlacedResidual> residuals = ResidualsOf(problem, estimate);
   ResidualProducts products;
   double sum_squares = 0.0;

@@ -144,8 +144,8 @@ void CorrectNamed(const Steps& steps, CalibrationReport* report) {
     taken.push_back(*further);
   }
   if (const std::optional<CameraFault> other = FindOtherFault(fit->estimates.units))
-    return NameNothing(fmt::format("something of another kind is left, such as {}", TextOf(*other).words),
-                       report);
+    return NameNothing(
+        fmt::format("something of another kind is left, such as {}", FindFaultText(*other).words), report);
   for (size_t j = 0; j < taken.size(); ++j) {
     FaultReport& each = *std::ranges::find(report->faults, taken[j], &FaultReport::fault);
     if (!IsFault(each.verdict)) each.joint = fit->pooled.parameters[j];

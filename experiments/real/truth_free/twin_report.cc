@@ -146,7 +146,7 @@ Values TakeTwin(const std::function<TrialData()>& make, const MotionEstimator& e
                 const StreamName& name, KeptSteps* steps) {
   const auto compute = [&] {
     const TrialData twin = make();
-    return ValuesOf(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
+    return ComputeValues(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
   };
   return TakeValues(compute, steps);
 }
@@ -164,7 +164,7 @@ std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstim
     const std::int64_t image1 = number_of(one.image1, one.pair.origin + "/1"),
                        image2 = number_of(one.image2, one.pair.origin + "/2");
     const Values observed =
-        TakeValues([&] { return ValuesOf(one.pair, one.estimate, estimator, name); }, steps);
+        TakeValues([&] { return ComputeValues(one.pair, one.estimate, estimator, name); }, steps);
     pairs.push_back({image1, image2, observed, {}});
   }
   return pairs;
@@ -205,7 +205,7 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
   }
   AddComparisons(pairs, "semi_real", &report);
   try {
-    const double clustered_share = ClusteredShareOf(report.fit);
+    const double clustered_share = FitClusteredShare(report.fit);
     report.fit.simulated_noise =
         FitSimulatedNoise(source, report.fit, clustered_share, estimator, assumed_sigma_px, seed, steps);
     report.simulated = SimulatedTwinData(report.fit, clustered_share, assumed_sigma_px);

@@ -98,7 +98,7 @@ Settings SemiRealData(const TwinFit& fit, const std::string& folder, double assu
   return data;
 }
 
-double ClusteredShareOf(const TwinFit& fit) {
+double FitClusteredShare(const TwinFit& fit) {
   double least = std::numeric_limits<double>::infinity(), best = 0.0;
   for (const double share : {0.0, 0.3, 0.6, 0.9}) {
     const Settings data = SimulatedTwinData(fit, share, 1.0);

@@ -27,8 +27,8 @@ std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& es
   exact.truth = Truth();
   exact.truth.cam2_from_cam1_true = takes_answer ? estimate.cam2_from_cam1 : *pair.truth.cam2_from_cam1_true;
   const RelativePose& pose = *exact.truth.cam2_from_cam1_true;
-  const double sigma_px = takes_answer ? NoiseOf(pair.problem, estimate) : pair.problem.sigma_px;
-  const Eigen::Matrix3d F = FundamentalOf(pair.problem, pose);
+  const double sigma_px = takes_answer ? EstimateNoise(pair.problem, estimate) : pair.problem.sigma_px;
+  const Eigen::Matrix3d F = ComputeFundamental(pair.problem, pose);
   // What the answer accepts may lie behind a camera by noise: far points.
   std::vector<bool> is_accepted(exact.problem.matches.size());
   for (const int i : estimate.inliers) is_accepted[static_cast<size_t>(i)] = takes_answer;
@@ -53,12 +53,12 @@ std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& es
 void SetNoiseLevels(TwinSource* source) {
   std::vector<double> sigmas;
   for (const AnsweredTrial& one : source->pairs) {
-    if (one.HasAnsweredTemplate()) sigmas.push_back(NoiseOf(one.pair.problem, one.estimate));
+    if (one.HasAnsweredTemplate()) sigmas.push_back(EstimateNoise(one.pair.problem, one.estimate));
   }
   const double median = ComputeMedian(std::move(sigmas));
   for (AnsweredTrial& one : source->pairs) {
     if (one.HasAnsweredTemplate() && median > 0.0)
-      one.noise_level = std::max(NoiseOf(one.pair.problem, one.estimate) / median, 1e-3);
+      one.noise_level = std::max(EstimateNoise(one.pair.problem, one.estimate) / median, 1e-3);
   }
 }
 

@@ -87,7 +87,7 @@ std::string FaultVerdict(TruthFreeVerdict verdict) {
 std::string NominalFaults() {
   std::string words;
   for (size_t j = 0; j < kNumNamedFaults; ++j) {
-    const CameraFaultText& text = TextOf(kCameraFaults[j]);
+    const CameraFaultText& text = FindFaultText(kCameraFaults[j]);
     words += fmt::format("{}{} {:g}{}{}", words.empty() ? "" : ", ", text.words, text.per_unit * text.nominal,
                          *text.unit ? " " : "", text.unit);
   }
@@ -137,7 +137,7 @@ std::vector<SetRow> RowsOf(const SetReport& set) {
   add("calibration", "calibration", FaultVerdict(calibration.verdict), DescribeCalibration(calibration),
       calibration.num_pairs, ComparedMedians{calibration.p_value, none.interval});
   for (const FaultReport& fault : calibration.faults) {
-    add(TextOf(fault.fault).name, TextOf(fault.fault).words, FaultVerdict(fault.verdict),
+    add(FindFaultText(fault.fault).name, FindFaultText(fault.fault).words, FaultVerdict(fault.verdict),
         DescribeFault(fault), calibration.num_pairs, fault.joint);
   }
   add("noise_by_size", "noise by size", VerdictName(set.sizes.verdict), DescribeSizeTest(set.sizes),
@@ -328,8 +328,8 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
     }
     for (const auto& [length, count] : report.num_loops) set["loops"][std::to_string(length)] = count;
     for (const FaultReport& fault : report.calibration.faults) {
-      set["camera_faults"].push_back({{"fault", TextOf(fault.fault).name},
-                                      {"nominal", TextOf(fault.fault).nominal},
+      set["camera_faults"].push_back({{"fault", FindFaultText(fault.fault).name},
+                                      {"nominal", FindFaultText(fault.fault).nominal},
                                       {"beside_others", pooled(fault.joint)},
                                       {"alone", pooled(fault.alone)},
                                       {"twins", pooled(fault.twins)},

@@ -35,7 +35,7 @@ std::string ChecksumOfRows(SQLite::Database& database) {
     }
     texts.push_back(table.name);  // which rows are whose
   }
-  return fmt::format("{:08x}", ChecksumOf(texts));
+  return fmt::format("{:08x}", ComputeChecksum(texts));
 }
 
 template <typename... Values>
@@ -50,7 +50,7 @@ void Insert(SQLite::Database& database, const char* table, const Values&... valu
 
 // Its own, so that it is known of a file whose description is damaged elsewhere.
 std::string ChecksumOfStoppingRule(const std::string& identity, const std::string& rule) {
-  return fmt::format("{:08x}", ChecksumOf({identity, rule}));
+  return fmt::format("{:08x}", ComputeChecksum({identity, rule}));
 }
 
 // The rows of the table `run` but the checksum.
@@ -78,7 +78,7 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
   Ademp keys;
   for (const auto& [key, text] : Parts(keys)) values["ademp_" + key] = "";
   for (const auto& [key, text] : run.ademp) values["ademp_" + key] = text;
-  for (const auto& [key, text] : TextsOf(run.failure)) values[key] = text;
+  for (const auto& [key, text] : ListBounds(run.failure)) values[key] = text;
   return values;
 }
 

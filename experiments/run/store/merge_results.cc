@@ -65,7 +65,7 @@ void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, M
     for (std::uint32_t trial = 0; trial < report->run.conditions[c].num_trials; ++trial) {
       if (held.Has(c, trial)) continue;
       ++report->num_missing;
-      if (report->num_shards > 0) shards.insert(ShardOf(c, trial / repeats, report->num_shards));
+      if (report->num_shards > 0) shards.insert(FindShard(c, trial / repeats, report->num_shards));
     }
   }
   report->missing_shards.assign(shards.begin(), shards.end());

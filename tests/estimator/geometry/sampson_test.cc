@@ -27,7 +27,7 @@ struct Case {
   Correspondence match;
 };
 
-Eigen::Matrix3d FundamentalOf(const RandomProblem& random, const RelativePose& pose) {
+Eigen::Matrix3d ComputeFundamental(const RandomProblem& random, const RelativePose& pose) {
   return FundamentalFromEssential(EssentialFromPose(pose), random.problem.camera1, random.problem.camera2);
 }
 
@@ -36,7 +36,7 @@ Case MakeCase(RandomStream& rng, double sigma_px) {
   made.random = MakeRandomProblem(rng, {.num_matches = 1, .max_rotation_deg = 30.0});
   AddNoise(sigma_px, rng, &made.random.problem);
   made.match = made.random.problem.matches[0];
-  made.F = FundamentalOf(made.random, made.random.pose_true);
+  made.F = ComputeFundamental(made.random, made.random.pose_true);
   const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(made.random.pose_true);
   for (size_t k = 0; k < 5; ++k) {
     made.dF_dp[k] =
@@ -127,7 +127,7 @@ TEST(SampsonVector, PoseJacobianHasANumericTwin) {
     for (int i = 0; i < 50; ++i) {
       const Case c = MakeCase(rng, sigma_px);
       const auto delta = [&](const Eigen::VectorXd& tangent) -> Eigen::VectorXd {
-        return SampsonVector(FundamentalOf(c.random, Retract(c.random.pose_true, tangent)), c.match);
+        return SampsonVector(ComputeFundamental(c.random, Retract(c.random.pose_true, tangent)), c.match);
       };
       EXPECT_JACOBIAN_NEAR(SampsonVectorPoseJacobian(c.F, c.dF_dp, c.match),
                            NumericJacobian(delta, Vector5d::Zero(), 1e-4), 1e-7);

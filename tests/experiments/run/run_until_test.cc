@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "experiments/statistics/summarize.h"
 #include "experiments/run/store/merge_results.h"
+#include "experiments/statistics/summarize.h"
 #include "stats/confidence_sequence.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
@@ -77,7 +77,7 @@ TEST_F(RunUntilTest, TheSameTrialsWhateverTheThreadsAndHoweverOftenItWasCutOff) 
     ResultStore store = ResultStore::OpenForRun(folder_.Path("parts"), plan_);
     for (const std::uint32_t trial : {101u, 130u}) {  // as if killed within a round
       const TrialResult result = RunTrial(plan_, plan_.conditions[1], trial);
-      if (store.RecordsOf(1, trial).empty()) store.Add({result.problem}, result.records);
+      if (store.ReadTrialRecords(1, trial).empty()) store.Add({result.problem}, result.records);
     }
   }
   const std::vector<CellPrecision> parts = Run("parts", Until("ci=0.08", 1'000'000, 2));

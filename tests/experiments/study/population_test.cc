@@ -239,10 +239,12 @@ TEST(Population, CrossesWithFactors) {
   const TrialResult a = RunTrial(plan, first, 0), b = RunTrial(plan, second, 0);
   EXPECT_EQ(a.data.problem.matches.size(), 60U);
   EXPECT_EQ(a.data.problem.matches[7].x2_px, b.data.problem.matches[7].x2_px);
-  EXPECT_EQ(EstimatorsOf(study, first.levels)[0].options, EstimatorsOf(study, other.levels)[0].options);
-  EXPECT_NE(EstimatorsOf(study, first.levels)[0].options, EstimatorsOf(study, second.levels)[0].options);
-  EXPECT_NE(EstimatorsOf(plan, first)[0], EstimatorsOf(plan, second)[0]);
-  EXPECT_EQ(EstimatorsOf(plan, first)[0], EstimatorsOf(plan, other)[0]);
+  EXPECT_EQ(ResolveEstimators(study, first.levels)[0].options,
+            ResolveEstimators(study, other.levels)[0].options);
+  EXPECT_NE(ResolveEstimators(study, first.levels)[0].options,
+            ResolveEstimators(study, second.levels)[0].options);
+  EXPECT_NE(FindEstimators(plan, first)[0], FindEstimators(plan, second)[0]);
+  EXPECT_EQ(FindEstimators(plan, first)[0], FindEstimators(plan, other)[0]);
 }
 
 TEST(Population, SetFixesAKey) {

@@ -105,13 +105,13 @@ TEST(TargetVerdict, TheWholeIntervalOnOneSideOfTheLimit) {
   tuning.at_most = 0.1;
   tuning.max_refusal = 1.0;
   // 95 % intervals of 100: 4 [1.1, 9.9], 5 [1.6, 11.3], 17 [10.2, 25.8], 16 [9.4, 24.7] %.
-  EXPECT_EQ(VerdictOf(tuning, {100, 4, 90, 0, 0}), Verdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {100, 5, 0, 0, 0}), Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 16, 0, 0, 0}), Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 17, 0, 0, 0}), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideSetting(tuning, {100, 4, 90, 0, 0}), Verdict::kHolds);
+  EXPECT_EQ(DecideSetting(tuning, {100, 5, 0, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(DecideSetting(tuning, {100, 16, 0, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(DecideSetting(tuning, {100, 17, 0, 0, 0}), Verdict::kDoesNotHold);
   tuning.target = TuneTarget::kFalseRefusal;
-  EXPECT_EQ(VerdictOf(tuning, {1000, 900, 4, 100, 4}), Verdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {1000, 0, 0, 0, 0}), Verdict::kUndecided) << "no trial is good";
+  EXPECT_EQ(DecideSetting(tuning, {1000, 900, 4, 100, 4}), Verdict::kHolds);
+  EXPECT_EQ(DecideSetting(tuning, {1000, 0, 0, 0, 0}), Verdict::kUndecided) << "no trial is good";
 }
 
 // The target limits refusals as well: a setting that refuses everything never fails.
@@ -120,10 +120,10 @@ TEST(TargetVerdict, RefusalsAreLimitedToo) {
   tuning.target = TuneTarget::kFailure;
   tuning.at_most = 0.1;
   tuning.max_refusal = 0.5;
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 100, 0, 0}), Verdict::kDoesNotHold);
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 50, 0, 0}), Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 20, 0, 0}), Verdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {100, 30, 50, 0, 0}), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideSetting(tuning, {100, 0, 100, 0, 0}), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideSetting(tuning, {100, 0, 50, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(DecideSetting(tuning, {100, 0, 20, 0, 0}), Verdict::kHolds);
+  EXPECT_EQ(DecideSetting(tuning, {100, 30, 50, 0, 0}), Verdict::kDoesNotHold);
 }
 
 TEST(TransferOutput, CellsAndCountsOfTheOthers) {

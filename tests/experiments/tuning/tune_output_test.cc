@@ -145,7 +145,7 @@ TEST(TuneOutput, TheVerdictTakesBothLimits) {
   TuneResult result = Result(plan);
   const auto verdict = [&](std::int64_t failures, std::int64_t refusals) {
     result.verified[1] = {100, failures, refusals, 50, 0};
-    for (const auto& [key, text] : ProvenanceOf(plan, result)) {
+    for (const auto& [key, text] : DescribeProvenance(plan, result)) {
       if (key == "verdict") return text;
     }
     return std::string();
@@ -159,7 +159,7 @@ TEST(TuneOutput, TheVerdictTakesBothLimits) {
 TEST(TuneOutput, ProvenanceHasTheFigures) {
   const StudyPlan plan = Plan();
   std::string text;
-  for (const auto& [key, value] : ProvenanceOf(plan, Result(plan))) text += key + ": " + value + "\n";
+  for (const auto& [key, value] : DescribeProvenance(plan, Result(plan))) text += key + ": " + value + "\n";
   EXPECT_TRUE(Holds(text, {"study: small", "seed: 3", "tuned: mu = 2", "at most 10 %", "probability 0.05",
                            "failure: rotation error above 3 deg or direction error above 15 deg",
                            "as_tuned: failure 3.00 %", "verified: failure 4.00 % [", "of 100",

@@ -242,7 +242,7 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
       continue;
     }
     ++num_chosen[*setting];
-    ++num_with[VerdictOf(*plan.study.tuning, reference[*setting])];
+    ++num_with[DecideSetting(*plan.study.tuning, reference[*setting])];
   }
   EXPECT_EQ(repetitions.num_done, 8);
   EXPECT_EQ(repetitions.num_without_choice, num_without);

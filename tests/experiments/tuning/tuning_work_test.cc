@@ -53,7 +53,7 @@ class TuneParts : public testing::Test {
   std::string BytesOf(const TuningWork& work, const WorkResults& merged) const {
     const TuneResult result =
         Tune(plan_, settings_, Unreached::kStop, CountsIn(plan_, settings_, work, merged));
-    return Bytes(plan_, result, RocsOf(plan_, EntropiesIn(plan_, work, merged)));
+    return Bytes(plan_, result, ComputeRocs(plan_, EntropiesIn(plan_, work, merged)));
   }
 
   const TempFolder folder_;
@@ -65,7 +65,7 @@ TEST_F(TuneParts, OfAnyNumberInAnyOrderGiveTheBytesOfOneMachine) {
   const TuneResult one = TuneInMemory(plan_, settings_, Unreached::kStop, 2);
   ASSERT_TRUE(one.choice.setting.has_value());
   const std::vector<EntropyRoc> rocs =
-      RocsOf(plan_, MeasureEntropies(plan_, TuningTrials(*plan_.study.tuning).verify));
+      ComputeRocs(plan_, MeasureEntropies(plan_, TuningTrials(*plan_.study.tuning).verify));
   ASSERT_FALSE(rocs.empty());
   const std::string whole = Bytes(plan_, one, rocs);
   const TuningWork work = PlanTuningWork(plan_);

@@ -172,7 +172,7 @@ TEST_F(AuditParts, FewTrialsAreRunForNothing) {
 TEST_F(AuditParts, EveryBlockIsInOneShardAndThoseOfACheckAreDividedEvenly) {
   const Audit plan = PlanAudit(Claims(), Options());
   const WorkPlan pieces = PlanAuditBlocks(plan);
-  EXPECT_EQ(pieces.groups.size(), PlacesOf(plan).size());
+  EXPECT_EQ(pieces.groups.size(), ListCheckPlaces(plan).size());
   EXPECT_EQ(pieces.groups.at(9).num_items, 0);  // not possible
   for (const std::uint32_t count : {1, 3, 7, 64}) {
     std::set<ItemPlace> seen;

@@ -28,8 +28,8 @@ Verdicts VerdictsOf(const std::string& data, const std::string& estimator, int t
   Verdicts verdicts;
   for (int trial = 0; trial < trials; ++trial) {
     const TrialResult result = RunTrial(plan, plan.conditions[0], static_cast<std::uint32_t>(trial));
-    const Why why = WhyOf(plan.study.estimators[0], result.data, result.estimates[0], result.records[0],
-                          plan.study.failure);
+    const Why why = ExplainOutcome(plan.study.estimators[0], result.data, result.estimates[0],
+                                   result.records[0], plan.study.failure);
     verdicts.last_words = why.words;
     if (HasSucceeded(result.records[0], plan.study.failure)) {
       EXPECT_EQ(why.verdict, WhyVerdict::kRight);

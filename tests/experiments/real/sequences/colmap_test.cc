@@ -134,7 +134,7 @@ TEST_F(Colmap, ADatabaseAndItsReconstruction) {
   options.name = "hall";
   const auto pairs = OpenColmap(options);
   ASSERT_EQ(pairs->size(), 3u);
-  EXPECT_EQ(pairs->IdOf(0), "hall_000001_000002");
+  EXPECT_EQ(pairs->PairId(0), "hall_000001_000002");
   EXPECT_NE(pairs->Note().find("3 of 3 images"), std::string::npos) << pairs->Note();
   const std::string out = folder_.Path("out");
   PairsOptions making;

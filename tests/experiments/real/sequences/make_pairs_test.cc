@@ -99,7 +99,7 @@ TEST_F(MakePairs, WorkThatWasCutOffGoesOnAndGivesTheSameBytes) {
   const PairJournal opened(cut, "test");
   EXPECT_EQ(opened.num_before(), 2);
   for (const fs::path& file : MatchFilesIn(cut)) {
-    if (!opened.Find(PairIdOf(file))) fs::remove(file);
+    if (!opened.Find(ExtractPairId(file))) fs::remove(file);
   }
   EXPECT_EQ(MakePairsInto(cut, read, options).size(), num_rows);
   for (const char* name : {"/INDEX.csv", "/pairs.txt", "/pairs.journal"})

@@ -101,7 +101,7 @@ TEST(ResidualByFaults, DoesNotGoWithTheNoise) {
       sum += product;
       squares += product.cwiseAbs2();
       const double plain =
-          r * c.gradient.dot(ShiftsOf(scene.camera1, scene.camera2, pose, match).col(0)) / norm;
+          r * c.gradient.dot(ComputeShifts(scene.camera1, scene.camera2, pose, match).col(0)) / norm;
       naive += plain;
       naive_squares += plain * plain;
     }
@@ -273,7 +273,7 @@ SizeReport SizesOf(double power, int num_pairs) {
     };
     answers.push_back({answer(pair), {}});
     for (std::uint32_t twin = 1; twin <= 2; ++twin)
-      answers.back().twins.push_back(answer(TwinOf(pair, answers.back().whole.estimate, 1, twin)));
+      answers.back().twins.push_back(answer(MakeTwin(pair, answers.back().whole.estimate, 1, twin)));
   }
   return TestKeyPointSizes(answers);
 }

@@ -283,10 +283,11 @@ std::vector<Loop> LoopsOf(const Network& network) {
   return {loop};
 }
 
-TEST(ClosuresOf, AreOfTwinsAboutTheirOwnTruth) {
+TEST(ComputeClosures, AreOfTwinsAboutTheirOwnTruth) {
   const Network network = MakeNetwork(3, 0.0, 2);
   for (const LoopErrorOf error_of : {RotationClosure, DirectionClosure}) {
-    const std::vector<UnitValues> closures = ClosuresOf(NetworkAnswers(network), LoopsOf(network), error_of);
+    const std::vector<UnitValues> closures =
+        ComputeClosures(NetworkAnswers(network), LoopsOf(network), error_of);
     ASSERT_EQ(closures.size(), 1u);
     const LoopError none = LoopError::Zero(error_of(network.loop).size());
     ASSERT_EQ(closures[0].observed.size(), 1u);
@@ -296,15 +297,15 @@ TEST(ClosuresOf, AreOfTwinsAboutTheirOwnTruth) {
   }
 }
 
-TEST(ClosuresOf, AreOfLoopsThatAreAnswered) {
+TEST(ComputeClosures, AreOfLoopsThatAreAnswered) {
   const Network three = MakeNetwork(3, 0.0, 2), four = MakeNetwork(4, 0.0, 2);
-  EXPECT_EQ(ClosuresOf(NetworkAnswers(four), LoopsOf(four), RotationClosure).size(), 1u);
-  EXPECT_EQ(ClosuresOf(NetworkAnswers(four), LoopsOf(four), DirectionClosure).size(), 0u);
+  EXPECT_EQ(ComputeClosures(NetworkAnswers(four), LoopsOf(four), RotationClosure).size(), 1u);
+  EXPECT_EQ(ComputeClosures(NetworkAnswers(four), LoopsOf(four), DirectionClosure).size(), 0u);
   std::vector<PairAnswers> answers = NetworkAnswers(three);
   answers[1].twins[0].estimate.status = MotionStatus::kNoCandidate;
-  EXPECT_EQ(ClosuresOf(answers, LoopsOf(three), RotationClosure)[0].null.size(), 1u);
+  EXPECT_EQ(ComputeClosures(answers, LoopsOf(three), RotationClosure)[0].null.size(), 1u);
   answers[1].whole.estimate.status = MotionStatus::kNoCandidate;
-  EXPECT_EQ(ClosuresOf(answers, LoopsOf(three), RotationClosure).size(), 0u);
+  EXPECT_EQ(ComputeClosures(answers, LoopsOf(three), RotationClosure).size(), 0u);
 }
 
 }  // namespace

@@ -13,10 +13,10 @@ PairAnswers PairOf(const std::string& image1, const std::string& image2) {
 }
 
 // Images are numbered as they come; a pair without names has a number that no image and no other pair has.
-TEST(ImageNumbersOf, ByHand) {
+TEST(NumberImages, ByHand) {
   const std::vector<ImageNumbers> numbers =
-      ImageNumbersOf({PairOf("a", "b"), PairOf("", ""), PairOf("b", "c"), PairOf("c", "a"), PairOf("d", ""),
-                      PairOf("e", "e")});
+      NumberImages({PairOf("a", "b"), PairOf("", ""), PairOf("b", "c"), PairOf("c", "a"), PairOf("d", ""),
+                    PairOf("e", "e")});
   const std::vector<std::pair<std::int64_t, std::int64_t>> expected = {{0, 1}, {2, 2}, {1, 3},
                                                                        {3, 0}, {4, 4}, {5, 5}};
   ASSERT_EQ(numbers.size(), expected.size());

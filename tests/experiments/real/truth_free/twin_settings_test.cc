@@ -80,13 +80,13 @@ TEST(SimulatedTwinData, HasThePointsOfTheFit) {
 }
 
 // Points at random need no clusters, points far nearer to each other than that need most of all.
-TEST(ClusteredShareOf, FollowsHowNearPointsAre) {
+TEST(FitClusteredShare, FollowsHowNearPointsAre) {
   TwinFit fit = SomeFit();
-  EXPECT_EQ(ClusteredShareOf(fit), 0.0);
+  EXPECT_EQ(FitClusteredShare(fit), 0.0);
   fit.clark_evans = 0.4;
-  EXPECT_GE(ClusteredShareOf(fit), 0.6);
+  EXPECT_GE(FitClusteredShare(fit), 0.6);
   fit.homography_share = 0.9;
-  EXPECT_EQ(ClusteredShareOf(fit), 0.0);
+  EXPECT_EQ(FitClusteredShare(fit), 0.0);
 }
 
 TEST(SemiRealData, IsOfTheTemplatesWithTheNoiseOfTheFit) {

@@ -134,7 +134,7 @@ TEST(Redraw, KeepsRightMatchesNearAndWrongOnesFar) {
   settings.within_px = 0.6;
   for (const double level : {1.0, 3.0}) {
     const TrialData drawn = Redraw(settings).Draw(exact, Named(0), level);
-    const Eigen::Matrix3d F = FundamentalOf(exact.problem, *exact.truth.cam2_from_cam1_true);
+    const Eigen::Matrix3d F = ComputeFundamental(exact.problem, *exact.truth.cam2_from_cam1_true);
     double greatest = 0.0;
     for (size_t i = 0; i < exact.problem.matches.size(); ++i) {
       const double distance = std::sqrt(SquaredSampsonDistance(F, drawn.problem.matches[i]));
@@ -157,10 +157,10 @@ TEST(Redraw, SaysWhatIsWrong) {
 }
 
 // What is said of the noise, or the median distance over that of a normal number, of matches alike.
-TEST(NoiseOf, IsTheMedianOfTheResiduals) {
+TEST(EstimateNoise, IsTheMedianOfTheResiduals) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(5, 1e-9, 0.0, 1, &pose);
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
   MotionEstimate estimate;
   estimate.cam2_from_cam1 = pose;
   const double off_px[] = {0.1, -0.2, 0.6, 0.4, -0.5};
@@ -172,16 +172,16 @@ TEST(NoiseOf, IsTheMedianOfTheResiduals) {
     match.x2_px += off_px[i] * u.tail<2>();
     estimate.inliers.push_back(static_cast<int>(i));
   }
-  EXPECT_NEAR(NoiseOf(problem, estimate), 0.3 / 0.6744897501960817, 0.005);
+  EXPECT_NEAR(EstimateNoise(problem, estimate), 0.3 / 0.6744897501960817, 0.005);
   estimate.sigma_estimated_px = 0.25;
-  EXPECT_EQ(NoiseOf(problem, estimate), 0.25);
+  EXPECT_EQ(EstimateNoise(problem, estimate), 0.25);
 }
 
 // To second order of the distance: of one pixel a few millionths are left, and the way there is the shortest.
 TEST(Snapped, IsTheNearestExactMatch) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(30, 0.7, 0.0, 1, &pose);
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
   for (const Correspondence& match : problem.matches) {
     const Correspondence snapped = Snapped(F, match);
     EXPECT_LT(std::sqrt(SquaredSampsonDistance(F, snapped)), 1e-5);
@@ -193,7 +193,7 @@ TEST(Snapped, IsTheNearestExactMatch) {
 
 // Matches that are said to be noisier get as much more noise: of 300 each of scale 1/2 and 3 the mean square
 // of the distance, over that of the noise, is 1 (z-test at 1e-4).
-TEST(TwinOf, DrawsNoiseOfTheMatchsScale) {
+TEST(MakeTwin, DrawsNoiseOfTheMatchsScale) {
   RelativePose pose;
   NamedPair pair{"pair", "", "", TwoCameraProblem(600, 0.5, 0.0, 1, &pose)};
   MotionEstimate estimate;
@@ -204,8 +204,8 @@ TEST(TwinOf, DrawsNoiseOfTheMatchsScale) {
     pair.problem.noise_scale.push_back(i < 300 ? 0.5 : 3.0);
     estimate.inliers.push_back(i);
   }
-  const NamedPair twin = TwinOf(pair, estimate, 1, 1);
-  const Eigen::Matrix3d F = FundamentalOf(pair.problem, pose);
+  const NamedPair twin = MakeTwin(pair, estimate, 1, 1);
+  const Eigen::Matrix3d F = ComputeFundamental(pair.problem, pose);
   double sums[2] = {0.0, 0.0};
   for (size_t i = 0; i < 600; ++i) {
     const double sd_px = 0.2 * pair.problem.noise_scale[i];
@@ -252,7 +252,7 @@ TEST(FitTwin, FindsTheNumbersOfASimulation) {
   EXPECT_NEAR(fit.parallax_deg, 4.0, 0.5);
   EXPECT_LT(fit.forwardness, 0.2);
   EXPECT_NEAR(fit.clark_evans, 1.0, 0.1);
-  const Settings data = SimulatedTwinData(fit, ClusteredShareOf(fit), 0.5);
+  const Settings data = SimulatedTwinData(fit, FitClusteredShare(fit), 0.5);
   EXPECT_THAT(data, testing::Contains(Settings::value_type("scene", "image_clusters")));
   EXPECT_NO_THROW(MakeSimulatedData(data));
 }
