@@ -74,7 +74,7 @@ void CheckApplies(const PairsArguments& arguments) {
 }
 
 // All that the pairs depend on but the images' contents.
-std::string IdentityOf(const PairsArguments& arguments) {
+std::string DescribePairsIdentity(const PairsArguments& arguments) {
   const DatasetOptions& d = arguments.dataset;
   const PairsOptions& p = arguments.pairs;
   return fmt::format(
@@ -115,7 +115,7 @@ void RunPairs(PairsArguments arguments) {
     listed = layout->open(arguments.dataset);
     notes.push_back(listed->Note());
   }
-  PairJournal journal(out, IdentityOf(arguments));
+  PairJournal journal(out, DescribePairsIdentity(arguments));
   if (journal.num_before() > 0) PrintMessage("continues after {} pairs in {}\n", journal.num_before(), out);
   if (listed) {
     MakeListedPairs(*listed, arguments.pairs, &journal);

@@ -36,7 +36,7 @@ struct RegionKind {
   std::function<double(const JudgedAnswer&)> size_deg;  // geometric mean of the semi-axes
 };
 
-double SizeOf(const JudgedAnswer& answer, double factor) {
+double ComputeRegionSize(const JudgedAnswer& answer, double factor) {
   const double radius = std::sqrt(factor * ChiSquareQuantile(5, answer.level));
   const double size_deg = kDegPerRad * radius * std::exp(answer.row.log_det / 10.0);
   return std::isfinite(factor) ? std::min(size_deg, kWholeSpaceDeg) : kWholeSpaceDeg;
@@ -45,7 +45,7 @@ double SizeOf(const JudgedAnswer& answer, double factor) {
 RegionKind RegionOfFactor(const std::string& name, const std::function<double(const JudgedAnswer&)>& factor) {
   return {name,
           [factor](const JudgedAnswer& a) { return a.row.nees <= factor(a) * ChiSquareQuantile(5, a.level); },
-          [factor](const JudgedAnswer& a) { return SizeOf(a, factor(a)); }};
+          [factor](const JudgedAnswer& a) { return ComputeRegionSize(a, factor(a)); }};
 }
 
 std::vector<RegionKind> RegionKinds(bool is_check) {

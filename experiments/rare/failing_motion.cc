@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-Motion MotionOf(const Scene& scene) { return {scene.cam2_from_cam1_true, scene.baseline_m}; }
+Motion ReadMotion(const Scene& scene) { return {scene.cam2_from_cam1_true, scene.baseline_m}; }
 
 bool SeesAll(const Scene& scene, const std::vector<Eigen::Vector3d>& points) {
   return std::ranges::all_of(points, [&](const Eigen::Vector3d& point) { return scene.Sees(point); });
@@ -72,7 +72,7 @@ std::shared_ptr<const Scene> FailingMotion::DrawScene(RandomStream& rng) const {
 
 std::shared_ptr<const Scene> FailingMotion::WithSomePoints(const Scene& scene, double share,
                                                            RandomStream& rng) const {
-  const Scene fresh = data_->DrawSceneWithMotion(MotionOf(scene), rng);
+  const Scene fresh = data_->DrawSceneWithMotion(ReadMotion(scene), rng);
   Scene mixed = scene;
   for (size_t i = 0; i < mixed.points_in_cam1.size(); ++i) {
     if (rng.Uniform() < share) mixed.points_in_cam1[i] = fresh.points_in_cam1[i];
@@ -91,7 +91,7 @@ std::shared_ptr<const Scene> FailingMotion::WithMotionNear(const Scene& scene, d
   constexpr double kStepOfMotion = 0.3;
   Scene moved = scene;
   for (int i = 0; i < kTries; ++i) {
-    const std::optional<Scene> fresh = data_->DrawSceneNear(MotionOf(moved), kStepOfMotion * step, rng);
+    const std::optional<Scene> fresh = data_->DrawSceneNear(ReadMotion(moved), kStepOfMotion * step, rng);
     if (!fresh || !SeesAll(*fresh, moved.points_in_cam1) || !SeesAll(moved, fresh->points_in_cam1)) continue;
     moved.cam2_from_cam1_true = fresh->cam2_from_cam1_true;
   }

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 
 // The pilot has the number 0, replicates count from 1.
-RandomStream StreamOf(std::uint64_t seed, const Condition& condition, std::uint32_t number) {
+RandomStream MakeStream(std::uint64_t seed, const Condition& condition, std::uint32_t number) {
   return RandomStream({seed, condition.stream_key, number, kSplittingPurpose});
 }
 
@@ -130,7 +130,7 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
   std::erase_if(pilots,
                 [&](const ItemPlace& place) { return !cells[place.group].why_not_simulated.empty(); });
   runner->Get(pilots, [&](const ItemPlace& place) {
-    RandomStream rng = StreamOf(seed, plan.conditions[cells[place.group].condition], 0);
+    RandomStream rng = MakeStream(seed, plan.conditions[cells[place.group].condition], 0);
     return PilotAsJson(FindLevels(systems[place.group], effort.splitting, rng));
   });
   ReadResults(work, runner->results(), 0, num_cells, [&](const ItemPlace& place, const std::string& json) {
@@ -143,7 +143,7 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
   runner->Get(replicates, [&](const ItemPlace& place) {
     const size_t c = place.group - num_cells;
     RandomStream rng =
-        StreamOf(seed, plan.conditions[cells[c].condition], 1 + static_cast<std::uint32_t>(place.item));
+        MakeStream(seed, plan.conditions[cells[c].condition], 1 + static_cast<std::uint32_t>(place.item));
     return ReplicateAsJson(Split(systems[c], effort.splitting, cells[c].pilot.levels, rng));
   });
   ReadResults(work, runner->results(), num_cells, 2 * num_cells,

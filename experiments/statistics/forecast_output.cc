@@ -128,7 +128,7 @@ Json RiskCoverageAsJson(const ForecastMeasures& m) {
   return points;
 }
 
-Json EntryOf(const ForecastMeasures& m) {
+Json RenderForecastEntry(const ForecastMeasures& m) {
   Json entry = {{"estimator", m.estimator}, {"group", m.group},        {"source", Name(m.source)}, {"n", m.n},
                 {"refused", m.num_refused}, {"without", m.num_without}};
   if (m.is_of_population) entry["intervals_of"] = "population";
@@ -191,7 +191,7 @@ std::string ForecastsAsJson(const std::string& study, const std::string& by,
                {"sure_below", kSureBelow},
                {"histogram_edges", HistogramEdges()},
                {"entries", Json::array()}};
-  for (const ForecastMeasures& m : measures) json["entries"].push_back(EntryOf(m));
+  for (const ForecastMeasures& m : measures) json["entries"].push_back(RenderForecastEntry(m));
   return JsonText(kReliabilityFormat, json);
 }
 

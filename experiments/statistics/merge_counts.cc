@@ -18,7 +18,7 @@ namespace rcme {
 namespace {
 
 // All that a part says of its trials but the times of calls, as a checksum for each condition.
-std::vector<std::uint32_t> DigestOf(const RunCounts& counts) {
+std::vector<std::uint32_t> ComputeDigest(const RunCounts& counts) {
   std::vector<std::uint32_t> digest;
   for (const ConditionCounts& condition : counts.conditions) {
     std::vector<std::string> texts;
@@ -48,7 +48,7 @@ class MergedCounts {
     if (IsStopRequested()) throw Stopped("stopped; nothing was written");
     const std::unique_ptr<ResultFile> file = OpenPart(path);
     const RunCounts part = NamingFile(path, [&] { return ReadCounts(*file); });
-    const std::vector<std::uint32_t> digest = DigestOf(part);
+    const std::vector<std::uint32_t> digest = ComputeDigest(part);
     if (HasCommonTrials(part)) {
       if (!digests_.contains(digest)) {
         throw InputError(fmt::format(

@@ -34,7 +34,7 @@ struct ConditionProgress {
 };
 
 // One pass.
-std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const RunDescription& run) {
+std::vector<ConditionProgress> CountProgress(const ResultStore& store, const RunDescription& run) {
   std::vector<ConditionProgress> progress(run.conditions.size(),
                                           {0, 0, std::vector<FirstTrials>(run.estimators.size())});
   store.ForEachRecord([&](const TrialRecord& record) {
@@ -53,7 +53,7 @@ Json TrialOrNull(const std::optional<std::uint32_t>& trial) { return trial ? Jso
 // Conditions with their levels, their progress, and per estimator the first failure and refusal.
 Json ConditionsAsJson(const ResultStore& store, const RunDescription& run) {
   Json conditions = Json::array();
-  const std::vector<ConditionProgress> progress = ProgressOf(store, run);
+  const std::vector<ConditionProgress> progress = CountProgress(store, run);
   for (size_t c = 0; c < run.conditions.size(); ++c) {
     const ConditionProgress& done = progress[c];
     Json first = Json::array();

@@ -34,7 +34,7 @@ std::uint32_t PlaceIn(const std::string& text) {
   return static_cast<std::uint32_t>(place);
 }
 
-StoredCounts TextsOf(const ConditionCounts& condition) {
+StoredCounts MakeStoredCounts(const ConditionCounts& condition) {
   StoredCounts texts;
   for (const auto& [shard, places] : condition.places) texts.places.push_back({shard, places.Text()});
   texts.quantities = condition.cell.Texts();
@@ -164,7 +164,7 @@ void WriteCounts(const RunCounts& counts, const std::set<std::uint32_t>& conditi
       file->database.exec(fmt::format("DELETE FROM {} WHERE condition = {}", table, c));
     file->totals.Clear(c);
     for (const auto& [number, trial] : condition.kept.All()) writer.AddTrial(trial.problem, trial.records);
-    WriteStoredCounts(file, c, TextsOf(condition));
+    WriteStoredCounts(file, c, MakeStoredCounts(condition));
   }
   file->totals.WriteChanged(file->database);
   change.commit();

@@ -101,7 +101,7 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
 }
 
 // What the hypotheses of a study may name, after its factors' levels are canonical.
-StatableNames NamesOf(const Study& study) {
+StatableNames ListStatableNames(const Study& study) {
   StatableNames names;
   for (const EstimatorSpec& spec : study.estimators) names.estimators.push_back(spec.label);
   for (const Factor& factor : study.factors) names.factors.emplace_back(factor.key, factor.levels);
@@ -285,7 +285,8 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   place.At(root["data"] ? root["data"] : root, [&] { study.data = WithCalibration(study.data); });
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
-  if (root["hypotheses"]) study.hypotheses = ReadHypotheses(place, root["hypotheses"], NamesOf(study));
+  if (root["hypotheses"])
+    study.hypotheses = ReadHypotheses(place, root["hypotheses"], ListStatableNames(study));
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
   return study;
 }

@@ -73,7 +73,7 @@ struct RowConditions {
   std::vector<Condition> conditions;
 };
 
-RowConditions ConditionsOf(const Study& study, const std::vector<std::string>& levels) {
+RowConditions MakeRowConditions(const Study& study, const std::vector<std::string>& levels) {
   const Settings settings = CombineSettings(study, levels);
   DataSources made =
       MakeDataSources(settings, study.population ? BaselineSearch::kWithFirstScene : BaselineSearch::kNow);
@@ -108,7 +108,7 @@ void AppendPopulation(StudyPlan* plan) {
       continue;
     }
     for (const std::vector<std::string>& levels : of_factors)
-      Append(ConditionsOf(plan->study, JoinLevels(draw, levels)), plan);
+      Append(MakeRowConditions(plan->study, JoinLevels(draw, levels)), plan);
   }
   if (plan->conditions.empty()) {
     throw InputError(fmt::format("conditions: none of {} draws meets what is given; the first: {}",
@@ -190,7 +190,7 @@ StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
     AppendPopulation(&plan);
   } else {
     for (const std::vector<std::string>& levels : DesignRows(plan.study))
-      Append(ConditionsOf(plan.study, levels), &plan);
+      Append(MakeRowConditions(plan.study, levels), &plan);
   }
   if (estimators == PlanEstimators::kMade) MakeEstimators(&plan);
   plan.study_yaml = ToYaml(plan.study);
@@ -200,7 +200,7 @@ StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
 
 StudyPlan MakeConditionPlan(const Study& study, const std::vector<std::string>& levels) {
   StudyPlan plan = BeginPlan(study, PlanEstimators::kMade);
-  Append(ConditionsOf(plan.study, levels), &plan);
+  Append(MakeRowConditions(plan.study, levels), &plan);
   MakeEstimators(&plan);
   return plan;
 }

@@ -22,7 +22,7 @@ bool HasRotation(MotionStatus status) {
 
 // An answer that is not valid covers nothing. The truth's own error adds to the estimate's: the two are
 // independent.
-double NeesOf(const MotionEstimate& estimate, const Truth& truth) {
+double ComputeNees(const MotionEstimate& estimate, const Truth& truth) {
   if (estimate.status != MotionStatus::kOk) return kInfinity;
   const RelativePose& pose = estimate.cam2_from_cam1;
   Matrix5d covariance = estimate.pose_cov;
@@ -40,7 +40,7 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
   if (!truth.is_direction_known) return;
   if (HasMotion(estimate.status))
     record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  if (WasSimulated(*record) && !HasRefused(*record)) record->nees = NeesOf(estimate, truth);
+  if (WasSimulated(*record) && !HasRefused(*record)) record->nees = ComputeNees(estimate, truth);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {

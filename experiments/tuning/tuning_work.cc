@@ -25,22 +25,22 @@ size_t FirstGroup(const StudyPlan& plan, Kind kind) {
   return static_cast<size_t>(kind) * plan.conditions.size();
 }
 
-Kind KindOf(const StudyPlan& plan, const ItemPlace& place) {
+Kind FindKind(const StudyPlan& plan, const ItemPlace& place) {
   return static_cast<Kind>(place.group / plan.conditions.size());
 }
 
-size_t ConditionOf(const StudyPlan& plan, const ItemPlace& place) {
+size_t FindConditionNumber(const StudyPlan& plan, const ItemPlace& place) {
   return place.group % plan.conditions.size();
 }
 
-TrialRange RangeOf(const StudyPlan& plan, Kind kind) {
+TrialRange FindTrialRange(const StudyPlan& plan, Kind kind) {
   const TuningTrials trials(*plan.study.tuning);
   if (kind == Kind::kExplore) return trials.explore;
   return kind == Kind::kCalibrate ? trials.calibrate : trials.verify;
 }
 
-TrialRange TrialsOf(const StudyPlan& plan, const ItemPlace& place) {
-  const TrialRange all = RangeOf(plan, KindOf(plan, place));
+TrialRange FindItemTrials(const StudyPlan& plan, const ItemPlace& place) {
+  const TrialRange all = FindTrialRange(plan, FindKind(plan, place));
   const auto first = all.first + static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
   return {first, std::min(first + kTrialsOfItem, all.end)};
 }
@@ -69,7 +69,7 @@ TuningWork PlanWork(const StudyPlan& plan, const std::string& work, size_t num_k
   TuningWork made{
       {work, "block", Identity(plan), {}}, 2 * plan.conditions.size(), num_first * plan.conditions.size()};
   for (size_t k = 0; k < num_kinds; ++k) {
-    const TrialRange range = RangeOf(plan, static_cast<Kind>(k));
+    const TrialRange range = FindTrialRange(plan, static_cast<Kind>(k));
     const size_t num_items = (range.end - range.first + kTrialsOfItem - 1) / kTrialsOfItem;
     for (const Condition& condition : plan.conditions) {
       made.items.groups.push_back({fmt::format("{} of condition {}", kKinds[k], condition.index), num_items});
@@ -192,9 +192,9 @@ void SetEntropies(const Json& json, size_t first, size_t num_trials, EntropiesOf
 
 std::string ComputeBlock(const StudyPlan& plan, const SettingPlan& settings, std::optional<size_t> tuned,
                          const ItemPlace& place) {
-  const StudyPlan one = OneCondition(plan, ConditionOf(plan, place));
-  const TrialRange trials = TrialsOf(plan, place);
-  const Kind kind = KindOf(plan, place);
+  const StudyPlan one = OneCondition(plan, FindConditionNumber(plan, place));
+  const TrialRange trials = FindItemTrials(plan, place);
+  const Kind kind = FindKind(plan, place);
   if (kind == Kind::kEntropies) return EntropiesAsJson(MeasureEntropies(one, trials)).dump();
   if (kind == Kind::kPlainCalls) {
     return VerifiedAsJson(VerifyEstimators(PlanWithTuned(one, settings, tuned.value()), trials)).dump();
@@ -203,7 +203,7 @@ std::string ComputeBlock(const StudyPlan& plan, const SettingPlan& settings, std
 }
 
 std::int64_t CountTrialsIn(const StudyPlan& plan, const ItemPlace& place) {
-  const TrialRange trials = TrialsOf(plan, place);
+  const TrialRange trials = FindItemTrials(plan, place);
   return trials.end - trials.first;
 }
 
@@ -276,7 +276,8 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
                       const WorkResults& results) {
   const auto count = [&](TrialRange range) {
     Kind kind = Kind::kExplore;
-    while (RangeOf(plan, kind).first != range.first) kind = static_cast<Kind>(static_cast<size_t>(kind) + 1);
+    while (FindTrialRange(plan, kind).first != range.first)
+      kind = static_cast<Kind>(static_cast<size_t>(kind) + 1);
     const size_t first = FirstGroup(plan, kind), num_conditions = plan.conditions.size();
     SettingCounts counts(num_conditions, std::vector<SettingCount>(settings.settings.size()));
     ReadResults(work.items, results, first, first + num_conditions,
@@ -302,7 +303,7 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
 }
 
 EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningWork& work, const WorkResults& results) {
-  const TrialRange range = RangeOf(plan, Kind::kEntropies);
+  const TrialRange range = FindTrialRange(plan, Kind::kEntropies);
   const size_t num_trials = range.end - range.first, first = FirstGroup(plan, Kind::kEntropies);
   EntropiesOfTrials entropies(plan.estimators.size(),
                               std::vector<TrialEntropies>(num_trials * plan.conditions.size()));

@@ -16,7 +16,7 @@ double Now(Task::Clock clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double SecondsOf(const Task& task, int num_runs) {
+double MeasureSeconds(const Task& task, int num_runs) {
   const double start = Now(task.clock);
   for (int i = 0; i < num_runs; ++i) task.run();
   return Now(task.clock) - start;
@@ -30,7 +30,7 @@ struct Repetition {
 // The second of two runs counts: the first one fills caches.
 Repetition RepetitionOf(const Task& task, double least_seconds) {
   task.run();
-  const double seconds = std::max(SecondsOf(task, 1), 1e-9);
+  const double seconds = std::max(MeasureSeconds(task, 1), 1e-9);
   return {std::max(1, static_cast<int>(std::ceil(least_seconds / seconds))), seconds < 10.0 * least_seconds};
 }
 
@@ -50,7 +50,7 @@ std::map<std::string, PerRound> MeasureRounds(const std::vector<Task>& tasks, in
       const Task& task = tasks[i];
       const auto [num_runs, warms_up] = repetitions[i];
       if (warms_up) task.run();
-      seconds[task.name].push_back(SecondsOf(task, num_runs) / (num_runs * task.num_calls));
+      seconds[task.name].push_back(MeasureSeconds(task, num_runs) / (num_runs * task.num_calls));
     }
   }
   return seconds;

@@ -36,7 +36,7 @@ bool IsNamed(const Claim& claim, const std::string& name) {
 }
 
 // Seconds on all threads that the check takes if no verdict stops it.
-double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
+double EstimateWork(const Check& check, const CheckRun& run, int num_threads) {
   if (!check.not_possible.empty()) return 0.0;
   constexpr std::uint32_t kLeastTimed = 4;
   constexpr double kLeastSeconds = 0.002, kMostSeconds = 0.1;
@@ -103,7 +103,7 @@ std::vector<double> EstimateSeconds(const Audit& plan) {
   const int num_threads = NumThreads(plan.options.num_threads);
   std::vector<double> seconds;
   for (const CheckPlace& place : ListCheckPlaces(plan))
-    seconds.push_back(WorkOf(CheckAt(plan, place), MakeCheckRun(plan, place), num_threads));
+    seconds.push_back(EstimateWork(CheckAt(plan, place), MakeCheckRun(plan, place), num_threads));
   return seconds;
 }
 

@@ -100,7 +100,7 @@ struct Decisive {
   const TargetResult* result;
 };
 
-Decisive DecisiveOf(const Claim& claim, const ClaimResult& result, size_t begin, size_t end) {
+Decisive FindDecisive(const Claim& claim, const ClaimResult& result, size_t begin, size_t end) {
   const auto distance = [](const Check& check) {
     const double excess = check.sigma_px.value_or(kAssertedSigmaPx) - kAssertedSigmaPx;
     return excess > 0.0 ? 1e3 + excess : -excess;
@@ -283,7 +283,7 @@ Table MakeConditionTable(const Audit& audit) {
           {claim.id, fmt::format("all {}", claim.checks.size()), DescribeVerdict(claim, result)});
     }
     for (size_t c = 0; c < claim.checks.size(); ++c) {
-      const Decisive decisive = DecisiveOf(claim, result, c, c + 1);
+      const Decisive decisive = FindDecisive(claim, result, c, c + 1);
       table.rows.push_back({claim.id, DescribeConditions(claim.checks[c]),
                             DescribeVerdict(claim.checks[c], result.checks[c])});
       std::vector<Value>& row = table.rows.back();
@@ -307,7 +307,7 @@ Table MakeClaimTable(const Audit& audit) {
                Column::Estimated("measured", kFourDigits), Column::Count("n")}};
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
-    const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
+    const Decisive decisive = FindDecisive(claim, audit.results[i], 0, claim.checks.size());
     std::vector<Value>& row = table.rows.emplace_back();
     row = {claim.id, DescribeVerdict(claim, audit.results[i])};
     if (decisive.target) {

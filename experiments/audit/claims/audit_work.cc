@@ -42,7 +42,7 @@ WorkPlan PlanRound(const Audit& plan) {
   return PlanOfChecks(plan, "round of an audit", "number", AuditRound(ListCheckPlaces(plan).size(), 1));
 }
 
-std::vector<TrialBlocks> BlocksOf(const Audit& plan) {
+std::vector<TrialBlocks> MakeTrialBlocks(const Audit& plan) {
   std::vector<TrialBlocks> blocks;
   for (const CheckPlace& place : ListCheckPlaces(plan))
     blocks.emplace_back(CheckAt(plan, place), plan.options.budget);
@@ -110,13 +110,13 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runne
 
 WorkPlan PlanAuditBlocks(const Audit& plan) {
   AuditRound num_blocks;
-  for (const TrialBlocks& blocks : BlocksOf(plan)) num_blocks.push_back(blocks.NumBlocks());
+  for (const TrialBlocks& blocks : MakeTrialBlocks(plan)) num_blocks.push_back(blocks.NumBlocks());
   return PlanOfChecks(plan, "audit", "block", num_blocks);
 }
 
 AuditRound FirstRound(const Audit& plan) {
   AuditRound round;
-  for (const TrialBlocks& blocks : BlocksOf(plan))
+  for (const TrialBlocks& blocks : MakeTrialBlocks(plan))
     round.push_back(blocks.NumBlocks() == 0 ? 0 : blocks.RoundEnd(0));
   return round;
 }
@@ -133,7 +133,7 @@ void WriteRound(const Audit& plan, const AuditRound& round, const std::string& p
 AuditRound ReadRound(const Audit& plan, const std::string& path) {
   const WorkPlan pieces = PlanRound(plan);
   const WorkResults merged = MergeParts(pieces, {path});
-  const std::vector<TrialBlocks> blocks = BlocksOf(plan);
+  const std::vector<TrialBlocks> blocks = MakeTrialBlocks(plan);
   if (FindMissingIn(pieces, merged, 0, pieces.groups.size()).num_items > 0)
     throw InputError(fmt::format("{}: damaged: it lacks checks", path));
   AuditRound round(blocks.size());
@@ -146,7 +146,7 @@ AuditRound ReadRound(const Audit& plan, const std::string& path) {
 
 void GetAuditRound(const Audit& plan, const AuditRound& round, Runner* runner) {
   const std::vector<CheckPlace> checks = ListCheckPlaces(plan);
-  const std::vector<TrialBlocks> blocks = BlocksOf(plan);
+  const std::vector<TrialBlocks> blocks = MakeTrialBlocks(plan);
   std::vector<ItemPlace> its_own = ListItems(round);
   const Shard& shard = runner->shard();
   std::erase_if(its_own, [&](const ItemPlace& p) { return FindShardOfItem(p, shard.count) != shard.number; });
@@ -166,7 +166,7 @@ MergedAudit MergeAuditParts(const std::vector<Claim>& all, const AuditOptions& o
   const WorkPlan pieces = PlanAuditBlocks(merged.audit);
   merged.parts = MergeParts(pieces, paths);
   const std::vector<CheckPlace> checks = ListCheckPlaces(merged.audit);
-  const std::vector<TrialBlocks> blocks = BlocksOf(merged.audit);
+  const std::vector<TrialBlocks> blocks = MakeTrialBlocks(merged.audit);
   for (size_t group = 0; group < checks.size(); ++group) {
     CheckResult* result = &merged.audit.results[checks[group].claim].checks[checks[group].check];
     merged.round.push_back(

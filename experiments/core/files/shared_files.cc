@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kEnding = ".yaml";
 
-const char* NameOf(SharedFolder folder) {
+const char* FindFolderName(SharedFolder folder) {
   switch (folder) {
     case SharedFolder::kStudies:
       return "studies";
@@ -29,7 +29,9 @@ const char* NameOf(SharedFolder folder) {
   return "plots";
 }
 
-std::string ListOf(SharedFolder folder) { return std::string("rcme list ") + NameOf(folder); }
+std::string FormatListCommand(SharedFolder folder) {
+  return std::string("rcme list ") + FindFolderName(folder);
+}
 
 fs::path BesideProgram() {
   std::error_code error;
@@ -55,7 +57,7 @@ void UseShare(const std::string& folder) { Share() = folder; }
 
 std::string FindSharedFolder(SharedFolder folder) {
   const std::string share = FindShare();
-  const fs::path path = fs::path(share) / NameOf(folder);
+  const fs::path path = fs::path(share) / FindFolderName(folder);
   return !share.empty() && IsFolder(path) ? path.string() : std::string();
 }
 
@@ -83,7 +85,7 @@ std::string FindFile(const std::string& name, SharedFolder folder, const FileKin
   const std::string suggestion = DidYouMean(fs::path(bare).filename().string(), names);
   if (suggestion.empty()) return name;
   throw InputError(
-      fmt::format("{}: no such {}{}; installed: {}", name, kind.name, suggestion, ListOf(folder)));
+      fmt::format("{}: no such {}{}; installed: {}", name, kind.name, suggestion, FormatListCommand(folder)));
 }
 
 }  // namespace rcme

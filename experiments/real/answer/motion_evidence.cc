@@ -32,7 +32,7 @@ void MeasureParallax(const MotionProblem& inliers, const RelativePose& pose, Mot
   evidence->parallax_to_noise = ComputeMedian(std::move(to_noise));
 }
 
-double ShareOf(const ModelFit& fit, TwoViewModel model) {
+double ComputeInlierShare(const ModelFit& fit, TwoViewModel model) {
   return static_cast<double>(FindInliers(fit, model, kLevel).size()) /
          static_cast<double>(fit.squared_residuals.size());
 }
@@ -64,8 +64,8 @@ MotionEvidence ComputeEvidence(const MotionProblem& problem, const MotionEstimat
   MeasureParallax(inliers, estimate.cam2_from_cam1, &evidence);
   RandomStream rng = StreamFor({1, 0, 0, 0}, StreamPurpose::kCheck);
   const TwoViewFits fits = FitTwoViewModels(inliers, rng);
-  evidence.parallax_share = 1.0 - ShareOf(fits.rotation, TwoViewModel::kRotation);
-  evidence.planar_share = ShareOf(fits.homography, TwoViewModel::kHomography);
+  evidence.parallax_share = 1.0 - ComputeInlierShare(fits.rotation, TwoViewModel::kRotation);
+  evidence.planar_share = ComputeInlierShare(fits.homography, TwoViewModel::kHomography);
   return evidence;
 }
 

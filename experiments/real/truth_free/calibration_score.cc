@@ -14,7 +14,8 @@ namespace {
 constexpr int kBoth = kNumCameraFaults + 5;
 constexpr size_t kLeastInliers = 20;
 
-double WeightOf(const MotionProblem& problem, const MotionEstimate& estimate, size_t i, double sigma_px) {
+double ComputeWeight(const MotionProblem& problem, const MotionEstimate& estimate, size_t i,
+                     double sigma_px) {
   const double probability = estimate.inlier_probabilities.empty() ? 1.0 : estimate.inlier_probabilities[i];
   const double sd_px = sigma_px * NoiseScaleAt(problem, i);
   return probability / (sd_px * sd_px);
@@ -54,7 +55,7 @@ std::optional<CalibrationScore> ScoreCalibration(const MotionProblem& problem,
     const SampsonResidual residual = model.Evaluate(match);
     Eigen::Matrix<double, kBoth, 1> row;
     row << ResidualByFaults(F, problem.camera1, problem.camera2, pose, match).transpose(), residual.r_p;
-    const double weight = WeightOf(problem, estimate, i, sigma_px);
+    const double weight = ComputeWeight(problem, estimate, i, sigma_px);
     normal += weight * row * row.transpose();
     moments += weight * residual.r * row;
   }

@@ -66,13 +66,13 @@ std::vector<UnitScore> PickFaults(const std::vector<UnitScore>& units,
   return picked;
 }
 
-Interval NominalOf(CameraFault fault) {
+Interval FindNominalRange(CameraFault fault) {
   return {-FindFaultText(fault).nominal, FindFaultText(fault).nominal};
 }
 
-TruthFreeVerdict VerdictOf(CameraFault fault, const PooledParameter& of) {
+TruthFreeVerdict DecideFault(CameraFault fault, const PooledParameter& of) {
   if (std::isnan(of.value)) return TruthFreeVerdict::kNoData;
-  return VerdictOnInterval(of.interval, 0.0, NominalOf(fault));
+  return VerdictOnInterval(of.interval, 0.0, FindNominalRange(fault));
 }
 
 // Further from zero than all of the other interval, to the same side or the other.
@@ -205,8 +205,8 @@ std::optional<CameraFault> FindOtherFault(const std::vector<UnitScore>& units) {
 
 void JudgeFaults(CalibrationReport* report) {
   for (FaultReport& each : report->faults) {
-    each.verdict = VerdictOf(each.fault, each.joint);
-    if (IsFault(VerdictOf(each.fault, each.twins)) && !IsBeyond(each.joint.interval, each.twins.interval))
+    each.verdict = DecideFault(each.fault, each.joint);
+    if (IsFault(DecideFault(each.fault, each.twins)) && !IsBeyond(each.joint.interval, each.twins.interval))
       each.verdict = TruthFreeVerdict::kUndecided;
   }
   report->verdict = VerdictOnAll(*report);
@@ -243,7 +243,7 @@ CalibrationReport TestCalibration(const std::vector<PairAnswers>& answers) {
     FaultReport& of = report.faults[j];
     if (of.verdict != TruthFreeVerdict::kUndecided) continue;
     of.pairs_needed = PairsNeeded(of.fault, of.joint, report.num_pairs);
-    if (IsFault(VerdictOf(of.fault, of.alone)))
+    if (IsFault(DecideFault(of.fault, of.alone)))
       of.confused_with = MostAlike(joint.correlations, static_cast<Eigen::Index>(j), estimates.asked);
   }
   return report;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 
 // A key point's stream: by its image and place, folded to 48 bits.
-std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
+std::uint64_t HashKeyPoint(const std::string& image, const Eigen::Vector2d& x_px) {
   Fnv1a hash;
   hash.Add(image);
   for (const double x : x_px) hash.Add(x);
@@ -52,7 +52,7 @@ NamedPair MakeTwin(const NamedPair& pair, const MotionEstimate& estimate, std::u
   const Eigen::Matrix3d F = ComputeFundamental(pair.problem, estimate.cam2_from_cam1);
   const double sigma_px = EstimateNoise(pair.problem, estimate);
   const auto noise_of = [&](const std::string& image, const Eigen::Vector2d& x_px, double scale) {
-    RandomStream rng = StreamFor({seed, KeyOf(image, x_px), twin, 0}, StreamPurpose::kNoise);
+    RandomStream rng = StreamFor({seed, HashKeyPoint(image, x_px), twin, 0}, StreamPurpose::kNoise);
     const double x = rng.Normal(), y = rng.Normal();
     return Eigen::Vector2d(scale * sigma_px * x, scale * sigma_px * y);
   };

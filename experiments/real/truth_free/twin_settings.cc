@@ -75,7 +75,7 @@ void SetScene(const TwinFit& fit, double clustered_share, Settings* data) {
   }
 }
 
-double ClarkEvansOf(const Settings& settings) {
+double ComputeClarkEvans(const Settings& settings) {
   const std::shared_ptr<const SimulatedData> data = MakeSimulatedData(settings);
   std::vector<double> indices;
   for (std::uint32_t scene_number = 0; scene_number < 7; ++scene_number) {
@@ -103,7 +103,7 @@ double FitClusteredShare(const TwinFit& fit) {
   for (const double share : {0.0, 0.3, 0.6, 0.9}) {
     const Settings data = SimulatedTwinData(fit, share, 1.0);
     if (data.front().second != "image_clusters") return 0.0;
-    const double difference = std::abs(ClarkEvansOf(data) - fit.clark_evans);
+    const double difference = std::abs(ComputeClarkEvans(data) - fit.clark_evans);
     if (difference >= least) continue;
     least = difference;
     best = share;

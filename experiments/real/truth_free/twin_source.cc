@@ -20,7 +20,7 @@ bool IsWrong(const MotionEstimate& estimate, const TrialData& pair) {
   return HasFailed(Score(estimate, pair, 0.0), FailureBounds());
 }
 
-std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& estimate) {
+std::optional<TrialData> MakeExactTrial(const TrialData& pair, const MotionEstimate& estimate) {
   const bool takes_answer = estimate.status == MotionStatus::kOk && !IsWrong(estimate, pair);
   if (!takes_answer && !pair.truth.cam2_from_cam1_true) return std::nullopt;
   TrialData exact = pair;
@@ -85,7 +85,7 @@ TwinSource AnswerScene(const std::string& scene, const DataSource& data, const I
     if (named != images.end()) std::tie(answered.image1, answered.image2) = named->second;
     answered.estimate = TakeAnswer(answered.pair.problem, estimator,
                                    {seed, HashToStreamKey(answered.pair.origin), 0, 0}, steps);
-    answered.exact = ExactOf(answered.pair, answered.estimate);
+    answered.exact = MakeExactTrial(answered.pair, answered.estimate);
     source.pairs.push_back(std::move(answered));
   }
   SetNoiseLevels(&source);

@@ -53,8 +53,8 @@ void AddHalves(const Answered& answered, const MotionEstimator& estimator, Strea
   for (const Split split : kRandomSplits) add(split, random);
 }
 
-PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
-                      const ValidationOptions& options) {
+PairResults ComputePairResults(const NamedPair& pair, const MotionEstimator& estimator,
+                               const ValidationOptions& options) {
   constexpr std::uint32_t kCallsOfPair = 8;  // numbers of trials: a pair's own calls, then those of each twin
   StreamName name{options.seed, HashToStreamKey(pair.name), 0, 0};
   PairResults results;
@@ -144,7 +144,8 @@ std::vector<TestUnit> CloseLoops(const std::vector<PairAnswers>& answers, const 
   return units;
 }
 
-std::vector<DistanceCorrelation> CorrelationsOf(const std::vector<PairResults>& results, RandomStream& rng) {
+std::vector<DistanceCorrelation> MeasureCorrelations(const std::vector<PairResults>& results,
+                                                     RandomStream& rng) {
   std::vector<DistanceCorrelation> all;
   const auto sum_of = [](const std::vector<const PairResults*>& chosen, ResidualProducts PairResults::*list) {
     ResidualProducts sum;
@@ -180,7 +181,7 @@ std::vector<DistanceCorrelation> CorrelationsOf(const std::vector<PairResults>& 
   return all;
 }
 
-ComparedMedians SigmaOf(const std::vector<PairAnswers>& answers, RandomStream& rng) {
+ComparedMedians CompareSigma(const std::vector<PairAnswers>& answers, RandomStream& rng) {
   std::vector<UnitValues> units;
   for (const auto& [whole, twins] : answers) {
     if (whole.IsOk()) units.push_back({{EstimateNoise(whole.pair.problem, whole.estimate)}, {1.0}});
@@ -210,7 +211,7 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
   std::vector<TestUnit> simulation, spatial, random;
   for (const NamedPair& pair : set.pairs) {
     results.push_back(TakeStep<PairResults>(
-        steps, [&] { return ResultsOf(pair, estimator, options); },
+        steps, [&] { return ComputePairResults(pair, estimator, options); },
         {ResultsAsJson, [&](const std::string& json) { return ResultsFrom(json, pair, options); }}));
     answers.push_back(std::move(results.back().answers));
     report.num_answered += answers.back().whole.IsOk();
@@ -232,9 +233,9 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
                   TestCovariances(kSimulationTest, 5, simulation, rng)};
   report.covariances = JudgeTests(report.tests);
   report.assumed_sigma_px = set.pairs.empty() ? kNaN : set.pairs.front().problem.sigma_px;
-  report.sigma_px = SigmaOf(answers, rng);
+  report.sigma_px = CompareSigma(answers, rng);
   report.sigma_verdict = JudgeSigma(report.sigma_px, report.assumed_sigma_px);
-  report.correlations = CorrelationsOf(results, rng);
+  report.correlations = MeasureCorrelations(results, rng);
   report.calibration = Calibrate(answers, estimator, options.seed, steps);
   report.sizes = TestKeyPointSizes(answers);
   report.advice = FindReasons(report);

@@ -118,7 +118,7 @@ SetRow MakeCorrelationRow(const SetReport& set, const DistanceCorrelation& c) {
   return row;
 }
 
-std::vector<SetRow> RowsOf(const SetReport& set) {
+std::vector<SetRow> MakeSetRows(const SetReport& set) {
   const ComparedMedians none{std::nan(""), {std::nan(""), std::nan("")}};
   std::vector<SetRow> rows;
   const auto add = [&](const std::string& name, const std::string& heading, const std::string& verdict,
@@ -159,7 +159,7 @@ Value AgainstTwins(const SetRow& row, const Estimate& estimate) {
 std::string SetAsTable(const SetReport& report) {
   using R = const SetRow&;
   const NumberFormat percent{100.0, "%", ".0f"};
-  std::vector<SetRow> rows = RowsOf(report);
+  std::vector<SetRow> rows = MakeSetRows(report);
   std::erase_if(rows, [](R row) { return row.heading.empty(); });
   const Table table = MakeTable<SetRow>(
       {{Column::Key("test"), [](R r) { return r.heading; }},
@@ -243,7 +243,7 @@ std::string ValidationAsTable(const std::vector<SetReport>& reports) {
 std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
   using R = const SetRow&;
   std::vector<SetRow> rows;
-  for (const SetReport& report : reports) std::ranges::copy(RowsOf(report), std::back_inserter(rows));
+  for (const SetReport& report : reports) std::ranges::copy(MakeSetRows(report), std::back_inserter(rows));
   const double none = std::nan("");
   return RenderCsv(MakeTable<SetRow>(
       {{Column::Text("set"), [](R r) { return r.set->name; }},

@@ -54,7 +54,7 @@ std::string ChecksumOfStoppingRule(const std::string& identity, const std::strin
 }
 
 // The rows of the table `run` but the checksum.
-std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
+std::map<std::string, std::string> ListRunValues(const RunDescription& run) {
   std::map<std::string, std::string> values = {
       {"format", kResultFormat},
       {"name", run.study},
@@ -250,7 +250,7 @@ RunDescription ReadDescription(SQLite::Database& database) {
 
 void WriteDescription(SQLite::Database& database, const RunDescription& run) {
   for (const std::string& table : DescriptionTables()) database.exec("DELETE FROM " + table);
-  for (const auto& [key, value] : ValuesOf(run)) Insert(database, "run", key, value);
+  for (const auto& [key, value] : ListRunValues(run)) Insert(database, "run", key, value);
   const auto number = [](size_t index) { return static_cast<std::int64_t>(index); };
   for (size_t f = 0; f < run.factors.size(); ++f) Insert(database, "factors", number(f), run.factors[f]);
   for (size_t c = 0; c < run.conditions.size(); ++c) {
