@@ -9,7 +9,7 @@
 namespace rcme {
 namespace {
 
-StreamName NameOf(std::uint32_t trial) { return {1, 0, trial, 0}; }
+StreamName MakeTrialName(std::uint32_t trial) { return {1, 0, trial, 0}; }
 
 }  // namespace
 
@@ -24,11 +24,11 @@ TrialData MakeBenchmarkData(int num_matches, std::uint32_t trial, const std::str
                  .sources[0]
                  .second;
   }
-  return source->Make(NameOf(trial));
+  return source->Make(MakeTrialName(trial));
 }
 
 BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
-    : name(NameOf(trial)), data(MakeBenchmarkData(num_matches, trial)), blocks(data.problem) {
+    : name(MakeTrialName(trial)), data(MakeBenchmarkData(num_matches, trial)), blocks(data.problem) {
   for (const Correspondence& match : data.problem.matches) {
     x1.emplace_back(static_cast<float>(match.x1_px.x()), static_cast<float>(match.x1_px.y()));
     x2.emplace_back(static_cast<float>(match.x2_px.x()), static_cast<float>(match.x2_px.y()));

@@ -111,7 +111,7 @@ void CompareWithTextbook(double max_exponent, std::uint32_t purpose) {
         TextbookDistance(ComputeFundamental(random), FundamentalTangent(random), pose_cov, 0.5, match);
     if (!(textbook.condition < 1e11)) continue;
     ++num_compared;
-    const AsPrintedTest test(ModelOf(random, pose_cov), 0.5);
+    const AsPrintedTest test(ComputeUncertainModel(random, pose_cov), 0.5);
     PointResidual residual;
     ASSERT_NEAR(test.Distance(match, &residual), textbook.d2, 1e-6 * textbook.d2) << "motion to " << std_dev;
     ASSERT_EQ(residual.d2, Distance(test, match));
@@ -150,7 +150,7 @@ TEST(AsPrintedTest, KnownMotionMeasuresTheDistanceFromTheEpipoles) {
     if (lost > 1e8) continue;
     ++num_compared;
     const double d2 = squared_px / 0.25;
-    ASSERT_NEAR(Distance(AsPrintedTest(ModelOf(random, Matrix5d::Zero()), 0.5), match), d2,
+    ASSERT_NEAR(Distance(AsPrintedTest(ComputeUncertainModel(random, Matrix5d::Zero()), 0.5), match), d2,
                 1e-12 * lost * d2);
   }
   EXPECT_GT(num_compared, 500);
@@ -162,7 +162,7 @@ TEST(AsPrintedTest, DeterminantFallsWithTheSixthPowerOfG) {
   RandomStream rng({.seed = 1, .purpose = 205});
   for (int i = 0; i < 50; ++i) {
     const RandomProblem random = MakeRandomProblem(rng, {.num_matches = 1});
-    const UncertainFundamental model = ModelOf(random, RandomPoseCov(0.001, rng));
+    const UncertainFundamental model = ComputeUncertainModel(random, RandomPoseCov(0.001, rng));
     const Correspondence exact = random.problem.matches[0];
     const Eigen::Vector4d unit = EvaluateConstraint(model.F, exact).gradient.normalized();
     const auto at = [&](double distance_px) {
@@ -211,7 +211,7 @@ TEST(RankAwareTest, IsTheResidualOverItsOwnStandardDeviation) {
     Vector5d g_p;
     for (int k = 0; k < 5; ++k) g_p(k) = EvaluateConstraint(dF_dp[static_cast<size_t>(k)], match).g;
     const double s2 = 0.25 + g_p.dot(pose_cov * g_p) / c.squared_gradient();
-    const RankAwareTest test(ModelOf(random, pose_cov), 0.5);
+    const RankAwareTest test(ComputeUncertainModel(random, pose_cov), 0.5);
     PointResidual residual;
     const double d2 = c.g * c.g / (c.squared_gradient() * s2);
     EXPECT_NEAR(test.Distance(match, &residual), d2, 1e-11 * d2);
@@ -233,7 +233,7 @@ TEST(RankAwareTest, KnownMotionHasNoExcessEntropyAndTheKnownPoseDistance) {
   for (int i = 0; i < 50; ++i) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 1});
     AddNoise(2.0, rng, &random.problem);
-    const RankAwareTest test(ModelOf(random, Matrix5d::Zero()), 0.5);
+    const RankAwareTest test(ComputeUncertainModel(random, Matrix5d::Zero()), 0.5);
     const KnownPoseTest known(ComputeFundamental(random), 0.5);
     EXPECT_NEAR(Entropy(test, random.problem.matches[0]), 0.0, 1e-15);
     const double d2 = Distance(known, random.problem.matches[0]);
@@ -258,7 +258,8 @@ TEST(PointTests, UnitsOfPixelsMatterAsStated) {
     }
     const Correspondence match = random.problem.matches[0];
     const Correspondence scaled_match{kScale * match.x1_px, kScale * match.x2_px};
-    const UncertainFundamental model = ModelOf(random, pose_cov), scaled_model = ModelOf(scaled, pose_cov);
+    const UncertainFundamental model = ComputeUncertainModel(random, pose_cov),
+                               scaled_model = ComputeUncertainModel(scaled, pose_cov);
 
     const RankAwareTest rank_aware(model, 0.5), scaled_rank_aware(scaled_model, 0.5 * kScale);
     PointResidual residual, scaled_residual;
@@ -291,7 +292,7 @@ KnownMotionCoverage MeasureKnownMotion(double sigma_px, double assumed_px, std::
   for (int motion = 0; motion < 2000; ++motion) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 20});
     AddNoise(sigma_px, rng, &random.problem);
-    const UncertainFundamental model = ModelOf(random, Matrix5d::Zero());
+    const UncertainFundamental model = ComputeUncertainModel(random, Matrix5d::Zero());
     const RankAwareTest rank_aware(model, assumed_px);
     const AsPrintedTest as_printed(model, assumed_px);
     for (const Correspondence& match : random.problem.matches) {

@@ -37,7 +37,7 @@ inline bool Execute(const std::string& path, const std::string& sql) {
 }
 
 // All that the commands say of a run: its summary with the times, its comparison, every record.
-inline std::string ResultsOf(const std::string& path) {
+inline std::string ReadAllResults(const std::string& path) {
   const ResultStore store = ResultStore::OpenForReading(path);
   std::string text = SummaryAsCsv(Summarize(store, /*with_times=*/true)) +
                      ComparisonAsCsv(Compare(store, "")) + store.Plan().study_yaml;
@@ -68,7 +68,7 @@ class DamagedResultFile : public testing::Test {
     }
     EXPECT_TRUE(Execute(path, fmt::format("PRAGMA page_size = {}; VACUUM", kPage)));
     bytes_ = new std::string(ReadBytes(path));
-    results_ = new std::string(ResultsOf(path));
+    results_ = new std::string(ReadAllResults(path));
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -87,7 +87,7 @@ class DamagedResultFile : public testing::Test {
   // failure.
   FileOutcome Read(const std::string& what) {
     try {
-      EXPECT_EQ(ResultsOf(path_) == *results_, true) << what << ": changed in silence";
+      EXPECT_EQ(ReadAllResults(path_) == *results_, true) << what << ": changed in silence";
       return FileOutcome::kSame;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << what << ": " << error.what();

@@ -118,7 +118,7 @@ struct Sizes {
   ConditionWeights weights;
 };
 
-std::vector<int> TrialsOf(const Sizes& sizes, int num_conditions) {
+std::vector<int> ListTrials(const Sizes& sizes, int num_conditions) {
   std::vector<int> trials;
   for (int i = 0; i < num_conditions; ++i)
     trials.push_back(sizes.cycle[static_cast<size_t>(i) % sizes.cycle.size()]);
@@ -128,7 +128,7 @@ std::vector<int> TrialsOf(const Sizes& sizes, int num_conditions) {
 // hidden: of the conditions of the kind that fewer have, less than three are expected, and the others have
 // events too, so that a sample without the few looks complete; rare: fewer than five events of the size that
 // conditions give them are expected.
-std::string RegimeOf(Shape shape, int num_conditions, double p, double rho) {
+std::string ClassifyRegime(Shape shape, int num_conditions, double p, double rho) {
   if (rho > 0.0 && shape == Shape::kNeverOrHigh) {
     const double share_of_never = 1.0 - p / (p + rho * (1.0 - p));
     if (share_of_never < 0.5 && num_conditions * share_of_never < 3.0) return "hidden";
@@ -144,7 +144,7 @@ std::string RegimeOf(Shape shape, int num_conditions, double p, double rho) {
 void MeasureRateCell(const Cell& cell, const RateLaw& law, const Sizes& sizes, int repetitions,
                      std::uint32_t number, Tables* tables) {
   RandomStream rng = MakeStream(number, 160);
-  const std::vector<int> trials = TrialsOf(sizes, cell.num_conditions);
+  const std::vector<int> trials = ListTrials(sizes, cell.num_conditions);
   Coverage coverage;
   for (int repetition = 0; repetition < repetitions; ++repetition) {
     const PopulationRate rate = MeasurePopulationRate(DrawConditions(law, trials, rng), sizes.weights);
@@ -164,7 +164,8 @@ void MeasureRates(const std::string& grid, const std::vector<int>& all_condition
         for (const Sizes& sizes : all_sizes) {
           for (const int m : all_conditions) {
             const Cell cell{
-                "rate", grid, RegimeOf(shape, m, p, rho), rho == 0.0 ? "equal" : name, sizes.name, m, rho, p};
+                "rate", grid, ClassifyRegime(shape, m, p, rho), rho == 0.0 ? "equal" : name, sizes.name, m,
+                rho,    p};
             MeasureRateCell(cell, law, sizes, repetitions, number++, tables);
           }
         }

@@ -31,7 +31,7 @@ class RunUntilTest : public testing::Test {
     ResultStore store = ResultStore::OpenForRun(folder_.Path(name), plan_);
     return RunUntil(plan_, options, &store);
   }
-  std::string CsvOf(const std::string& name) {
+  std::string ReadRecordTexts(const std::string& name) {
     std::string text;
     ResultStore::OpenForReading(folder_.Path(name)).ForEachRecord([&](const TrialRecord& record) {
       text += RecordText(record) + "\n";
@@ -85,7 +85,7 @@ TEST_F(RunUntilTest, TheSameTrialsWhateverTheThreadsAndHoweverOftenItWasCutOff) 
     EXPECT_EQ(whole[c].num_trials, parts[c].num_trials);
     EXPECT_EQ(whole[c].rate, parts[c].rate);
   }
-  EXPECT_EQ(CsvOf("whole"), CsvOf("parts"));
+  EXPECT_EQ(ReadRecordTexts("whole"), ReadRecordTexts("parts"));
 }
 
 // Two shards in rounds, one of which is lost once: the trials of one run, and so its tables.
@@ -114,7 +114,7 @@ TEST_F(RunUntilTest, ShardsInRoundsRunTheTrialsOfOneRun) {
         << "how many there are to be is not known";
   }
   EXPECT_GT(num_rounds, 3);
-  EXPECT_EQ(CsvOf("whole"), CsvOf(std::filesystem::path(merged).filename()));
+  EXPECT_EQ(ReadRecordTexts("whole"), ReadRecordTexts(std::filesystem::path(merged).filename()));
   ResultStore store = ResultStore::OpenForRun(merged, plan_);
   const std::int64_t num_before = store.NumTrials();
   const std::vector<CellPrecision> cells = RunUntil(plan_, options, &store);

@@ -32,7 +32,7 @@ StudyPlan FourConditions(const std::string& design = "") {
 }
 
 TransferResult Transfer(const StudyPlan& plan, const std::string& by, int num_threads = 2) {
-  return MeasureTransferInMemory(plan, SettingsOf(plan), by, num_threads);
+  return MeasureTransferInMemory(plan, MakeTunedSettings(plan), by, num_threads);
 }
 
 std::vector<std::string> Words(const TransferResult& result) {
@@ -69,7 +69,7 @@ TEST(Transfer, AFamilyIsTunedOnItsOwnConditionsAlone) {
   for (size_t f = 0; f < 2; ++f) {
     StudyPlan alone = plan;
     alone.conditions = {plan.conditions[f], plan.conditions[2 + f]};
-    const TuneResult tuned = TuneInMemory(alone, SettingsOf(alone), Unreached::kVerifyAll, 2);
+    const TuneResult tuned = TuneInMemory(alone, MakeTunedSettings(alone), Unreached::kVerifyAll, 2);
     EXPECT_EQ(result.families[f].choice.setting, tuned.choice.setting);
     EXPECT_EQ(result.families[f].choice.path, tuned.choice.path);
     EXPECT_EQ(result.families[f].choice.why, tuned.choice.why);
@@ -80,8 +80,8 @@ TEST(Transfer, AFamilyIsTunedOnItsOwnConditionsAlone) {
 
 TEST(Transfer, DoesNotDependOnThreads) {
   const StudyPlan plan = FourConditions();
-  EXPECT_EQ(TransferAsJson(plan, SettingsOf(plan), Transfer(plan, "", 1)),
-            TransferAsJson(plan, SettingsOf(plan), Transfer(plan, "", 3)));
+  EXPECT_EQ(TransferAsJson(plan, MakeTunedSettings(plan), Transfer(plan, "", 1)),
+            TransferAsJson(plan, MakeTunedSettings(plan), Transfer(plan, "", 3)));
 }
 
 TEST(Transfer, WhatHasNoPromiseOrNoOtherFamilyIsRefused) {
@@ -138,7 +138,7 @@ TEST(TransferOutput, CellsAndCountsOfTheOthers) {
   result.verified = {{none, none, none, none}, {many, many, many, many}, {none, some, none, none}};
   const std::string table = TransferAsTable(plan, result);
   EXPECT_NE(table.find("none: out of reach"), std::string::npos) << table;
-  const auto json = nlohmann::json::parse(TransferAsJson(plan, SettingsOf(plan), result));
+  const auto json = nlohmann::json::parse(TransferAsJson(plan, MakeTunedSettings(plan), result));
   ASSERT_EQ(json["cells"].size(), 6u);  // of two families
   EXPECT_EQ(json["cells"][1]["verified_on"], 1);
   EXPECT_EQ(json["cells"][1]["verdict"], "does not hold");

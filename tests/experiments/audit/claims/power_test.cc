@@ -30,7 +30,7 @@ Check LawCheck(int degrees_of_freedom, double sigma_error, const std::vector<Tar
   return check;
 }
 
-CoverageCount ShareOf(Verdict verdict, const Check& check, double confidence, int num_seeds) {
+CoverageCount CountWithVerdict(Verdict verdict, const Check& check, double confidence, int num_seeds) {
   CoverageCount count;
   for (int seed = 1; seed <= num_seeds; ++seed) {
     count.Add(DecideCheck(check, {static_cast<std::uint64_t>(seed), 3, Budget::kQuick, confidence}).verdict ==
@@ -66,12 +66,12 @@ TEST(FindPower, IsThePowerThatChecksHave) {
   for (const Target& target : {CoverageTargets(5).front(), CoverageTargets(5).back()}) {
     const TargetPower power = FindPower(target, kTrials, kPowerConfidence);
     const CoverageCount holds =
-        ShareOf(Verdict::kHolds, LawCheck(5, 0.0, {target}, kTrials), kPowerConfidence, kSeeds);
+        CountWithVerdict(Verdict::kHolds, LawCheck(5, 0.0, {target}, kTrials), kPowerConfidence, kSeeds);
     EXPECT_TRUE(holds.Admits(power.holds_at_nominal))
         << target.quantity << power.holds_at_nominal << ", " << holds;
     for (const double error : {power.found_sigma.lower, power.found_sigma.upper}) {
-      const CoverageCount found =
-          ShareOf(Verdict::kDoesNotHold, LawCheck(5, error, {target}, kTrials), kPowerConfidence, kSeeds);
+      const CoverageCount found = CountWithVerdict(
+          Verdict::kDoesNotHold, LawCheck(5, error, {target}, kTrials), kPowerConfidence, kSeeds);
       EXPECT_TRUE(found.Admits(kPowerOfDesign)) << target.quantity << " at " << error << ": " << found;
     }
   }

@@ -4,7 +4,7 @@
 
 #include "estimator/geometry/sampson.h"
 #include "experiments/real/truth_free/twin.h"
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -15,7 +15,7 @@ namespace {
 TEST(ScoreCalibration, WeighsInliersByTheirProbability) {
   RelativePose pose;
   const MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose);
-  MotionEstimate all = FitOf(problem, pose);
+  MotionEstimate all = FitAllMatches(problem, pose);
   all.sigma_estimated_px = 0.5;
   MotionEstimate some = all, by_probability = all;
   some.inliers.resize(40);
@@ -36,7 +36,7 @@ TEST(ScoreCalibration, WeighsInliersByTheirProbability) {
 TEST(ScoreCalibration, WeighsInliersByTheirNoise) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose);
-  MotionEstimate estimate = FitOf(problem, pose);
+  MotionEstimate estimate = FitAllMatches(problem, pose);
   estimate.sigma_estimated_px = 0.5;
   const CalibrationScore once = *ScoreCalibration(problem, estimate);
   estimate.sigma_estimated_px = 1.5;
@@ -54,7 +54,7 @@ TEST(ScoreCalibration, DoesNotGoWithAnErrorOfTheMotion) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(60, 0.0, 0.0, 1, &pose);
   problem.sigma_px = 0.5;
-  MotionEstimate estimate = FitOf(problem, pose);
+  MotionEstimate estimate = FitAllMatches(problem, pose);
   estimate.sigma_estimated_px = 0.5;
   const auto size_at = [&](double error) {
     estimate.cam2_from_cam1 = Retract(pose, Vector5d::Constant(error));
@@ -67,7 +67,7 @@ TEST(ScoreCalibration, DoesNotGoWithAnErrorOfTheMotion) {
 TEST(ScoreCalibration, NeedsTwentyInliers) {
   RelativePose pose;
   const MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose);
-  MotionEstimate estimate = FitOf(problem, pose);
+  MotionEstimate estimate = FitAllMatches(problem, pose);
   estimate.inliers.resize(20);
   EXPECT_TRUE(ScoreCalibration(problem, estimate).has_value());
   estimate.inliers.resize(19);

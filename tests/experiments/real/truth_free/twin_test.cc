@@ -215,7 +215,7 @@ TEST(MakeTwin, DrawsNoiseOfTheMatchsScale) {
 }
 
 // Pairs of a simulated study as a source of twins.
-TwinSource SourceOf(const Settings& more, int num_pairs, const MotionEstimator& estimator) {
+TwinSource MakeTwinSource(const Settings& more, int num_pairs, const MotionEstimator& estimator) {
   Settings data = {{"scene", "image_clusters"}, {"num_matches", "300"},  {"outlier_ratio", "0.25"},
                    {"sigma_px", "0.3"},         {"parallax_deg", "4"},   {"motion", "sideways"},
                    {"assumed_sigma_px", "0.5"}, {"severity", "skipped"}, {"clustered_share", "0"}};
@@ -241,7 +241,7 @@ TwinSource SourceOf(const Settings& more, int num_pairs, const MotionEstimator& 
 // Twelve pairs of 225 right matches: sigma is known to 2 %, and to what the estimator's own scale is worth.
 TEST(FitTwin, FindsTheNumbersOfASimulation) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  const TwinFit fit = FitTwin(SourceOf({}, 12, *estimator), *estimator, 1);
+  const TwinFit fit = FitTwin(MakeTwinSource({}, 12, *estimator), *estimator, 1);
   EXPECT_EQ(fit.num_templates, 12);
   EXPECT_NEAR(fit.noise.noise_px, 0.3, 0.03);
   EXPECT_TRUE(fit.noise.student_dof == 0.0 || fit.noise.student_dof >= 6.0) << fit.noise.student_dof;
@@ -268,7 +268,7 @@ const TwinComparison& Found(const TwinReport& report, const std::string& quantit
 // sigma is that of the precise matches: with 1.5 degrees of freedom a fraction of the root mean square.
 TEST(TwinReport, ResemblesTailsOfRealLength) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  const TwinSource source = SourceOf(
+  const TwinSource source = MakeTwinSource(
       {{"noise", "correlated"}, {"noise_correlation", "0"}, {"noise_student_dof", "1.5"}, {"sigma_px", "1"}},
       12, *estimator);
   const TwinReport report = MakeTwinReport(source, *estimator, "pairs", 0.5, 1, 2);
@@ -288,7 +288,7 @@ TEST(TwinReport, ResemblesTailsOfRealLength) {
 // halves say so.
 TEST(TwinReport, SaysWhatSimulationExplains) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  const TwinReport own = MakeTwinReport(SourceOf({}, 12, *estimator), *estimator, "pairs", 0.5, 1, 2);
+  const TwinReport own = MakeTwinReport(MakeTwinSource({}, 12, *estimator), *estimator, "pairs", 0.5, 1, 2);
   EXPECT_EQ(own.why_not_simulated, "");
   EXPECT_GE(own.NumCompared("semi_real", false), 7);
   EXPECT_GE(own.NumCompared("semi_real", true), 4);
@@ -298,8 +298,8 @@ TEST(TwinReport, SaysWhatSimulationExplains) {
   for (const char* twin : {"semi_real", "simulated"})
     EXPECT_GE(own.NumWithin(twin, true), own.NumCompared(twin, true) - 1) << TwinsAsText({own});
 
-  const TwinReport bent =
-      MakeTwinReport(SourceOf({{"distortion_k1", "0.2"}}, 12, *estimator), *estimator, "pairs", 0.5, 1, 2);
+  const TwinReport bent = MakeTwinReport(MakeTwinSource({{"distortion_k1", "0.2"}}, 12, *estimator),
+                                         *estimator, "pairs", 0.5, 1, 2);
   EXPECT_FALSE(Found(bent, "spatial_halves", "semi_real").IsWithin()) << TwinsAsText({bent});
   EXPECT_THAT(TwinsAsText({bent}), testing::HasSubstr("not explained: left/right"));
   EXPECT_THAT(TwinsAsCsv({bent}), testing::HasSubstr("made,12,semi_real,spatial_halves,rate,no,"));
@@ -307,7 +307,7 @@ TEST(TwinReport, SaysWhatSimulationExplains) {
 
 TEST(FitTwin, WithoutAPairToResembleSaysSo) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  TwinSource source = SourceOf({}, 2, *estimator);
+  TwinSource source = MakeTwinSource({}, 2, *estimator);
   for (AnsweredTrial& one : source.pairs) one.exact.reset();
   EXPECT_TRUE(
       ThrowsInputError([&] { FitTwin(source, *estimator, 1); }, {"scene made", "nothing to resemble"}));

@@ -16,7 +16,7 @@
 #include "experiments/real/truth_free/validate_output.h"
 #include "experiments/study/study_file.h"
 #include "stats/consistency.h"
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/paths.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -48,7 +48,7 @@ TEST(MakeTwin, HasTheGeometryOfTheAnswerWithNewNoise) {
   RelativePose pose_true;
   NamedPair pair{"a", "", "", TwoCameraProblem(400, 0.5, 0.0, 1, &pose_true)};
   pair.problem.matches[7] = pair.problem.matches[3];
-  MotionEstimate estimate = FitOf(pair.problem, pose_true);
+  MotionEstimate estimate = FitAllMatches(pair.problem, pose_true);
   estimate.sigma_estimated_px = 0.25;
   estimate.inliers.erase(estimate.inliers.begin());
   const NamedPair twin = MakeTwin(pair, estimate, 1, 1), again = MakeTwin(pair, estimate, 1, 1),
@@ -72,7 +72,7 @@ TEST(MakeTwin, HasTheGeometryOfTheAnswerWithNewNoise) {
 TEST(SumProducts, ComparesResidualsAtTheirDistance) {
   RelativePose pose_true;
   MotionProblem problem = TwoCameraProblem(100, 0.5, 0.0, 1, &pose_true);
-  MotionEstimate estimate = FitOf(problem, pose_true);
+  MotionEstimate estimate = FitAllMatches(problem, pose_true);
   for (const Correspondence& match : std::vector<Correspondence>(problem.matches)) {
     estimate.inliers.push_back(static_cast<int>(problem.matches.size()));
     problem.matches.push_back(match);
