@@ -51,7 +51,7 @@ std::vector<ConditionProgress> CountProgress(const ResultStore& store, const Run
 Json TrialOrNull(const std::optional<std::uint32_t>& trial) { return trial ? Json(*trial) : Json(); }
 
 // Conditions with their levels, their progress, and per estimator the first failure and refusal.
-Json ConditionsAsJson(const ResultStore& store, const RunDescription& run) {
+Json RenderConditionProgress(const ResultStore& store, const RunDescription& run) {
   Json conditions = Json::array();
   const std::vector<ConditionProgress> progress = CountProgress(store, run);
   for (size_t c = 0; c < run.conditions.size(); ++c) {
@@ -102,7 +102,7 @@ Json RunAsJson(const std::string& path, const ResultStore& store) {
           {"study_yaml", run.study_yaml},
           {"factors", run.factors},
           {"estimators", estimators},
-          {"conditions", ConditionsAsJson(store, run)},
+          {"conditions", RenderConditionProgress(store, run)},
           {"failure_bounds", bounds},
           {"quantities", quantities},
           {"events", events}};

@@ -163,6 +163,12 @@ std::vector<PopulationDraw> DrawPopulation(const Study& study) {
   return draws;
 }
 
+std::optional<int> FindDraw(const std::vector<std::string>& factors, const std::vector<std::string>& levels) {
+  for (size_t f = 0; f < factors.size(); ++f)
+    if (factors[f] == kDrawFactor) return std::stoi(levels[f]);
+  return std::nullopt;
+}
+
 int CountDraws(const Population& population) {
   return population.draws.empty() ? population.number : static_cast<int>(population.draws.size());
 }

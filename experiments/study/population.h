@@ -62,6 +62,9 @@ std::vector<std::string> ListDrawnKeys(const Population& population);
 // Of the draws; a chosen one of sobol or random may be beyond Population::number.
 int CountDraws(const Population& population);
 
+// The number of the draw that a condition is of, by the names of its factors; nothing without kDrawFactor.
+std::optional<int> FindDraw(const std::vector<std::string>& factors, const std::vector<std::string>& levels);
+
 struct PopulationDraw {
   int number = 0;
   std::vector<std::string> levels;  // one per key of ListDrawnKeys; kNotDrawn
