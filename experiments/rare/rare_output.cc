@@ -75,7 +75,7 @@ double KnownShare(const RareRow& row) {
 
 // Of so many trials of every condition; the estimators of one share them.
 template <typename Cell>
-std::string DescribeMissingTrials(const std::vector<Cell>& cells, std::int64_t num_of_condition) {
+std::string DescribeMissingCellTrials(const std::vector<Cell>& cells, std::int64_t num_of_condition) {
   std::int64_t num_not_simulated = 0, num_trials = 0;
   for (const Cell& cell : cells) {
     if (cell.estimator != 0) continue;
@@ -204,7 +204,7 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
              "Mean of independent unbiased replicates with Cox's 95 % interval; spread: standard deviation "
              "of "
              "one over the mean.") +
-         FormatParagraph(kBruteForceLegend) + DescribeMissingTrials(cells, FailingMotion::kNumTried) +
+         FormatParagraph(kBruteForceLegend) + DescribeMissingCellTrials(cells, FailingMotion::kNumTried) +
          FormatParagraph(
              "unseen up to: failures of a kind that comes at once, with no level before it, may have any "
              "rate "
@@ -228,7 +228,7 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
              "Each trial that is run counts as many as its stratum stands for; 95 % interval of Fay and "
              "Feuer "
              "for weighted counts.") +
-         FormatParagraph(kBruteForceLegend) + DescribeMissingTrials(cells, NumDrawn(cells)) +
+         FormatParagraph(kBruteForceLegend) + DescribeMissingCellTrials(cells, NumDrawn(cells)) +
          FormatParagraph(
              "unseen up to: the upper end if the next failure came from the easiest stratum that was run.") +
          FormatParagraph(fmt::format("trusted: the failures weigh as much as {:g} of equal weight or more.",

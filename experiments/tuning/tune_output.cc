@@ -29,7 +29,7 @@ std::string DescribeTrials(const StudyPlan& plan) {
 }
 
 // Of all trials of the tuning.
-std::string DescribeMissingTrials(const StudyPlan& plan, const TuneResult& result) {
+std::string DescribeMissingTuningTrials(const StudyPlan& plan, const TuneResult& result) {
   const Tuning& tuning = *plan.study.tuning;
   std::int64_t num_trials = 0, num_simulated = 0;
   const auto add = [&](const std::vector<SettingCount>& counts, int per_condition) {
@@ -155,7 +155,7 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
   std::string text =
       FormatParagraph(fmt::format("{}: {} settings of {}, {}", plan.study.name, result.settings.size(),
                                   tuning.estimator, DescribeTrials(plan))) +
-      FormatParagraph("Target: " + DescribeTarget(tuning)) + DescribeMissingTrials(plan, result);
+      FormatParagraph("Target: " + DescribeTarget(tuning)) + DescribeMissingTuningTrials(plan, result);
   if (!result.choice.setting) return text + FormatParagraph("Not reached: " + result.choice.why);
   text +=
       FormatParagraph(fmt::format("Tuned: {}{}; {}", result.settings[*result.choice.setting],
