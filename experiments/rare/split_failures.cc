@@ -25,11 +25,6 @@ std::string PilotAsJson(const SplittingPilot& pilot) {
       .dump();
 }
 
-// What no run can have given is damage, whatever the checksums say.
-void RequirePossible(bool is_possible, const char* what) {
-  if (!is_possible) throw std::invalid_argument(fmt::format("its numbers cannot be: {}", what));
-}
-
 bool AreShares(const std::vector<double>& numbers) {
   constexpr double kRounding = 1e-9;  // of a mean of shares
   return std::ranges::all_of(numbers, [](double x) { return x >= 0.0 && x <= 1.0 + kRounding; });
@@ -48,9 +43,11 @@ SplittingPilot PilotFrom(const Json& json, const SplittingEffort& effort) {
                              NumberFrom(json[3]),
                              CountFrom(json[4], kMost)};
   const std::vector<double>& levels = pilot.levels.levels;
-  RequirePossible(levels.size() == pilot.levels.steps.size(), "levels without steps");
-  RequirePossible(std::ranges::is_sorted(levels) && AreShares(pilot.levels.steps), "levels that fall");
-  RequirePossible(pilot.num_values == NumValues(effort, levels.size()), "another number of values");
+  RequirePossible(levels.size() == pilot.levels.steps.size(), "numbers", "levels without steps");
+  RequirePossible(std::ranges::is_sorted(levels) && AreShares(pilot.levels.steps), "numbers",
+                  "levels that fall");
+  RequirePossible(pilot.num_values == NumValues(effort, levels.size()), "numbers",
+                  "another number of values");
   return pilot;
 }
 
@@ -72,10 +69,11 @@ SplittingReplicate ReplicateFrom(const Json& json, const SplittingEffort& effort
                                      CountFrom(json[6], kMost)};
   double product = 1.0;
   for (const double share : replicate.shares) product *= share;
-  RequirePossible(AreShares(replicate.shares) && AreShares(replicate.acceptance), "a share that is none");
-  RequirePossible(replicate.estimate == product, "the estimate is not the product of the shares");
-  RequirePossible(replicate.num_drawn == num_particles, "another number of particles");
-  RequirePossible(replicate.num_values == NumValues(effort, replicate.acceptance.size()),
+  RequirePossible(AreShares(replicate.shares) && AreShares(replicate.acceptance), "numbers",
+                  "a share that is none");
+  RequirePossible(replicate.estimate == product, "numbers", "the estimate is not the product of the shares");
+  RequirePossible(replicate.num_drawn == num_particles, "numbers", "another number of particles");
+  RequirePossible(replicate.num_values == NumValues(effort, replicate.acceptance.size()), "numbers",
                   "another number of values");
   return replicate;
 }

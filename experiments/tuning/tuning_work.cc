@@ -85,24 +85,19 @@ Json CountsAsJson(const std::vector<SettingCount>& counts) {
   return json;
 }
 
-// What no trials can have given is damage, whatever the checksums say.
-void RequirePossible(bool is_possible, const char* what) {
-  if (!is_possible) throw std::invalid_argument(fmt::format("its counts cannot be: {}", what));
-}
-
 // Of so many trials, or of those of them that could be simulated.
 void AddCounts(const Json& json, std::int64_t num_trials, bool is_drawn, std::vector<SettingCount>* counts) {
   RequireSize(json, counts->size());
   for (size_t s = 0; s < counts->size(); ++s) {
     RequireSize(json[s], 5);
     const std::int64_t n = CountFrom(json[s][0], num_trials);
-    RequirePossible(n == num_trials || is_drawn, "fewer trials than there are");
+    RequirePossible(n == num_trials || is_drawn, "counts", "fewer trials than there are");
     const auto number = [&](size_t i) { return CountFrom(json[s][i], n); };
     const SettingCount count{n, number(1), number(2), number(3), number(4)};
-    RequirePossible(count.failures + count.refusals <= n, "more failures and refusals than trials");
-    RequirePossible(count.false_refusals <= count.refusals, "more false refusals than refusals");
-    RequirePossible(count.false_refusals <= count.good, "more false refusals than good trials");
-    RequirePossible(count.good - count.false_refusals <= n - count.refusals,
+    RequirePossible(count.failures + count.refusals <= n, "counts", "more failures and refusals than trials");
+    RequirePossible(count.false_refusals <= count.refusals, "counts", "more false refusals than refusals");
+    RequirePossible(count.false_refusals <= count.good, "counts", "more false refusals than good trials");
+    RequirePossible(count.good - count.false_refusals <= n - count.refusals, "counts",
                     "more good trials than were refused or not");
     (*counts)[s] += count;
   }
@@ -125,12 +120,12 @@ VerifiedEstimator VerifiedFrom(const Json& json, std::int64_t n, std::int64_t nu
   const VerifiedEstimator one{
       {}, {number(0), n}, {number(1), n}, {number(2), n}, {number(3), number(4), number(5), number(6)}};
   const PairedCounts& paired = one.against_first;
-  RequirePossible(one.failure.errors + one.refusal.errors == one.failure_or_refusal.errors,
+  RequirePossible(one.failure.errors + one.refusal.errors == one.failure_or_refusal.errors, "counts",
                   "failures and refusals are not their sum");
-  RequirePossible(paired.n() == n, "the pairs are not the trials");
-  RequirePossible(paired.both + paired.second_only == one.failure_or_refusal.errors,
+  RequirePossible(paired.n() == n, "counts", "the pairs are not the trials");
+  RequirePossible(paired.both + paired.second_only == one.failure_or_refusal.errors, "counts",
                   "the pairs have other failures and refusals");
-  RequirePossible(paired.both + paired.first_only == num_bad_of_first,
+  RequirePossible(paired.both + paired.first_only == num_bad_of_first, "counts",
                   "the pairs have other failures and refusals of the first estimator");
   return one;
 }
@@ -142,7 +137,7 @@ void AddVerified(const Json& json, std::int64_t num_trials, bool is_drawn,
   RequireSize(json[0], 7);
   std::int64_t n = 0;  // of them could be simulated
   for (size_t i = 3; i < 7; ++i) n += CountFrom(json[0][i], num_trials - n);
-  RequirePossible(n == num_trials || is_drawn, "the pairs are not the trials");
+  RequirePossible(n == num_trials || is_drawn, "counts", "the pairs are not the trials");
   const std::int64_t num_bad_of_first = CountFrom(json[0][2], n);
   for (size_t e = 0; e < estimators->size(); ++e) {
     const VerifiedEstimator one = VerifiedFrom(json[e], n, num_bad_of_first);
@@ -185,7 +180,7 @@ void SetEntropies(const Json& json, size_t first, size_t num_trials, EntropiesOf
         if (!number.is_null()) (*entropies)[e][first + trial].*kEntropies[k] = NumberFrom(number);
       }
       const TrialEntropies& one = (*entropies)[e][first + trial];
-      RequirePossible(!(one.good_winner && one.bad_winner), "a trial has two winners");
+      RequirePossible(!(one.good_winner && one.bad_winner), "counts", "a trial has two winners");
     }
   }
 }

@@ -226,6 +226,10 @@ void RequireSize(const Json& json, size_t size) {
     throw std::invalid_argument(fmt::format("it is no list of {}", size));
 }
 
+void RequirePossible(bool is_possible, const char* of, const char* what) {
+  if (!is_possible) throw std::invalid_argument(fmt::format("its {} cannot be: {}", of, what));
+}
+
 std::string PartAsText(const Part& part, const ItemResults& results) {
   const std::string first = FirstLine(part, results.size()), checksum = LineChecksum("", first);
   std::string text =
