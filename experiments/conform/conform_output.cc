@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
@@ -189,24 +190,6 @@ Table MakeProbabilityTable(const ConformReport& report) {
       {Column::Estimated("log_score"),
        [&](const ProbabilityKind& kind) { return estimate(MeasureLogScore(kind.forecasts)); }}};
   return MakeTable(columns, kinds);
-}
-
-// For files: the interval of each estimate in a column of its own.
-Table WithIntervalColumns(const Table& table) {
-  Table wide;
-  wide.rows.resize(table.rows.size());
-  for (size_t c = 0; c < table.columns.size(); ++c) {
-    wide.columns.push_back(table.columns[c]);
-    for (size_t r = 0; r < table.rows.size(); ++r) wide.rows[r].push_back(table.rows[r][c]);
-    if (table.columns[c].type != ColumnType::kEstimate) continue;
-    const std::string& name = table.columns[c].name;
-    wide.columns.push_back({.name = fmt::format("{0}_lower,{0}_upper", name),
-                            .type = ColumnType::kInterval,
-                            .json_name = name + "_interval"});
-    for (size_t r = 0; r < table.rows.size(); ++r)
-      wide.rows[r].push_back(std::get<Estimate>(table.rows[r][c]).interval);
-  }
-  return wide;
 }
 
 std::string Counted(std::int64_t n, const std::string& one, const std::string& many) {
