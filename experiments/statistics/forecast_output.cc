@@ -59,12 +59,10 @@ Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std:
   return table;
 }
 
-Json AsJson(const Interval& interval) { return {JsonNumber(interval.lower), JsonNumber(interval.upper)}; }
-
 Json AsJson(double value, double standard_error, const Interval& interval) {
   return {{"value", JsonNumber(value)},
           {"standard_error", JsonNumber(standard_error)},
-          {"interval", AsJson(interval)}};
+          {"interval", RenderJson(interval)}};
 }
 Json AsJson(const ClusteredEstimate& e) { return AsJson(e.value, e.standard_error, e.interval); }
 
@@ -78,7 +76,7 @@ Json AsJson(const MeasuredCalibrationError& error) {
 // With an interval where there is one.
 Json ErrorAsJson(const ForecastMeasures& m) {
   Json json = AsJson(m.error_of_equal_width);
-  if (m.is_of_population) json["interval"] = AsJson(m.interval_of_equal_width);
+  if (m.is_of_population) json["interval"] = RenderJson(m.interval_of_equal_width);
   return json;
 }
 

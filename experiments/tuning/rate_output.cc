@@ -18,11 +18,9 @@ Estimate EstimateRate(const ErrorCount& count) {
 std::string RateForTable(const ErrorCount& count) { return FormatEstimate(EstimateRate(count), kPercent); }
 
 nlohmann::ordered_json RateAsJson(const ErrorCount& count) {
-  const Interval interval = ExactBinomialInterval(count.errors, count.n);
-  return {{"value", count.n > 0 ? nlohmann::ordered_json(ComputeRate(count)) : nullptr},
-          {"lower", interval.lower},
-          {"upper", interval.upper},
-          {"n", count.n}};
+  nlohmann::ordered_json json = RenderJsonBounds(EstimateRate(count));
+  json["n"] = count.n;
+  return json;
 }
 
 }  // namespace rcme

@@ -7,6 +7,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/loop_inspection.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
@@ -117,18 +118,16 @@ Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
   const bool is_printed = options.reading == Reading::kAsPrinted;
   const std::vector<RocPoint> curve = ComputeEntropyCurve(roc);
   const RocPoint at_mu = PointAt(curve, mu);
-  return {
-      {"estimator", spec.label},
-      {"population", roc.population},
-      {"score", is_printed ? "psi, nats" : "excess entropy, nats"},
-      {"auc",
-       {{"value", roc.area.value}, {"lower", roc.area.interval.lower}, {"upper", roc.area.interval.upper}}},
-      {"num_good", roc.good.size()},
-      {"num_bad", roc.bad.size()},
-      {"curve", CurveAsJson(curve)},
-      {"marks", Json::array({{{"words", fmt::format("mu = {}", mu)},
-                              {"false_accept_rate", at_mu.false_positive_rate},
-                              {"true_accept_rate", at_mu.true_positive_rate}}})}};
+  return {{"estimator", spec.label},
+          {"population", roc.population},
+          {"score", is_printed ? "psi, nats" : "excess entropy, nats"},
+          {"auc", RenderJsonBounds({roc.area.value, roc.area.interval})},
+          {"num_good", roc.good.size()},
+          {"num_bad", roc.bad.size()},
+          {"curve", CurveAsJson(curve)},
+          {"marks", Json::array({{{"words", fmt::format("mu = {}", mu)},
+                                  {"false_accept_rate", at_mu.false_positive_rate},
+                                  {"true_accept_rate", at_mu.true_positive_rate}}})}};
 }
 
 // Per setting, whether it is on the Pareto front: none fails and is refused as seldom, and one of the two

@@ -151,6 +151,16 @@ std::vector<SetRow> MakeSetRows(const SetReport& set) {
 
 Estimate EstimateCoverage(const SharedMemberRate& coverage) { return {coverage.rate, coverage.interval}; }
 
+nlohmann::ordered_json RenderPooled(const PooledParameter& parameter) {
+  nlohmann::ordered_json json = RenderJson(Estimate{parameter.value, parameter.interval});
+  json["effective_pairs"] = JsonNumber(parameter.effective_n);
+  return json;
+}
+
+nlohmann::ordered_json RenderRatio(const ComparedMedians& medians) {
+  return {{"ratio", JsonNumber(medians.value)}, {"interval", RenderJson(medians.interval)}};
+}
+
 // The simulation has no twins of its own.
 Value AgainstTwins(const SetRow& row, const Estimate& estimate) {
   return row.test && row.name != kSimulationTest ? Value(estimate) : Value();
@@ -261,17 +271,6 @@ std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
 }
 
 std::string ValidationAsJson(const std::vector<SetReport>& reports) {
-  const auto interval_of = [](const Interval& interval) {
-    return nlohmann::ordered_json{JsonNumber(interval.lower), JsonNumber(interval.upper)};
-  };
-  const auto pooled = [&](const PooledParameter& of) {
-    return nlohmann::ordered_json{{"value", JsonNumber(of.value)},
-                                  {"interval", interval_of(of.interval)},
-                                  {"effective_pairs", JsonNumber(of.effective_n)}};
-  };
-  const auto compared = [&](const ComparedMedians& of) {
-    return nlohmann::ordered_json{{"ratio", JsonNumber(of.value)}, {"interval", interval_of(of.interval)}};
-  };
   nlohmann::ordered_json json = {{"nominal_variance", kNominalVariance},
                                  {"nominal_correlation", kNominalCorrelation},
                                  {"sets", nlohmann::ordered_json::array()}};
@@ -282,7 +281,7 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                   {"loops", nlohmann::ordered_json::object()},
                                   {"assumed_sigma_px", JsonNumber(report.assumed_sigma_px)},
                                   {"sigma_px", JsonNumber(report.sigma_px.value)},
-                                  {"sigma_px_interval", interval_of(report.sigma_px.interval)},
+                                  {"sigma_px_interval", RenderJson(report.sigma_px.interval)},
                                   {"sigma_verdict", VerdictName(report.sigma_verdict)},
                                   {"covariances",
                                    {{"verdict", VerdictName(report.covariances.verdict)},
@@ -298,7 +297,7 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                   {"camera_faults", nlohmann::ordered_json::array()},
                                   {"noise_by_size",
                                    {{"pairs", report.sizes.num_pairs},
-                                    {"slope", pooled(report.sizes.slope)},
+                                    {"slope", RenderPooled(report.sizes.slope)},
                                     {"verdict", VerdictName(report.sizes.verdict)}}},
                                   {"advice", report.advice}};
     for (const TruthFreeTest& test : report.tests) {
@@ -306,12 +305,12 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                               {"degrees_of_freedom", test.degrees_of_freedom},
                               {"n", test.num_values},
                               {"coverage", JsonNumber(test.coverage.rate)},
-                              {"coverage_interval", interval_of(test.coverage.interval)},
+                              {"coverage_interval", RenderJson(test.coverage.interval)},
                               {"twin_coverage", JsonNumber(test.twin_coverage.rate)},
                               {"ratio", JsonNumber(test.ratio.value)},
-                              {"interval", interval_of(test.ratio.interval)},
-                              {"in_simulation", compared(test.in_simulation)},
-                              {"against_twins", compared(test.against_twins)},
+                              {"interval", RenderJson(test.ratio.interval)},
+                              {"in_simulation", RenderRatio(test.in_simulation)},
+                              {"against_twins", RenderRatio(test.against_twins)},
                               {"verdict", VerdictName(test.verdict)},
                               {"cause", CauseName(test.cause)},
                               {"units", test.num_units},
@@ -323,16 +322,16 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                      {"n", c.num_products},
                                      {"correlation", JsonNumber(c.correlation)},
                                      {"twin_correlation", JsonNumber(c.twin_correlation)},
-                                     {"difference_interval", interval_of(c.difference)},
+                                     {"difference_interval", RenderJson(c.difference)},
                                      {"verdict", CorrelationVerdict(c)}});
     }
     for (const auto& [length, count] : report.num_loops) set["loops"][std::to_string(length)] = count;
     for (const FaultReport& fault : report.calibration.faults) {
       set["camera_faults"].push_back({{"fault", FindFaultText(fault.fault).name},
                                       {"nominal", FindFaultText(fault.fault).nominal},
-                                      {"beside_others", pooled(fault.joint)},
-                                      {"alone", pooled(fault.alone)},
-                                      {"twins", pooled(fault.twins)},
+                                      {"beside_others", RenderPooled(fault.joint)},
+                                      {"alone", RenderPooled(fault.alone)},
+                                      {"twins", RenderPooled(fault.twins)},
                                       {"verdict", FaultVerdict(fault.verdict)},
                                       {"in_words", DescribeFault(fault)}});
     }
