@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "experiments/conform/fit_rule.h"
 #include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
